@@ -1,0 +1,250 @@
+"""What happens on the page: messages from the parts come in, pictures and sentences go out."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from bokeh.document import Document
+from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settling
+
+from .curves import Curves
+from .exchange import Exchange
+from .frames import SAMPLES, Frames
+from .jobs import LatestWins
+from .live import LiveRun
+from .painter import Painter
+from .session import LOOKS, SPEEDS, Session, presets
+from .show import show_live, show_settled
+from .views.knobs import foundation_words, knob_state
+from .views.shell import Views
+
+log = logging.getLogger("granchain")
+
+_INK = {"light": ("#14181f", 1.0), "dark": ("#eef1f6", 1.0), "projector": ("#000000", 1.5)}
+
+
+@dataclass(frozen=True)
+class LivePicture:
+    """One step of the live run."""
+
+    frames: Frames
+    run: Run
+
+
+class Controller:
+    """One page: its session, its views, its jobs. Everything here runs in the document's turn."""
+
+    def __init__(self, document: Document, session: Session) -> None:
+        self._document = document
+        self.session = session
+        self.views = Views(self.received, partial(self._guarded, self._choose_frequency))
+        self._jobs = LatestWins(partial(self.later, self._arrived), partial(self.later, self.failed))
+        self._painter: Painter[Settled | LivePicture] = Painter(self._send, self._idle)
+        self._live: LiveRun | None = None
+        self.curves = Curves(self.views, self.later, self.after, lambda: self._jobs.busy)
+        self.exchange = Exchange(self)
+        self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "ready": self._ready, "visible": lambda _: self._painter.restart(),
+            "painted": lambda m: self._painter.painted(m.get("number")),
+            "set": self._set, "restore": self._restore, "scene": self._scene, "mode": self._mode,
+            "start": self._start, "speed": self._speed, "playing": self._playing, "reset": self._reset,
+            "step": self._step, "look": self._look, "understood": lambda _: self.say(""),
+            "lock": self._lock, "curve": self._curve,
+            "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
+            "curve-stop": lambda _: self.curves.stop(), **self.exchange.actions,
+        }
+
+    # Coming in and going out
+
+    def received(self, message: dict[str, Any]) -> None:
+        """A message from the browser: nothing in it is trusted."""
+        name = message.get("do")
+        action = self._actions.get(name) if isinstance(name, str) else None
+        if action is None:
+            self.say(f"The page sent a request {str(name)[:40]!r} that granchain does not know; reload the page.")
+            return
+        self._guarded(action, message)
+
+    def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
+        try:
+            action(*arguments)
+        except Exception as error:
+            self.failed(error)
+
+    def later(self, action: Callable[..., None], *arguments: Any) -> None:
+        """Do something in the document's turn; callable from any thread."""
+        self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
+
+    def after(self, milliseconds: int, action: Callable[..., None], *arguments: Any) -> None:
+        """Do something a little later."""
+        self._document.add_timeout_callback(partial(self._guarded, action, *arguments), milliseconds)
+
+    def say(self, sentence: str) -> None:
+        """One sentence for the visitor; an empty one takes it away."""
+        self.session.sentence = sentence
+        self.views.badge.show(sentence=sentence)
+
+    def failed(self, error: Exception) -> None:
+        """The last good picture stays, and one sentence says what happened."""
+        if isinstance(error, BadInput):
+            self.say(str(error))
+        elif isinstance(error, NumbersFailed):
+            self.say(error.sentence)
+        else:
+            log.error("unexpected failure", exc_info=error)
+            self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture stays. "
+                     "Move the knob back or reset, and please report it.")
+
+    def close(self, session_context: object) -> None:
+        """The visitor left."""
+        self._jobs.close()
+        self.curves.stop()
+
+    # Computing and painting
+
+    def _compute(self) -> None:
+        """A new picture for the knobs as they are now."""
+        if self.session.mode == "live":
+            if self._live is not None:
+                self._live.change(self.session.scene)
+            self._idle()
+        else:
+            self._jobs.submit(partial(self._settled, self.session.scene))
+
+    def _settled(self, scene: Scene) -> Iterator[Settled]:
+        return settling(scene, start=self.session.previous_state(), samples=SAMPLES)
+
+    def _live_step(self, samples: int | None = None) -> Iterator[LivePicture]:
+        live = self._live
+        if live is not None:
+            yield live.advance(samples) if samples else live.step(self.session.speed)
+
+    def _arrived(self, picture: Settled | LivePicture) -> None:
+        live = isinstance(picture, LivePicture)
+        if live != (self.session.mode == "live") or picture.run.scene.name != self.session.scene.name:
+            return
+        if isinstance(picture, Settled):
+            self.session.accept(picture)
+        self._painter.offer(picture)
+
+    def _send(self, number: int, picture: Settled | LivePicture) -> None:
+        if isinstance(picture, Settled):
+            show_settled(self.views, number, picture)
+        else:
+            show_live(self.views, number, picture.frames, picture.run)
+
+    def _idle(self) -> None:
+        """The browser has painted everything: in live mode that asks for the next step."""
+        if self.session.mode == "live" and self.session.playing and not self._painter.waits:
+            self._jobs.submit(self._live_step)
+
+    # What the visitor does
+
+    def _ready(self, message: dict[str, Any]) -> None:
+        self._look({"value": message.get("look")})
+        self._new_scene()
+
+    def _new_scene(self) -> None:
+        scene = self.session.scene
+        self.views.knobs.state = knob_state(scene)
+        self.views.corner.show(look_at=scene.look_at, paper=scene.paper)
+        self._header()
+        self._describe()
+        self.curves.open(scene)
+        if self.session.mode == "live":
+            self._live = LiveRun(scene)
+        self._compute()
+
+    def _header(self) -> None:
+        session = self.session
+        self.views.header.show(scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start,
+                               speeds=list(SPEEDS), speed=session.speed, playing=session.playing)
+
+    def _describe(self) -> None:
+        scene = self.session.scene
+        self.views.equation.show(latex=scene.equation_latex())
+        self.views.corner.show(effects=list(scene.effects), validity=list(scene.validity()))
+
+    def _set(self, message: dict[str, Any]) -> None:
+        try:
+            self.session.change(str(message.get("name")), message.get("value"))
+        finally:
+            self._echo(message.get("seq"))
+        self._turned(str(message.get("name")))
+
+    def _restore(self, message: dict[str, Any]) -> None:
+        self.session.restore(str(message.get("name")))
+        self._echo(message.get("seq"))
+        self._turned(str(message.get("name")))
+
+    def _echo(self, seq: object = None) -> None:
+        scene = self.session.scene
+        self.views.knobs.tell(type="values", values=dict(scene.knobs), foundation=foundation_words(scene), seq=seq)
+
+    def _turned(self, name: str) -> None:
+        if self.session.sentence:
+            self.say("")
+        self._describe()
+        self._compute()
+        if name != "f":
+            self.curves.changed(self.session.scene)
+
+    def _choose_frequency(self, frequency: float) -> None:
+        low, high = self.session.scene.ranges["f"]
+        self.session.change("f", round(min(max(frequency, low), high), 1))
+        self._echo()
+        self._turned("f")
+
+    def _scene(self, message: dict[str, Any]) -> None:
+        self.session.choose(message.get("name"))
+        self.say("")
+        self._new_scene()
+
+    def _mode(self, message: dict[str, Any]) -> None:
+        self.session.set_mode(message.get("value"))
+        self._live = LiveRun(self.session.scene) if self.session.mode == "live" else None
+        self._header()
+        self._compute()
+
+    def _start(self, message: dict[str, Any]) -> None:
+        self.session.set_start(message.get("value"))
+        self._header()
+        self._compute()
+
+    def _speed(self, message: dict[str, Any]) -> None:
+        self.session.set_speed(message.get("value"))
+        self._header()
+
+    def _playing(self, message: dict[str, Any]) -> None:
+        self.session.playing = bool(message.get("value"))
+        if self._live is not None:
+            self._live.hold()
+        self._idle()
+
+    def _reset(self, _: dict[str, Any]) -> None:
+        if self._live is not None:
+            self._live.reset()
+        self.session.picture = None
+        self._compute()
+
+    def _step(self, _: dict[str, Any]) -> None:
+        if self._live is not None:
+            self.session.playing = False
+            self._jobs.submit(partial(self._live_step, SAMPLES))
+
+    def _lock(self, message: dict[str, Any]) -> None:
+        self.views.energy.locked = bool(message.get("value"))
+
+    def _look(self, message: dict[str, Any]) -> None:
+        look = message.get("value")
+        if look in LOOKS:
+            ink, thick = _INK[str(look)]
+            self.views.curve.ink(ink, thick)
+            self.views.trains.thicken(thick)
+
+    def _curve(self, message: dict[str, Any]) -> None:
+        self.curves.choose(str(message.get("name")), bool(message.get("value")), self.session.scene)

@@ -1,0 +1,39 @@
+// The badge: what is on the screen, how sure it is and what it cost.
+
+const ENTRIES = [
+  ["start", (v) => v, "Where the steady state was started."],
+  ["error", (v) => `error ${v}`, "Estimated relative error of the displacements."],
+  ["time", (v) => v, "Computing time of this picture."],
+  ["method", (v) => v, "Method of integration."],
+  ["effects", (v) => v.join(" · "), "The effects that are computed; an absent one has no code and no cost."],
+];
+
+export function render({ model }) {
+  const root = document.createElement("div");
+  const sentence = document.createElement("div");
+  sentence.className = "sentence";
+  sentence.setAttribute("role", "alert");
+  const words = document.createElement("p");
+  const close = Object.assign(document.createElement("button"), { textContent: "✕", title: "Close" });
+  close.addEventListener("click", () => model.send_msg({ do: "understood" }));
+  sentence.append(words, close);
+  const badge = document.createElement("div");
+  badge.className = "badge";
+  root.append(sentence, badge);
+
+  const show = () => {
+    const { state } = model;
+    words.textContent = state.sentence ?? "";
+    sentence.hidden = !state.sentence;
+    badge.replaceChildren();
+    const regime = Object.assign(document.createElement("b"), { textContent: state.regime ?? "" });
+    badge.append(regime, Object.assign(document.createElement("i"), { className: "grow" }));
+    for (const [name, write, meaning] of ENTRIES) {
+      if (state[name] === undefined || state[name] === "") continue;
+      badge.append(Object.assign(document.createElement("span"), { textContent: write(state[name]), title: meaning, id: name }));
+    }
+  };
+  model.on("state", show);
+  show();
+  return root;
+}

@@ -1,0 +1,68 @@
+// The corner below the curve: what to look at, what the marks mean, which effects are on, the visitor's own data.
+
+const MARKS = { circle: "●", diamond: "◆", triangle: "▲", square: "■", star: "★", circle_dot: "◉", x: "✕", dash: "–" };
+const LARGEST_FILE = 2_000_000;
+
+const paragraph = (text, className = "") => Object.assign(document.createElement("p"), { textContent: text, className });
+
+const TABS = {
+  "look at": ({ state }) => [paragraph(state.look_at ?? ""), paragraph(state.paper ?? "", "soft")],
+  regimes: ({ state }) => {
+    const list = document.createElement("div");
+    list.className = "legend";
+    for (const { name, marker, colour } of state.regimes ?? []) {
+      const item = document.createElement("span");
+      item.innerHTML = `<b style="color:${colour}">${MARKS[marker]}</b> ${name}`;
+      list.append(item);
+    }
+    return [list, paragraph("solid from rest, dashed sweeping up, dotted sweeping down; ● with a ring is now", "soft")];
+  },
+  effects: ({ state }) => {
+    const list = document.createElement("ul");
+    for (const effect of state.effects ?? []) list.append(Object.assign(document.createElement("li"), { textContent: effect }));
+    return [list, ...(state.validity ?? []).map((sentence) => paragraph(sentence, "soft"))];
+  },
+  data: (model) => {
+    const row = document.createElement("div");
+    row.className = "row";
+    const file = Object.assign(document.createElement("input"), { type: "file", accept: ".csv,.txt,text/csv" });
+    file.setAttribute("aria-label", "your measured curve as CSV: frequency, force, optional error");
+    file.addEventListener("change", async () => {
+      const [chosen] = file.files;
+      if (!chosen) return;
+      if (chosen.size > LARGEST_FILE) model.send_msg({ do: "csv-too-large", name: chosen.name });
+      else model.send_msg({ do: "csv", name: chosen.name, text: await chosen.text() });
+      file.value = "";
+    });
+    const forget = Object.assign(document.createElement("button"), { textContent: "remove", type: "button" });
+    forget.addEventListener("click", () => model.send_msg({ do: "csv-remove" }));
+    row.append(file, ...(model.state.understood ? [forget] : []));
+    return [row, paragraph(model.state.understood || "CSV: frequency in Hz, force in N, and, if you have it, its error in N.", "soft")];
+  },
+};
+
+export function render({ model }) {
+  const root = document.createElement("div");
+  root.className = "corner";
+  const tabs = document.createElement("div");
+  tabs.className = "tabs";
+  tabs.setAttribute("role", "tablist");
+  const body = document.createElement("div");
+  body.className = "body";
+  body.setAttribute("role", "tabpanel");
+  root.append(tabs, body);
+  let chosen = "look at";
+  const show = () => {
+    for (const tab of tabs.children) tab.setAttribute("aria-selected", String(tab.textContent === chosen));
+    body.replaceChildren(...TABS[chosen](model));
+  };
+  for (const name of Object.keys(TABS)) {
+    const tab = Object.assign(document.createElement("button"), { textContent: name, type: "button" });
+    tab.setAttribute("role", "tab");
+    tab.addEventListener("click", () => { chosen = name; show(); });
+    tabs.append(tab);
+  }
+  model.on("state", show);
+  show();
+  return root;
+}

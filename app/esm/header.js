@@ -1,0 +1,126 @@
+// The bar on top. What only concerns the replay stays in the browser; the rest is one message each.
+
+const HELP = [
+  ["knobs", "Drag, type, or use the arrow keys; shift is coarse; a double click goes back to the scene's value."],
+  ["time", "Runs downwards in all pictures; drag a picture to stop it, space plays on."],
+  ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
+  ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
+  ["curve", "Click a frequency to go there. Shape and colour of a point say its regime."],
+];
+
+const make = (tag, properties = {}, ...children) => {
+  const element = Object.assign(document.createElement(tag), properties);
+  element.append(...children);
+  return element;
+};
+
+export function render({ model }) {
+  const page = window.granchain;
+  const send = (message) => model.send_msg(message);
+  const button = (text, title, act, className = "") => {
+    const element = make("button", { type: "button", title, className });
+    element.innerHTML = text;
+    element.setAttribute("aria-label", title);
+    element.addEventListener("click", act);
+    return element;
+  };
+  const chooser = (label, className, act) => {
+    const select = make("select", { className, title: label });
+    select.setAttribute("aria-label", label);
+    select.addEventListener("change", () => act(select.value));
+    return select;
+  };
+
+  const drawer = button("☰ knobs", "Show the knobs", () => page.drawer(true), "knobs-button");
+  const scene = chooser("scene", "scene", (name) => send({ do: "scene", name }));
+  const reset = button("⟲ <span class=wide>reset</span>", "Back to rest", () => send({ do: "reset" }));
+  const play = button("", "Play or pause (space)", () => setPlaying(!playing));
+  const period = button("⏭ <span class=wide>period</span>", "One drive period on", () => {
+    setPlaying(false);
+    page.emit("period");
+    send({ do: "step" });
+  });
+  const speed = chooser("drive periods shown per second", "speed", (value) => send({ do: "speed", value: Number(value) }));
+  const segments = make("span", { className: "segments" });
+  segments.setAttribute("role", "group");
+  const modes = ["settled", "live"].map((mode) => button(mode, mode === "settled"
+    ? "The steady state for these knobs, replayed" : "The run goes on while you move the knobs",
+  () => send({ do: "mode", value: mode })));
+  segments.append(...modes);
+  const start = chooser("where the steady state starts", "start", (value) => send({ do: "start", value }));
+  start.add(new Option("from rest", "rest"));
+  start.add(new Option("from where it was", "previous state"));
+  const share = button("⧉ <span class=wide>share</span>", "Link to this picture", () => send({ do: "share", origin: location.href }));
+  const save = button("⭳ <span class=wide>save</span>", "Save this picture as HDF5", () => send({ do: "save" }), "save");
+  const help = button("?", "Help", () => toggle(helpBox), "icon");
+  const look = button("◐", "Light, dark, projector", () => page.nextLook(), "icon");
+
+  const list = make("dl");
+  for (const [term, meaning] of HELP) list.append(make("dt", { textContent: term }), make("dd", { textContent: meaning }));
+  const helpBox = make("div", { className: "popover", hidden: true }, list);
+  const linkField = make("input", { readOnly: true });
+  linkField.setAttribute("aria-label", "link to this picture");
+  const linkBox = make("div", { className: "popover", hidden: true }, linkField);
+  const toggle = (box, open = box.hidden) => {
+    helpBox.hidden = linkBox.hidden = true;
+    box.hidden = !open;
+  };
+
+  let playing = true;
+  const drawPlay = () => { play.innerHTML = playing ? "⏸ <span class=wide>pause</span>" : "▶ <span class=wide>play</span>"; };
+  const setPlaying = (value) => {
+    if (value === playing) return;
+    playing = value;
+    drawPlay();
+    page.emit("play", playing);
+    send({ do: "playing", value: playing });
+  };
+  page.on("pause", () => setPlaying(false));
+  page.on("look", (value) => send({ do: "look", value }));
+  document.addEventListener("keydown", (event) => {
+    const inField = event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
+    if (event.key === " " && !inField) { event.preventDefault(); setPlaying(!playing); }
+    if (event.key === "Escape") { toggle(helpBox, false); page.drawer(false); }
+  });
+  document.addEventListener("pointerdown", (event) => {
+    if (!event.composedPath().includes(root)) toggle(helpBox, false);
+  });
+
+  const show = () => {
+    const { state } = model;
+    scene.replaceChildren(...(state.scenes ?? []).map(({ name, title }) => new Option(`${name} — ${title}`, name)));
+    scene.value = state.scene ?? "";
+    speed.replaceChildren(...(state.speeds ?? []).map((value) => new Option(`${value} periods/s`, value)));
+    speed.value = String(state.speed ?? 1);
+    page.emit("speed", state.speed ?? 1);
+    modes.forEach((element, i) => element.setAttribute("aria-pressed", String(state.mode === ["settled", "live"][i])));
+    start.value = state.start ?? "rest";
+    start.style.display = state.mode === "live" ? "none" : "";
+    if (state.playing !== undefined && state.playing !== playing) {
+      playing = state.playing;
+      page.emit("play", playing);
+    }
+    drawPlay();
+  };
+  model.on("state", show);
+  model.on("msg:custom", (message) => {
+    if (message.type === "link") {
+      const url = new URL(location.href);
+      url.search = message.query;
+      history.replaceState(null, "", url);
+      linkField.value = url.href;
+      toggle(linkBox, true);
+      linkField.select();
+      navigator.clipboard?.writeText(url.href).catch(() => {});
+    } else if (message.type === "file") {
+      const link = make("a", { href: URL.createObjectURL(new Blob([message.content])), download: message.name });
+      link.click();
+      setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    }
+  });
+
+  const root = make("div", { className: "bar" }, drawer, make("h1", { textContent: "granchain" }), scene, reset, play,
+    period, speed, segments, start, make("span", { className: "grow" }), share, save, help, look, helpBox, linkBox);
+  show();
+  return root;
+}

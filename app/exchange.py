@@ -1,0 +1,64 @@
+"""What leaves and enters the page: share links, saved pictures, the visitor's measurements."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from granchain_core import BadInput
+from granchain_core.experiment import read_measured_csv
+from granchain_core.store import save
+
+from .share import encode
+
+if TYPE_CHECKING:
+    from .controller import Controller
+
+_LARGEST_CSV = 2_000_000
+
+
+class Exchange:
+    """Actions of the page that deal with links and files."""
+
+    def __init__(self, page: Controller) -> None:
+        self._page = page
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "share": self._share, "save": self._save, "csv": self._csv,
+            "csv-too-large": self._too_large, "csv-remove": self._remove,
+        }
+
+    def _share(self, _: dict[str, Any]) -> None:
+        session = self._page.session
+        query = encode(session.scene, {"mode": session.mode, "start": session.start})
+        self._page.views.header.tell(type="link", query=query)
+
+    def _save(self, _: dict[str, Any]) -> None:
+        picture = self._page.session.picture
+        if picture is None:
+            raise BadInput("There is no settled picture to save yet; choose settled and wait for the first one.")
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "picture.h5"
+            save(picture.run, path)
+            content = path.read_bytes()
+        scene = picture.run.scene
+        self._page.views.header.tell(type="file", name=f"{scene.name}-{scene.knobs['f']:g}Hz.h5", content=content)
+
+    def _csv(self, message: dict[str, Any]) -> None:
+        text = message.get("text")
+        if not isinstance(text, str):
+            raise BadInput("The measurement must be the text of a CSV file: frequency, force and optional error.")
+        if len(text) > _LARGEST_CSV:
+            self._too_large(message)
+        measured = read_measured_csv(text)
+        self._page.curves.measured(measured)
+        name = str(message.get("name", "data"))[:60]
+        self._page.views.corner.show(understood=f"{name}: {measured.understood}")
+
+    def _too_large(self, _: dict[str, Any]) -> None:
+        raise BadInput("The measurement is larger than 2 MB; a curve of frequency and force needs a few kB.")
+
+    def _remove(self, _: dict[str, Any]) -> None:
+        self._page.curves.measured(None)
+        self._page.views.corner.show(understood="")

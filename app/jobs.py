@@ -1,0 +1,77 @@
+"""Where computations of the dashboard run: worker threads for the process, one latest-wins job a session.
+
+Kernels release the GIL, so threads are enough. Pictures and curves have pools of their own because a curve
+lasts seconds and a picture must never wait for one.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+
+_CORES = os.cpu_count() or 1
+
+PICTURES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="picture")
+BACKGROUND = ThreadPoolExecutor(max_workers=max(1, _CORES // 2), thread_name_prefix="background")
+
+Work = Callable[[], Iterator[object]]
+
+
+class LatestWins:
+    """One running computation for a session; a newer one replaces whatever waits.
+
+    A computation is an iterator of ever better results. Its first result is always delivered, and only the
+    refinement after it is given up for a newer request: if everything could be cancelled, nothing would be
+    repainted during a drag.
+    """
+
+    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None]) -> None:
+        self._deliver = deliver
+        self._fail = fail
+        self._lock = threading.Lock()
+        self._waiting: Work | None = None
+        self._running = False
+        self._closed = False
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being computed or waits to be."""
+        return self._running
+
+    def submit(self, work: Work) -> None:
+        """Compute `work` next, in place of anything that has not started."""
+        with self._lock:
+            if self._closed:
+                return
+            self._waiting = work
+            if self._running:
+                return
+            self._running = True
+        PICTURES.submit(self._drain)
+
+    def close(self) -> None:
+        """Give up: nothing more is computed or delivered."""
+        with self._lock:
+            self._closed = True
+            self._waiting = None
+
+    def _next(self) -> Work | None:
+        with self._lock:
+            work, self._waiting = self._waiting, None
+            self._running = work is not None
+            return work
+
+    def _drain(self) -> None:
+        while (work := self._next()) is not None:
+            try:
+                for result in work():
+                    if self._closed:
+                        return
+                    self._deliver(result)
+                    if self._waiting is not None:
+                        break
+            except Exception as error:
+                if not self._closed:
+                    self._fail(error)

@@ -1,0 +1,65 @@
+"""The live run: it goes on while the knobs move, and each step waits until the browser painted the last."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+from granchain_core import LiveChain, Scene
+
+from .frames import SAMPLES, Frames, LiveWindow
+
+_LONGEST_STEP = 0.1
+"""Seconds of viewing time one step may catch up: after a hidden tab the run goes on, it does not jump."""
+
+
+class LiveRun:
+    """One chain that keeps running; `step` is called from a worker thread, the rest from the page."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._chain = LiveChain(scene, samples=SAMPLES)
+        self._window = LiveWindow()
+        self._lock = threading.Lock()
+        self._new_scene: Scene | None = None
+        self._reset = False
+        self._last: float | None = None
+        self._owed = 0.0
+
+    def change(self, scene: Scene) -> None:
+        """New knobs, taken over before the next sample."""
+        with self._lock:
+            self._new_scene = scene
+
+    def reset(self) -> None:
+        """Back to rest before the next sample."""
+        with self._lock:
+            self._reset = True
+
+    def hold(self) -> None:
+        """Time stands still from now until the next step."""
+        self._last = None
+
+    def step(self, periods_per_second: float) -> Frames:
+        """As many samples as viewing time has passed since the last step; in slow motion, the next one."""
+        rate = periods_per_second * SAMPLES
+        now = time.perf_counter()
+        elapsed = 0.03 if self._last is None else min(now - self._last, _LONGEST_STEP)
+        self._owed = min(self._owed, 1.0) + elapsed * rate
+        if self._owed < 1.0:
+            time.sleep((1.0 - self._owed) / rate)
+            self._owed = 1.0
+        self._last = time.perf_counter()
+        return self.advance(int(self._owed))
+
+    def advance(self, samples: int) -> Frames:
+        """The window after `samples` more samples."""
+        with self._lock:
+            scene, self._new_scene = self._new_scene, None
+            reset, self._reset = self._reset, False
+        if scene is not None:
+            self._chain.change(scene)
+        if reset:
+            self._chain.reset()
+            self._window = LiveWindow()
+        self._owed = max(0.0, self._owed - samples)
+        return self._window.add(self._chain.advance(samples))

@@ -1,0 +1,5 @@
+"""What `panel serve app/main.py` serves: the same page as `granchain serve`."""
+
+from app.page import page
+
+page().servable()

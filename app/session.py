@@ -1,0 +1,88 @@
+"""What one visitor looks at: scene, mode, start, the last good picture, and a sentence when something failed.
+
+No Panel and no Bokeh in here, so that every rule of the page can be tested without a browser.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from granchain_core import BadInput, Scene, Settled, State, scene, scene_names, settling
+
+from .frames import SAMPLES
+
+MODES = ("settled", "live")
+STARTS = ("rest", "previous state")
+LOOKS = ("light", "dark", "projector")
+SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0)
+
+
+@dataclass
+class Session:
+    """The state of one page; methods change it or raise `BadInput` and leave it as it was."""
+
+    scene: Scene = field(default_factory=lambda: scene("sec2"))
+    mode: str = "settled"
+    start: str = "rest"
+    speed: float = 1.0
+    playing: bool = True
+    picture: Settled | None = None
+    sentence: str = ""
+
+    def change(self, name: str, value: object) -> None:
+        """Turn knob `name` to `value`."""
+        self.scene = self.scene.evolve(**{name: value})
+
+    def restore(self, name: str) -> None:
+        """Turn knob `name` back to what the preset has."""
+        preset = scene(self.scene.name).knobs
+        if name not in preset:
+            raise BadInput(f"There is no knob {str(name)[:40]!r} to put back.")
+        self.change(name, preset[name])
+
+    def choose(self, name: object) -> None:
+        """Open another preset, in the same mode."""
+        self.scene = scene(name if isinstance(name, str) else str(name)[:60])
+        self.picture = None
+
+    def set_mode(self, mode: object) -> None:
+        """`settled` or `live`."""
+        self.mode = _one_of("mode", mode, MODES)
+
+    def set_start(self, start: object) -> None:
+        """Where settled pictures start: from rest or from where the chain was."""
+        self.start = _one_of("start", start, STARTS)
+
+    def set_speed(self, speed: object) -> None:
+        """Drive periods shown in a second, limited to what a page can show."""
+        if isinstance(speed, bool) or not isinstance(speed, (int, float)) or not 0.01 <= speed <= 1000.0:
+            raise BadInput("speed must be from 0.01 to 1000 drive periods a second; 1 is a good start.")
+        self.speed = float(speed)
+
+    def previous_state(self) -> State | None:
+        """The state the next settled picture starts from; None is rest."""
+        if self.start == "rest" or self.picture is None:
+            return None
+        state = self.picture.state
+        return state if len(state.displacement) == self.scene.knobs["N"] else None
+
+    def pictures(self) -> Iterator[Settled]:
+        """Ever better pictures of the steady state for the knobs as they are now."""
+        return settling(self.scene, start=self.previous_state(), samples=SAMPLES)
+
+    def accept(self, picture: Settled) -> None:
+        """Keep `picture` as the last good one."""
+        self.picture = picture
+        self.sentence = ""
+
+
+def _one_of(what: str, value: object, known: tuple[str, ...]) -> str:
+    if value in known:
+        return str(value)
+    raise BadInput(f"{what} {str(value)[:40]!r} is not one of {', '.join(known)}.")
+
+
+def presets() -> list[dict[str, str]]:
+    """Name and title of every scene one can choose."""
+    return [{"name": name, "title": scene(name).title} for name in scene_names()]

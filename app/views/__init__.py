@@ -1,0 +1,1 @@
+"""One view a file; a view draws, it decides nothing."""

@@ -1,0 +1,45 @@
+"""The chain itself, the replay clock and the time cursor, all drawn in the browser from one set of frames."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+from bokeh.palettes import Inferno256
+from granchain_core import Scene
+
+from ..frames import SAMPLES, Frames, prefixed
+from .component import Component, text
+
+
+class Chain(Component):
+    """Beads, contacts, driver and wall; the frames come as single-precision arrays."""
+
+    _esm = text("stage.js") + text("chain.js")
+    _stylesheets = [text("chain.css")]  # noqa: RUF012  (Panel's own class attribute)
+
+
+PALETTE = list(Inferno256)
+
+
+def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live: bool) -> dict[str, Any]:
+    """What the browser needs to draw the chain at every instant of `frames`."""
+    factor, letter = prefixed(scale)
+    return {
+        "type": "frames",
+        "number": number,
+        "live": live,
+        "rows": frames.rows,
+        "beads": frames.beads,
+        "samples": SAMPLES,
+        "diameter": scene.diameter,
+        "foundation": scene.knobs["k"] > 0.0,
+        "energy_high": scale,
+        "energy_label": f"{scale / factor:g} {letter}J",
+        "sent": time.time(),
+        "displacement": np.ascontiguousarray(frames.displacement, dtype=np.float32),
+        "force": np.ascontiguousarray(frames.force, dtype=np.float32),
+        "energy": np.ascontiguousarray(frames.kinetic_energy, dtype=np.float32),
+        "drive": np.ascontiguousarray(frames.drive_displacement, dtype=np.float32),
+    }

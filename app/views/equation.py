@@ -1,0 +1,12 @@
+"""The equation of motion of the current scene, with its active terms only."""
+
+from __future__ import annotations
+
+from .component import Component, text
+
+
+class Equation(Component):
+    """LaTeX from the scene, rendered as MathML by the KaTeX that Panel brings along."""
+
+    _esm = text("equation.js")
+    _stylesheets = [text("equation.css")]  # noqa: RUF012

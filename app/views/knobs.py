@@ -1,0 +1,61 @@
+"""The knobs: slider, number and unit for every quantity of the scene."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from granchain_core import Scene, scene
+from granchain_core.quantities import QUANTITIES
+
+from .component import Component, text
+
+MAIN = ("f", "A0", "D", "k", "kappa", "accuracy")
+MORE = ("N", "F0", "wall", "dissipation", "tension")
+
+_SHOWN_IN = {"A0": (1e-6, "µm")}
+"""Quantities that are read in another unit than SI: factor and unit."""
+
+_CUBIC = ("k", "kappa")
+"""Knobs that start at zero and span decades: the slider's cube, fine near zero, where κ = 0.001 lies."""
+
+
+class Knobs(Component):
+    """The knobs' drawing; every movement comes as a message {"set": name, "value": SI value}."""
+
+    _esm = text("knobs.js")
+    _stylesheets = [text("controls.css"), text("knobs.css")]  # noqa: RUF012
+
+
+def knob_state(current: Scene) -> dict[str, Any]:
+    """Everything the drawing needs for this scene."""
+    preset = scene(current.name).knobs
+    return {
+        "specs": [_spec(name, current) for name in MAIN + MORE],
+        "values": {name: current.knobs[name] for name in MAIN + MORE},
+        "preset": {name: preset[name] for name in MAIN + MORE},
+        "foundation": foundation_words(current),
+    }
+
+
+def foundation_words(current: Scene) -> str:
+    """The foundation frequency, or that there is none."""
+    frequency = current.foundation_frequency
+    return f"{frequency:.1f} Hz" if frequency > 0 and math.isfinite(frequency) else "none"
+
+
+def _spec(name: str, current: Scene) -> dict[str, Any]:
+    quantity = QUANTITIES[name]
+    factor, unit = _SHOWN_IN.get(name, (1.0, quantity.unit if quantity.unit != "1" else ""))
+    spec: dict[str, Any] = {
+        "name": name, "symbol": quantity.symbol, "label": quantity.label, "meaning": quantity.meaning,
+        "unit": unit, "factor": factor, "choices": list(quantity.choices), "numeric": quantity.numeric,
+        "whole": quantity.whole, "more": name in MORE, "step": quantity.step, "scale": quantity.scale,
+    }
+    if name in current.ranges:
+        spec["low"], spec["high"] = current.ranges[name]
+    if name in _CUBIC:
+        spec["scale"] = "cubic"
+    if name == "accuracy":
+        spec["step"] = 0.0
+    return spec

@@ -1,0 +1,58 @@
+"""All views of the page together, and the template they stand in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+from bokeh.models import Range1d
+
+from .badge import Badge
+from .chain import PALETTE, Chain
+from .component import text
+from .corner import Corner, CurveBar
+from .curve import REGIMES, Curve
+from .energy import EnergyMap
+from .equation import Equation
+from .figures import BOTTOM, GAP, TOP, pane
+from .header import Header
+from .knobs import Knobs
+from .trains import Trains
+
+_APP = Path(__file__).resolve().parent.parent
+
+
+class Views:
+    """Every part of the page; all their messages go to `received`."""
+
+    def __init__(self, received: Callable[[dict[str, Any]], None], choose: Callable[[float], None]) -> None:
+        self.time = Range1d(start=1.0, end=0.0)
+        self.header = Header(received)
+        self.knobs = Knobs(received, sizing_mode="stretch_width")
+        self.equation = Equation(received)
+        self.chain = Chain(received, state={"palette": PALETTE}, sizing_mode="stretch_both")
+        self.trains = Trains(self.time)
+        self.energy = EnergyMap(self.time)
+        self.curve = Curve(choose)
+        self.curvebar = CurveBar(received)
+        self.corner = Corner(received, sizing_mode="stretch_both", state={"regimes": [
+            {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
+        self.badge = Badge(received)
+
+    def template(self) -> pn.Template:
+        """The page; its layout is a CSS grid in page.css."""
+        page = pn.Template((_APP / "page.html").read_text(encoding="utf-8"))
+        page.add_variable("page_css", (_APP / "page.css").read_text(encoding="utf-8"))
+        page.add_variable("page_js", text("page.js"))
+        page.add_variable("frame_top", TOP)
+        page.add_variable("frame_bottom", BOTTOM)
+        page.add_variable("gap", GAP)
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "badge"):
+            page.add_panel(name, getattr(self, name))
+        page.add_panel("left", pane(self.trains.left))
+        page.add_panel("map", pane(self.energy.figure))
+        page.add_panel("right", pane(self.trains.right))
+        page.add_panel("curve", pane(self.curve.figure))
+        return page

@@ -1,0 +1,95 @@
+"""The force trains beside the map: drive and input force on the left, output force on the right."""
+
+from __future__ import annotations
+
+import numpy as np
+from bokeh.models import ColumnDataSource, LinearAxis, Range1d
+from bokeh.plotting import figure
+
+from ..frames import Frames, prefixed, round_up
+from .figures import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
+
+
+class Trains:
+    """Two figures and one data source; time runs downwards on the axis they share with the map."""
+
+    def __init__(self, time: Range1d) -> None:
+        names = ("time", "drive", "input", "output", "elastic")
+        self._source = ColumnDataSource({name: np.zeros(0) for name in names})
+        self._lines: list = []
+        self.left = self._left_figure(time)
+        self.right = self._right_figure(time)
+
+    def _left_figure(self, time: Range1d) -> figure:
+        plot = quiet_figure(LEFT, GAP, y_range=time, x_range=Range1d(-1, 1))
+        plot.extra_x_ranges = {"drive": Range1d(-1, 1)}
+        axis = LinearAxis(x_range_name="drive")
+        quiet_axis(axis, DRIVE)
+        plot.add_layout(axis, "above")
+        quiet_axis(plot.xaxis[1], INPUT)
+        plot.yaxis.axis_label = "time"
+        plot.xgrid.grid_line_color = None
+        self._lines += [
+            plot.line("drive", "time", source=self._source, x_range_name="drive", line_color=DRIVE,
+                      line_width=2.0),
+            plot.line("input", "time", source=self._source, line_color=INPUT, line_width=2.5),
+        ]
+        _few_ticks(plot)
+        return plot
+
+    def _right_figure(self, time: Range1d) -> figure:
+        plot = quiet_figure(GAP, 14, y_range=time, x_range=Range1d(0, 1))
+        plot.yaxis.visible = False
+        plot.xgrid.grid_line_color = None
+        quiet_axis(plot.xaxis[0], OUTPUT)
+        self._lines += [
+            plot.line("elastic", "time", source=self._source, line_color=OUTPUT, line_width=2.0,
+                      line_dash=[5, 4]),
+            plot.line("output", "time", source=self._source, line_color=OUTPUT, line_width=2.5),
+        ]
+        _few_ticks(plot)
+        return plot
+
+    def update(self, frames: Frames, time: np.ndarray) -> None:
+        """Show `frames`, whose rows are at `time` on the shared axis."""
+        drive_high = round_up(float(np.abs(frames.drive_displacement).max()))
+        input_range = _span(frames.input_force)
+        output_range = _span(frames.output_force, frames.output_force_elastic)
+        drive, drive_letter = prefixed(drive_high)
+        push, push_letter = prefixed(max(map(abs, input_range)))
+        out, out_letter = prefixed(max(map(abs, output_range)))
+        self._source.data = {
+            "time": time,
+            "drive": frames.drive_displacement / drive,
+            "input": frames.input_force / push,
+            "output": frames.output_force / out,
+            "elastic": frames.output_force_elastic / out,
+        }
+        edge = 1.15 * drive_high / drive
+        self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
+        self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)
+        self.right.x_range.update(start=output_range[0] / out, end=output_range[1] / out)
+        self.left.xaxis[0].axis_label = f"drive u₀ ({drive_letter}m)"
+        self.left.xaxis[1].axis_label = f"input force ({push_letter}N)"
+        self.right.xaxis[0].axis_label = f"output force ({out_letter}N)"
+
+    def thicken(self, factor: float) -> None:
+        """Wider lines for the projector."""
+        for line, width in zip(self._lines, (2.0, 2.5, 2.0, 2.5), strict=True):
+            line.glyph.line_width = width * factor
+
+
+def _span(*series: np.ndarray) -> tuple[float, float]:
+    """A range that holds all values, zero included, and keeps still while they change a little."""
+    high = round_up(max(float(s.max()) for s in series))
+    low = min(float(s.min()) for s in series)
+    return (-0.06 * high if low > -0.02 * high else -round_up(-low)), 1.04 * high
+
+
+def _few_ticks(plot: figure) -> None:
+    for axis in plot.xaxis:
+        axis.ticker.desired_num_ticks = 3
+        axis.ticker.num_minor_ticks = 0
+    for axis in plot.yaxis:
+        axis.ticker.desired_num_ticks = 6
+        axis.ticker.num_minor_ticks = 0
