@@ -1,0 +1,223 @@
+"""The engine: one scene, one method, one state, carried through whole periods or along a grid of samples."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..errors import Cancelled, NumbersFailed
+from ..kernels import sampling
+from ..kernels.certified import run_certified
+from ..kernels.dop853 import ALL_STAGES, Dop853, Work
+from ..kernels.fixed_step import Rk4, Rk4Split, Stages
+from ..kernels.motion import place
+from ..lower import Lowered, lower
+from ..scene import Scene
+from .methods import METHODS, Setting
+
+#: Grid points for following force maxima lie at most this far apart in scaled time; a Hertzian pulse lasts about 6.
+_PEAK_SPACING = 0.25
+#: The certified method makes at least this many steps a period, so that the driver is never stepped over.
+_LEAST_STEPS = 16
+
+_FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split}
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Where the chain is: displacement and velocity (N,) in SI and the drive phase as a fraction of a period."""
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    phase: float = 0.0
+
+
+@dataclass
+class Counts:
+    """What a computation cost: accepted steps, evaluations of the equations, contact events, rejected steps."""
+
+    array: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
+
+    @property
+    def steps(self) -> int:
+        """Accepted steps."""
+        return int(self.array[0])
+
+    @property
+    def rhs(self) -> int:
+        """Evaluations of the equations of motion."""
+        return int(self.array[1])
+
+    @property
+    def events(self) -> int:
+        """Contact events located."""
+        return int(self.array[2])
+
+
+def rest(scene: Scene) -> State:
+    """The scene's start: at rest at drive phase 0, except for beads that are given a velocity."""
+    velocity = np.zeros(scene.N)
+    for place, v in scene.start_velocity:
+        velocity[place - 1] = v
+    return State(np.zeros(scene.N), velocity)
+
+
+def new_stop() -> np.ndarray:
+    """A stop flag for kernels: one byte, polled; set it to 1 from any thread."""
+    return np.zeros(1, dtype=np.uint8)
+
+
+class Engine:
+    """Carries a state of `scene` through time; all arrays are allocated here, none in a kernel.
+
+    `samples` is the number of recorded samples a period. `stop` is a flag from `new_stop`.
+    """
+
+    def __init__(self, scene: Scene, setting: Setting, samples: int = 1, balance: bool = False,
+                 stop: np.ndarray | None = None) -> None:
+        self.lowered: Lowered = lower(scene, balance)
+        self.setting = setting
+        self.samples = samples
+        self.counts = Counts()
+        self.peaks = np.full((3, 3), -np.inf)
+        self.stop = new_stop() if stop is None else stop
+        self.y = np.zeros(self.lowered.size)
+        self._adaptive = METHODS[setting.method].adaptive
+        if self._adaptive:
+            self._prepare_adaptive()
+        else:
+            self._prepare_fixed()
+        self.start(rest(scene))
+
+    # --- set-up --------------------------------------------------------------------------------------------
+
+    def _prepare_fixed(self) -> None:
+        lo = self.lowered
+        n = self.setting.steps_per_period(lo, self.samples)
+        self.method: Any = _FIXED[self.setting.method](n)
+        self.h = lo.period / n
+        theta = np.pi * np.arange(2 * n + 1) / n
+        driver = lo.slots.driver
+        self.drive = np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
+        self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), lo.forces())
+        self.grid = n
+
+    def _prepare_adaptive(self) -> None:
+        lo = self.lowered
+        self.method = Dop853(self.setting.tolerance, lo.period / _LEAST_STEPS)
+        vectors = [np.zeros(lo.size) for _ in range(4)]
+        self.work = Work(np.zeros((ALL_STAGES, lo.size)), *vectors, np.zeros((7, lo.size)), np.zeros(2), lo.forces())
+        self.clock = np.array([min(0.01, lo.period / _LEAST_STEPS)])
+        self.grid = self.samples * max(1, int(np.ceil(lo.period / self.samples / _PEAK_SPACING)))
+
+    # --- state ---------------------------------------------------------------------------------------------
+
+    def start(self, state: State) -> None:
+        """Put the chain into `state`; the energy account starts at zero."""
+        lo, row = self.lowered, self.lowered.row
+        self.grid_index = round(state.phase * self.grid) % self.grid
+        self.y[:] = 0.0
+        self.y[1 : row - 1] = state.displacement / lo.scales.length
+        self.y[row + 1 : 2 * row - 1] = state.velocity / lo.scales.velocity
+        self._place(from_velocity=True)
+        if self._adaptive:
+            self.work.scale[0] = max(1e-3, float(np.abs(self.y[1 : row - 1]).max()))
+            self.work.scale[1] = max(1e-3, float(np.abs(self.y[row + 1 : 2 * row - 1]).max()))
+        sampling.forget_peaks(self.peaks)
+
+    def _place(self, from_velocity: bool) -> None:
+        """Put the driver and the slope, where every kernel expects it, in step with y."""
+        theta = 2 * np.pi * self.grid_index / self.grid
+        place(self.lowered.slots, theta, self.y, self.work.k[0], self.work.forces, from_velocity)
+
+    @property
+    def state(self) -> State:
+        """The present state in SI."""
+        lo, row = self.lowered, self.lowered.row
+        self._place(from_velocity=False)
+        return State(self.y[1 : row - 1] * lo.scales.length, self.work.k[0, 1 : row - 1] * lo.scales.velocity,
+                     self.grid_index / self.grid)
+
+    # --- motion --------------------------------------------------------------------------------------------
+
+    def empty_samples(self, rows: int) -> sampling.Samples:
+        """Arrays for `rows` samples in scaled units."""
+        n = self.lowered.beads
+        energy = np.zeros((rows, 3)) if self.lowered.slots.balance is not None else None
+        return sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)
+
+    def record(self, count: int) -> sampling.Samples:
+        """Advance by `count` samples and keep them, the present one first: count + 1 rows."""
+        samples = self.empty_samples(count + 1)
+        every = self.grid // self.samples
+        lo, work = self.lowered, self.work
+        if self._adaptive:
+            status, rows = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, work, self.clock,
+                                         self.grid_index, count * every, self.grid, every, samples, self.peaks,
+                                         self.counts.array, self.stop)
+        else:
+            status, rows = sampling.run_samples(self.method, lo.slots, self.drive, self.h, self.y, work,
+                                                self.grid_index, every, samples, self.peaks, self.counts.array,
+                                                self.stop)
+        self.grid_index = (self.grid_index + count * every) % self.grid
+        self._raise_for(status, rows / self.samples)
+        return samples
+
+    def periods(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Advance by whole periods from phase 0.
+
+        Returns the stroboscopic states (count + 1, 2, N+2) in scaled (u, w) and the largest input, output and
+        elastic output force of each period (count, 3).
+        """
+        row = self.lowered.row
+        strobes, tops = np.zeros((count + 1, self.y.size)), np.zeros((count, 3))
+        if self._adaptive:
+            self._certified_periods(strobes, tops)
+        else:
+            status, done = sampling.run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
+                                                strobes, self.peaks, tops, self.counts.array, self.stop)
+            self._raise_for(status, done)
+        strobes[:, 0] = strobes[:, row - 1] = 0.0
+        return strobes[:, : 2 * row].reshape(count + 1, 2, row), tops
+
+    def _certified_periods(self, strobes: np.ndarray, tops: np.ndarray) -> None:
+        lo, keep = self.lowered, self.empty_samples(2)
+        strobes[0] = self.y
+        for p in range(len(tops)):
+            sampling.forget_peaks(self.peaks)
+            status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
+                                      self.grid, self.grid, self.grid, keep, self.peaks, self.counts.array, self.stop)
+            self._raise_for(status, p)
+            strobes[p + 1], tops[p] = self.y, self.peaks[:, 0]
+
+    def skip(self, periods: int) -> None:
+        """Advance by whole periods from phase 0, looking at nothing."""
+        if not self._adaptive:
+            self.periods(periods)
+            return
+        lo = self.lowered
+        for p in range(periods):
+            status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
+                                      self.grid, self.grid, 0, self.empty_samples(1), self.peaks, self.counts.array,
+                                      self.stop)
+            self._raise_for(status, p)
+
+    def _raise_for(self, status: int, periods: float) -> None:
+        """Turn a kernel's status into an outcome a student understands."""
+        if status == sampling.DONE:
+            return
+        if status == sampling.CANCELLED:
+            raise Cancelled
+        scene, row = self.lowered.scene, self.lowered.row
+        when = f"at about {periods * scene.period:.6g} s ({periods:.6g} drive periods)"
+        if status == sampling.NOT_FINITE:
+            bead = max(1, sampling.first_not_finite(self.y, row))
+            raise NumbersFailed(f"The motion of bead {bead} stopped being a finite number {when}; "
+                                f"lower the damping or ask for a higher accuracy.", "not-finite")
+        if status == sampling.STEP_TOO_SMALL:
+            raise NumbersFailed(f"The step of {self.setting.method} shrank to nothing {when}; ask for less accuracy "
+                                f"than {scene.accuracy:g} or use method rk4-split.", "step-too-small")
+        raise NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D or "
+                            f"use method rk4-split.", "chatter")

@@ -1,0 +1,65 @@
+"""The energy account: work of the driver and energy lost in the contacts, integrated beside the motion.
+
+Equation   Ẇ = F_0 v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
+Method     Both integrands jump with the dashpot force. Integrated by parts they do not: with dG = g δ̇ dt,
+             W = ∫ (e_0 v_0 − G_0 v̇_0) dt + G_0 v_0
+             Q = −∫ Σ_c G_c (ẇ_c − ẇ_{c+1}) dt + Σ_c G_c (δ̇_c − γ_c/2),   γ_c = δ̇_c − (w_c − w_{c+1}),
+           because Σ γ_c dG_c is the differential of a quadratic form in G. Body 0 has w_0 = v_0.
+           What the tension cut adds to a force does work of its own, x_c δ̇_c, and is added to Q̇.
+Absent     nothing is integrated: curves and settling do not need it
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..jit import kernel, term
+from .contact import elastic_force, positive_part
+from .dissipation import primitive
+from .driver import driver_acceleration
+from .preload import overlap
+
+
+class Balance(NamedTuple):
+    """Slot of the energy account; it has no values."""
+
+    present: int
+
+
+@term
+def account(balance, slots, y, dy, e):
+    """Write the integrands of W and Q behind the motion in dy; needs the velocities in dy and the forces in e."""
+
+
+@account.of(Balance)
+def _(balance, slots, y, dy, e):
+    m = slots.chain.inverse_mass.size
+    acceleration = driver_acceleration(slots.driver, y[0])
+    dy[m] = acceleration
+    lost, work = 0.0, 0.0
+    for c in range(e.size):
+        d = positive_part(overlap(slots.preload, y, c))
+        G = primitive(slots.dissipation, d)
+        cut = e[c] - elastic_force(slots.chain.stiffness[c], d)
+        lost += cut * (dy[c] - dy[c + 1]) - G * (dy[m + c] - dy[m + c + 1])
+        if c == 0:
+            work = e[0] * dy[0] - G * acceleration
+    dy[m] = 0.0
+    dy[dy.size - 2] = work
+    dy[dy.size - 1] = lost
+
+
+@kernel
+def account_ends(slots, y, dy):
+    """What integration by parts leaves at a state: to be added to the integrals of W and of Q."""
+    m = slots.chain.inverse_mass.size
+    lost, work = 0.0, 0.0
+    for c in range(m - 1):
+        G = primitive(slots.dissipation, positive_part(overlap(slots.preload, y, c)))
+        left = dy[0] if c == 0 else y[m + c]
+        approach = dy[c] - dy[c + 1]
+        gamma = approach - (left - y[m + c + 1])
+        lost += G * (approach - 0.5 * gamma)
+        if c == 0:
+            work = G * dy[0]
+    return work, lost

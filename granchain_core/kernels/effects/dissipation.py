@@ -1,0 +1,111 @@
+"""Contact damping g(δ) δ̇ whose primitive G (G' = g, G(0) = 0) makes the w-variables continuous.
+
+Equation   F_d = λ g(δ) δ̇ H(δ)
+             LinearDashpot   g = 1         G = δ              Zhang et al. 2016, eq. (1)
+             Tsuji           g = δ^{1/4}   G = (4/5) δ^{5/4}  Tsuji, Tanaka & Ishida 1992
+             KuwabaraKono    g = δ^{1/2}   G = (2/3) δ^{3/2}  Kuwabara & Kono 1987
+Values     coefficient: λ in scaled units, at an overlap of one length unit for the last two
+Terms      damping, primitive, keep_primitive, velocity (absent: v = w)
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+from ..jit import term
+
+
+class LinearDashpot(NamedTuple):
+    """Slot of the paper's dashpot."""
+
+    coefficient: float
+
+
+class Tsuji(NamedTuple):
+    """Slot of damping ∝ δ^{1/4}, whose restitution does not depend on the impact speed."""
+
+    coefficient: float
+
+
+class KuwabaraKono(NamedTuple):
+    """Slot of damping ∝ δ^{1/2}, the viscoelastic sphere."""
+
+    coefficient: float
+
+
+LAWS = (LinearDashpot, Tsuji, KuwabaraKono)
+
+
+@term
+def damping(law, d):
+    """Force per speed of approach g(d) for d = [δ]_+; 0 where the contact is open."""
+    return 0.0
+
+
+@damping.of(LinearDashpot)
+def _(law, d):
+    return 0.0 if d <= 0.0 else law.coefficient
+
+
+@damping.of(Tsuji)
+def _(law, d):
+    return law.coefficient * sqrt(sqrt(d))
+
+
+@damping.of(KuwabaraKono)
+def _(law, d):
+    return law.coefficient * sqrt(d)
+
+
+@term
+def primitive(law, d):
+    """G(d) with G' = g and G(0) = 0."""
+    return 0.0
+
+
+@primitive.of(LinearDashpot)
+def _(law, d):
+    return law.coefficient * d
+
+
+@primitive.of(Tsuji)
+def _(law, d):
+    return 0.8 * law.coefficient * d * sqrt(sqrt(d))
+
+
+@primitive.of(KuwabaraKono)
+def _(law, d):
+    return 2.0 / 3.0 * law.coefficient * d * sqrt(d)
+
+
+@term
+def keep_primitive(law, G, c, d):
+    """Store G of contact c; without dissipation there is no array to store it in."""
+
+
+@term
+def velocity(law, inverse_mass, w, G, i):
+    """v_i = w_i + (G_{i-1} − G_i)/m_i, the inverse of the change of variables."""
+    return w
+
+
+@term
+def shifted(law, inverse_mass, v, G, i):
+    """w_i = v_i − (G_{i-1} − G_i)/m_i."""
+    return v
+
+
+for _law in LAWS:
+
+    @keep_primitive.of(_law)
+    def _(law, G, c, d):
+        G[c] = primitive(law, d)
+
+    @velocity.of(_law)
+    def _(law, inverse_mass, w, G, i):
+        return w + inverse_mass[i] * (G[i - 1] - G[i])
+
+    @shifted.of(_law)
+    def _(law, inverse_mass, v, G, i):
+        return v - inverse_mass[i] * (G[i - 1] - G[i])

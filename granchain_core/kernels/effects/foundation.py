@@ -1,0 +1,40 @@
+"""Spring from every bead to the ground: the flexures of the rig.
+
+Equation   m_i ü_i = … − k u_i
+Source     Zhang et al. 2016, eqs. (3) to (5), figure 8
+Values     stiffness: k in scaled units (κ for a uniform chain), one number
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..jit import term
+
+
+class Foundation(NamedTuple):
+    """Slot of the foundation spring."""
+
+    stiffness: float
+
+
+@term
+def pull_back(foundation, force, u):
+    """Force on a bead with the foundation's pull taken off. Absent: the force itself."""
+    return force
+
+
+@pull_back.of(Foundation)
+def _(foundation, force, u):
+    return force - foundation.stiffness * u
+
+
+@term
+def foundation_energy(foundation, u):
+    """k u²/2."""
+    return 0.0
+
+
+@foundation_energy.of(Foundation)
+def _(foundation, u):
+    return 0.5 * foundation.stiffness * u * u

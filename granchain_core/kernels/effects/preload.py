@@ -1,0 +1,30 @@
+"""Static compression: every contact starts with an overlap.
+
+Equation   δ_c = u_c − u_{c+1} + δ0_c,  δ0_c = (F0/K_c)^{2/3}; displacements count from the compressed rest
+Values     static overlap (N+1,), in units of the length scale
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..jit import term
+
+
+class Preload(NamedTuple):
+    """Slot of the static overlaps."""
+
+    static: np.ndarray
+
+
+@term
+def overlap(preload, y, c):
+    """δ_c from the displacements at the front of y. Absent: the sonic vacuum."""
+    return y[c] - y[c + 1]
+
+
+@overlap.of(Preload)
+def _(preload, y, c):
+    return y[c] - y[c + 1] + preload.static[c]

@@ -1,0 +1,88 @@
+"""The one place that decides how kernels are compiled and where the compiled code is kept.
+
+* `nogil`, so that a pool of threads really runs kernels side by side.
+* No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`, which let an absent effect's
+  neutral elements fold away and sums be vectorised.
+* Numba does not notice edits in *imported* kernels, so the cache folder is named by a hash of all sources in
+  this package: any edit starts an empty cache, an unchanged tree compiles nothing in the second process.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from pathlib import Path
+
+import numba
+from numba.core import config, types
+from numba.extending import overload
+
+_FLAGS = {"nsz", "arcp", "contract", "reassoc"}
+
+
+def _sources_hash() -> str:
+    digest = hashlib.sha256(numba.__version__.encode())
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        digest.update(path.name.encode())
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def cache_folder() -> Path:
+    """Folder of the compiled kernels: $GRANCHAIN_CACHE, else the user's cache, else a temporary one."""
+    chosen = os.environ.get("GRANCHAIN_CACHE")
+    base = Path(chosen) if chosen else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "granchain"
+    folder = base / f"kernels-{_sources_hash()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return folder
+    except OSError:
+        folder = Path(tempfile.gettempdir()) / f"granchain-{os.getuid()}" / folder.name
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder
+
+
+CACHE_FOLDER = cache_folder()
+
+
+def kernel(function):  # type: ignore[no-untyped-def]  # Numba's decorators are untyped
+    """Decorator for compiled, cached kernels on floats and arrays."""
+    before = config.CACHE_DIR
+    config.CACHE_DIR = str(CACHE_FOLDER)
+    try:
+        return numba.njit(cache=True, nogil=True, fastmath=_FLAGS, error_model="numpy")(function)
+    finally:
+        config.CACHE_DIR = before
+
+
+def term(absent):  # type: ignore[no-untyped-def]
+    """A function whose code depends on which effect stands in its first argument, decided when it is typed.
+
+    The decorated function is the code for an absent effect (slot None). `function.of(Slot)` registers the code
+    for slots of the NamedTuple class `Slot`. An absent effect leaves no code behind, in no caller.
+    """
+    implementations = {type(None): absent}
+
+    def generic(*args):  # type: ignore[no-untyped-def]
+        return implementations[type(args[0])](*args)
+
+    generic.__name__ = generic.__qualname__ = absent.__name__
+    generic.__doc__ = absent.__doc__
+
+    @overload(generic, strict=False, jit_options={"fastmath": _FLAGS, "error_model": "numpy"})
+    def _typed(*args):  # type: ignore[no-untyped-def]
+        slot = args[0]
+        found = slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)
+        return implementations[found]
+
+    def of(slot_class):  # type: ignore[no-untyped-def]
+        def register(implementation):  # type: ignore[no-untyped-def]
+            implementations[slot_class] = implementation
+            return implementation
+
+        return register
+
+    generic.of = of  # type: ignore[attr-defined]
+    return generic

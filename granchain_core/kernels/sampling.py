@@ -1,0 +1,149 @@
+"""What is kept of a run: samples of the motion and the largest forces between them."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .effects.balance import Balance, account_ends
+from .effects.contact import elastic_force, positive_part
+from .effects.preload import overlap
+from .fixed_step import step
+from .jit import kernel, term
+from .motion import contact_force, copy, stored_energy
+
+#: Outcome of a kernel: 0 done, positive why it stopped.
+DONE, CANCELLED, NOT_FINITE, STEP_TOO_SMALL, CHATTER = 0, 1, 2, 3, 4
+
+#: Rows of a peaks array: input force, output force, its elastic part; columns: best, last, the one before.
+INPUT, OUTPUT, OUTPUT_ELASTIC = 0, 1, 2
+
+
+class Samples(NamedTuple):
+    """Recorded motion in scaled units: displacement and velocity (T, N), force (T, N+1), energy (T, 3) or None.
+
+    The energy columns are stored energy, work of the driver, energy lost.
+    """
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    force: np.ndarray
+    energy: Any
+
+
+@kernel
+def keep(slots, row, y, dy, e, samples):
+    """Write one sample of state y, whose slope is dy and whose forces are in e."""
+    n = samples.displacement.shape[1]
+    for i in range(n):
+        samples.displacement[row, i] = y[i + 1]
+        samples.velocity[row, i] = dy[i + 1]
+    for c in range(n + 1):
+        samples.force[row, c] = contact_force(slots, y, dy, e, c)
+    keep_account(slots.balance, slots, row, y, dy, samples)
+
+
+@term
+def keep_account(balance, slots, row, y, dy, samples):
+    """Write stored energy, work and loss of one sample. Absent: there is no account and no array for it."""
+
+
+@keep_account.of(Balance)
+def _(balance, slots, row, y, dy, samples):
+    samples.energy[row, 0] = stored_energy(slots, y, dy)
+    work, lost = account_ends(slots, y, dy)
+    samples.energy[row, 1] = y[y.size - 2] + work
+    samples.energy[row, 2] = y[y.size - 1] + lost
+
+
+@kernel
+def watch(peaks, q, value):
+    """Follow force q at equal steps; a maximum is the top of the parabola through its three highest values.
+
+    Across the jump of a dashpot force there is no parabola: both neighbours must be within a fifth.
+    """
+    last, before = peaks[q, 1], peaks[q, 2]
+    if value > peaks[q, 0]:
+        peaks[q, 0] = value
+    if last >= value and last > before and before > 0.8 * last and value > 0.8 * last:
+        top = last - (value - before) ** 2 / (8.0 * (before - 2.0 * last + value))
+        if top > peaks[q, 0]:
+            peaks[q, 0] = top
+    peaks[q, 1], peaks[q, 2] = value, last
+
+
+@kernel
+def watch_forces(slots, y, dy, e, peaks):
+    """Follow input force, output force and its elastic part at one state."""
+    last = e.size - 1
+    watch(peaks, INPUT, contact_force(slots, y, dy, e, 0))
+    watch(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
+    d = positive_part(overlap(slots.preload, y, last))
+    watch(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
+
+
+@kernel
+def forget_peaks(peaks):
+    """Start watching afresh."""
+    for q in range(peaks.shape[0]):
+        for i in range(peaks.shape[1]):
+            peaks[q, i] = -np.inf
+
+
+@kernel
+def first_not_finite(y, m):
+    """Number of the first bead whose displacement or w is not finite, or 0."""
+    for i in range(1, m - 1):
+        if not (np.isfinite(y[i]) and np.isfinite(y[m + i])):
+            return i
+    return 0
+
+
+@kernel
+def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts, stop):
+    """Run whole periods with a fixed-step method, keeping the state and the largest forces of each.
+
+    strobes (P+1, M) starts with y; tops (P, 3) in the order of `peaks`. Returns (status, periods done).
+    """
+    n = method.steps_per_period
+    dtheta = 2.0 * np.pi / n
+    m = slots.chain.inverse_mass.size
+    copy(y, strobes[0])
+    for p in range(tops.shape[0]):
+        forget_peaks(peaks)
+        for j in range(n):
+            step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, counts)
+            watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+        if first_not_finite(y, m) != 0:
+            return NOT_FINITE, p
+        copy(y, strobes[p + 1])
+        copy(peaks[:, 0], tops[p])
+        if stop[0] != 0:
+            return CANCELLED, p + 1
+    return DONE, tops.shape[0]
+
+
+@kernel
+def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples, peaks, counts, stop):
+    """Run with a fixed-step method from step index `first_step` of the period, keeping every stride-th state.
+
+    Row 0 of `samples` is the state it starts from. Returns (status, rows filled).
+    """
+    n = method.steps_per_period
+    dtheta = 2.0 * np.pi / n
+    m = slots.chain.inverse_mass.size
+    j = first_step
+    watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+    keep(slots, 0, y, stages.k[0], stages.forces.e, samples)
+    for row in range(1, samples.displacement.shape[0]):
+        for _ in range(stride):
+            step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, counts)
+            watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+            j = 0 if j + 1 == n else j + 1
+        if first_not_finite(y, m) != 0:
+            return NOT_FINITE, row
+        keep(slots, row, y, stages.k[0], stages.forces.e, samples)
+        if stop[0] != 0:
+            return CANCELLED, row + 1
+    return DONE, samples.displacement.shape[0]

@@ -1,0 +1,144 @@
+"""From a scene in SI to scaled arrays and one slot per effect: the only bridge between the two.
+
+Scales (Zhang et al. 2016, section 2): length A0, time 1/φ with φ² = K√A0/m, force K A0^{3/2}, m and K those of
+bead 1. Displacements are kept, never positions; the drive phase is never a product of a large time.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .errors import BadInput
+from .kernels.effects.balance import Balance
+from .kernels.effects.contact import Chain
+from .kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from .kernels.effects.driver import Harmonic
+from .kernels.effects.foundation import Foundation
+from .kernels.effects.preload import Preload
+from .kernels.effects.tension import NoTension
+from .kernels.motion import Forces, Slots
+from .scene import Scene
+
+#: Step of the live method in scaled time where overlaps are about one drive amplitude; RK4 in w is then good to
+#: a few 1e-6 of the displacement with its steps split at contact events.
+_STEP = 0.1
+#: RK4's stability limit on the negative real axis is 2.78; half of it for the fastest dashpot mode 4λ/m.
+_DASHPOT_LIMIT = 1.39
+#: More steps than this in one drive period are refused: one period would take longer than a minute.
+MOST_STEPS = 200_000_000
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Units of the scaled equations in SI: length [m], rate φ [1/s], force [N]."""
+
+    length: float
+    rate: float
+    force: float
+
+    @property
+    def velocity(self) -> float:
+        """Unit of velocity [m/s]."""
+        return self.length * self.rate
+
+    @property
+    def energy(self) -> float:
+        """Unit of energy [J]."""
+        return self.force * self.length
+
+
+@dataclass(frozen=True)
+class Lowered:
+    """A scene ready for the kernels."""
+
+    scene: Scene
+    scales: Scales
+    slots: Slots
+    beta: float
+
+    @property
+    def beads(self) -> int:
+        """Number of beads N."""
+        return self.scene.N
+
+    @property
+    def period(self) -> float:
+        """Drive period in scaled time."""
+        return 2 * math.pi / self.beta
+
+    @property
+    def row(self) -> int:
+        """Length of one row of the state, N + 2 bodies."""
+        return self.scene.N + 2
+
+    @property
+    def size(self) -> int:
+        """Length of the whole state array."""
+        return 2 * self.row + (2 if self.slots.balance is not None else 0)
+
+    def forces(self) -> Forces:
+        """A workspace for one evaluation."""
+        contacts = self.scene.N + 1
+        return Forces(np.zeros(contacts), np.zeros(contacts) if self.slots.dissipation is not None else None)
+
+    def steps_per_period(self, multiple_of: int = 1) -> int:
+        """Steps of the live method in one period, a multiple of `multiple_of`."""
+        slots = self.slots
+        lightest = float(slots.chain.inverse_mass.max())
+        stiffest = float(slots.chain.stiffness.max())
+        static = float(slots.preload.static.max()) if slots.preload is not None else 0.0
+        step = _STEP / math.sqrt(lightest * stiffest) / max(1.0, static) ** 0.25
+        if slots.dissipation is not None:
+            overlap = max(1.0, static)
+            strength = slots.dissipation.coefficient * overlap ** _EXPONENT[self.scene.dissipation]
+            step = min(step, _DASHPOT_LIMIT / (4.0 * strength * lightest))
+        steps = max(multiple_of, math.ceil(self.period / step / multiple_of) * multiple_of, 16)
+        if steps > MOST_STEPS:
+            raise BadInput(
+                f"drive frequency f = {self.scene.f:g} Hz is so far below the chain's own rate that one period takes "
+                f"{steps:.1e} steps; at most {MOST_STEPS:.0e} are allowed: the nearest valid frequency is about "
+                f"{self.scene.f * steps / MOST_STEPS:.3g} Hz."
+            )
+        return math.ceil(steps / multiple_of) * multiple_of
+
+
+_EXPONENT = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
+_LAWS: dict[str, Any] = {"linear": LinearDashpot, "tsuji": Tsuji, "kuwabara-kono": KuwabaraKono}
+
+
+def scales_of(scene: Scene) -> Scales:
+    """The scene's scales."""
+    rate = math.sqrt(scene.K * math.sqrt(scene.A0) / scene.bead(1).mass)
+    return Scales(scene.A0, rate, scene.K * scene.A0**1.5)
+
+
+def lower(scene: Scene, balance: bool = False) -> Lowered:
+    """Scaled arrays and slots of `scene`; `balance` adds the energy account to the equations."""
+    scales = scales_of(scene)
+    mass = scene.bead(1).mass
+    beta = 2 * math.pi * scene.f / scales.rate
+    inverse_mass = np.zeros(scene.N + 2)
+    inverse_mass[1:-1] = mass / scene.masses()
+    slots = Slots(
+        chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K),
+        dissipation=_dissipation(scene, scales, mass),
+        tension=NoTension(1) if scene.tension == "cut" and scene.has_dissipation else None,
+        foundation=Foundation(scene.kappa) if scene.k > 0 else None,
+        preload=Preload(scene.static_overlap() / scales.length) if scene.F0 > 0 else None,
+        driver=Harmonic(1.0, beta),
+        balance=Balance(1) if balance else None,
+    )
+    return Lowered(scene, scales, slots, beta)
+
+
+def _dissipation(scene: Scene, scales: Scales, mass: float) -> Any:
+    """The dissipation slot: λ = D/(mφ), for an overlap-dependent law at one length unit of overlap."""
+    if not scene.has_dissipation:
+        return None
+    exponent = _EXPONENT[scene.dissipation]
+    strength = scene.D / (mass * scales.rate) * (scales.length / scene.reference_overlap) ** exponent
+    return _LAWS[scene.dissipation](strength)

@@ -1,0 +1,128 @@
+"""Every knob once: symbol, unit, range, LaTeX and meaning.
+
+Sliders, command line, share links, HDF5 attributes and the docs all read this table, so a fact about a
+parameter stands in one place.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from dataclasses import dataclass
+
+from .errors import BadInput
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One knob of a scene, in SI.
+
+    `low` and `high` are the values granchain accepts at all; the narrower range of a slider belongs to the
+    scene. `step` is the fine step of the keyboard. `choices` is set for knobs that are words; `numeric` says
+    whether a plain number is accepted too.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    latex: str
+    label: str
+    meaning: str
+    low: float = -math.inf
+    high: float = math.inf
+    scale: str = "linear"
+    step: float = 0.0
+    choices: tuple[str, ...] = ()
+    numeric: bool = True
+    whole: bool = False
+
+    def check(self, value: object) -> float | int | str:
+        """`value` as this knob's type, or `BadInput` saying what is allowed and what is nearest."""
+        if isinstance(value, str) and value.strip() in self.choices:
+            return value.strip()
+        if not self.numeric:
+            raise self._unknown_choice(value)
+        number = self._number(value)
+        if not self.low <= number <= self.high:
+            nearest = min(max(number, self.low), self.high)
+            raise BadInput(
+                f"{self.label} {self.name} = {number:g}{self._unit()} is outside "
+                f"{self.low:g} to {self.high:g}{self._unit()}; the nearest valid value is {nearest:g}."
+            )
+        if self.whole:
+            if number != int(number):
+                raise BadInput(
+                    f"{self.label} {self.name} must be a whole number, not {number:g}; "
+                    f"the nearest is {round(number)}."
+                )
+            return int(number)
+        return number
+
+    def _number(self, value: object) -> float:
+        if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+            try:
+                value = float(value)  # type: ignore[arg-type]  # numpy scalars
+            except (TypeError, ValueError):
+                raise self._not_a_number(value) from None
+        try:
+            number = float(value)
+        except (ValueError, OverflowError):
+            raise self._not_a_number(value) from None
+        if not math.isfinite(number):
+            raise self._not_a_number(value)
+        return number
+
+    def _not_a_number(self, value: object) -> BadInput:
+        if self.choices and isinstance(value, str):
+            return self._unknown_choice(value)
+        return BadInput(
+            f"{self.label} {self.name} must be a number from {self.low:g} to {self.high:g}{self._unit()}, "
+            f"not {str(value)[:40]!r}."
+        )
+
+    def _unknown_choice(self, value: object) -> BadInput:
+        near = difflib.get_close_matches(str(value), self.choices, n=1, cutoff=0.0)[0]
+        number = f", or a number from {self.low:g} to {self.high:g}" if self.numeric else ""
+        return BadInput(
+            f"{self.label} {self.name} = {str(value)[:40]!r} is not one of {', '.join(self.choices)}{number}; "
+            f"the nearest is {near!r}."
+        )
+
+    def _unit(self) -> str:
+        return f" {self.unit}" if self.unit not in ("", "1") else ""
+
+
+WALL_FACTORS = {"bead": 1.0, "same-material": math.sqrt(2.0), "rigid": 2.0 * math.sqrt(2.0)}
+DISSIPATION_LAWS = ("linear", "tsuji", "kuwabara-kono", "none")
+TENSION = ("allowed", "cut")
+
+_TABLE = (
+    Quantity("f", "f", "Hz", "f", "drive frequency", "How often a second the driver moves to and fro.",
+             0.1, 1e6, "log", 0.1),
+    Quantity("A0", "A₀", "m", "A_0", "drive amplitude", "How far the driver moves from its middle position.",
+             1e-12, 1e-4, "log", 1e-9),
+    Quantity("D", "D", "N s/m", "D", "contact damping",
+             "Force of the contact's dashpot per speed of approach; for Tsuji and Kuwabara–Kono its value at the "
+             "scene's reference overlap.", 0.0, 1e6, "linear", 0.1),
+    Quantity("k", "k", "N/m", "k", "foundation stiffness", "Spring from every bead to the ground (the flexures).",
+             0.0, 1e10, "linear", 10.0),
+    Quantity("kappa", "κ", "1", r"\kappa", "foundation stiffness, dimensionless",
+             "k divided by K·√A₀, the contact stiffness at one drive amplitude of overlap.",
+             0.0, 100.0, "linear", 1e-5),
+    Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
+             1, 10_000, "linear", 1, whole=True),
+    Quantity("F0", "F₀", "N", "F_0", "preload", "Static force that presses the chain together; 0 is the sonic vacuum.",
+             0.0, 1e4, "linear", 0.1),
+    Quantity("wall", "W", "1", r"K_N/K", "right wall",
+             "Stiffness of the last contact: a fixed bead (K), a flat wall of the same material (√2 K), "
+             "a rigid flat wall (2√2 K), or a number times K.",
+             1e-6, 1e6, choices=tuple(WALL_FACTORS)),
+    Quantity("dissipation", "", "", "", "dissipation law", "How a contact loses energy.",
+             choices=DISSIPATION_LAWS, numeric=False),
+    Quantity("tension", "", "", "", "tension", "Whether the dashpot may pull while a contact opens "
+             "(the paper's law) or the contact force is cut at zero.", choices=TENSION, numeric=False),
+    Quantity("accuracy", "ε", "1", r"\varepsilon", "accuracy", "Relative error of the displacements asked for.",
+             1e-12, 0.1, "log", 1e-12),
+)
+
+QUANTITIES: dict[str, Quantity] = {q.name: q for q in _TABLE}

@@ -1,0 +1,6 @@
+"""Scenes: frozen descriptions in SI and the presets."""
+
+from .description import Bead, Scene, hertz_stiffness
+from .presets import ASSETS, scene, scene_names
+
+__all__ = ["ASSETS", "Bead", "Scene", "hertz_stiffness", "scene", "scene_names"]
