@@ -24,8 +24,8 @@ from .kernels.motion import Forces, Slots
 from .scene import Scene
 
 #: Step of the live method in scaled time where overlaps are about one drive amplitude; RK4 in w is then good to
-#: a few 1e-6 of the displacement with its steps split at contact events.
-_STEP = 0.1
+#: a few 1e-5 of the displacement with its steps split at contact events, at half the step to a few 1e-6.
+_STEP = 0.2
 #: RK4's stability limit on the negative real axis is 2.78; half of it for the fastest dashpot mode 4λ/m.
 _DASHPOT_LIMIT = 1.39
 #: More steps than this in one drive period are refused: one period would take longer than a minute.

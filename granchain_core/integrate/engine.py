@@ -121,13 +121,13 @@ class Engine:
         self.y[:] = 0.0
         self.y[1 : row - 1] = state.displacement / lo.scales.length
         self.y[row + 1 : 2 * row - 1] = state.velocity / lo.scales.velocity
-        self._place(from_velocity=True)
+        self.place(from_velocity=True)
         if self._adaptive:
             self.work.scale[0] = max(1e-3, float(np.abs(self.y[1 : row - 1]).max()))
             self.work.scale[1] = max(1e-3, float(np.abs(self.y[row + 1 : 2 * row - 1]).max()))
         sampling.forget_peaks(self.peaks)
 
-    def _place(self, from_velocity: bool) -> None:
+    def place(self, from_velocity: bool = False) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
         theta = 2 * np.pi * self.grid_index / self.grid
         place(self.lowered.slots, theta, self.y, self.work.k[0], self.work.forces, from_velocity)
@@ -136,7 +136,7 @@ class Engine:
     def state(self) -> State:
         """The present state in SI."""
         lo, row = self.lowered, self.lowered.row
-        self._place(from_velocity=False)
+        self.place(from_velocity=False)
         return State(self.y[1 : row - 1] * lo.scales.length, self.work.k[0, 1 : row - 1] * lo.scales.velocity,
                      self.grid_index / self.grid)
 
@@ -162,49 +162,43 @@ class Engine:
                                                 self.grid_index, every, samples, self.peaks, self.counts.array,
                                                 self.stop)
         self.grid_index = (self.grid_index + count * every) % self.grid
-        self._raise_for(status, rows / self.samples)
+        self.raise_for(status, rows / self.samples)
         return samples
 
-    def periods(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+    def forget_peaks(self) -> None:
+        """Watch for the largest forces afresh."""
+        sampling.forget_peaks(self.peaks)
+
+    def periods(self, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:
         """Advance by whole periods from phase 0.
 
-        Returns the stroboscopic states (count + 1, 2, N+2) in scaled (u, w) and the largest input, output and
-        elastic output force of each period (count, 3).
+        Returns the stroboscopic states (count + 1, 2, N), displacement and velocity in scaled units, and the largest
+        input, output and elastic output force of each period (count, 3); without `watch` the certified method does
+        not look for the forces and they are NaN.
         """
-        row = self.lowered.row
-        strobes, tops = np.zeros((count + 1, self.y.size)), np.zeros((count, 3))
+        strobes, tops = np.zeros((count + 1, 2, self.lowered.row)), np.full((count, 3), np.nan)
         if self._adaptive:
-            self._certified_periods(strobes, tops)
+            self._certified_periods(strobes, tops, watch)
         else:
             status, done = sampling.run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
                                                 strobes, self.peaks, tops, self.counts.array, self.stop)
-            self._raise_for(status, done)
-        strobes[:, 0] = strobes[:, row - 1] = 0.0
-        return strobes[:, : 2 * row].reshape(count + 1, 2, row), tops
+            self.raise_for(status, done)
+        return strobes[:, :, 1:-1], tops
 
-    def _certified_periods(self, strobes: np.ndarray, tops: np.ndarray) -> None:
-        lo, keep = self.lowered, self.empty_samples(2)
-        strobes[0] = self.y
+    def _certified_periods(self, strobes: np.ndarray, tops: np.ndarray, watch: bool) -> None:
+        lo, keep, row = self.lowered, self.empty_samples(2), self.lowered.row
+        strobes[0] = self.y[:row], self.work.k[0, :row]
         for p in range(len(tops)):
             sampling.forget_peaks(self.peaks)
             status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
-                                      self.grid, self.grid, self.grid, keep, self.peaks, self.counts.array, self.stop)
-            self._raise_for(status, p)
-            strobes[p + 1], tops[p] = self.y, self.peaks[:, 0]
+                                      self.grid, self.grid, self.grid if watch else 0, keep, self.peaks,
+                                      self.counts.array, self.stop)
+            self.raise_for(status, p)
+            strobes[p + 1] = self.y[:row], self.work.k[0, :row]
+            if watch:
+                tops[p] = self.peaks[:, 0]
 
-    def skip(self, periods: int) -> None:
-        """Advance by whole periods from phase 0, looking at nothing."""
-        if not self._adaptive:
-            self.periods(periods)
-            return
-        lo = self.lowered
-        for p in range(periods):
-            status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
-                                      self.grid, self.grid, 0, self.empty_samples(1), self.peaks, self.counts.array,
-                                      self.stop)
-            self._raise_for(status, p)
-
-    def _raise_for(self, status: int, periods: float) -> None:
+    def raise_for(self, status: int, periods: float) -> None:
         """Turn a kernel's status into an outcome a student understands."""
         if status == sampling.DONE:
             return

@@ -101,15 +101,24 @@ def first_not_finite(y, m):
 
 
 @kernel
+def keep_strobe(y, dy, strobe):
+    """Displacements and velocities of the beads at one instant; driver and wall stay zero."""
+    for i in range(1, strobe.shape[1] - 1):
+        strobe[0, i] = y[i]
+        strobe[1, i] = dy[i]
+
+
+@kernel
 def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts, stop):
     """Run whole periods with a fixed-step method, keeping the state and the largest forces of each.
 
-    strobes (P+1, M) starts with y; tops (P, 3) in the order of `peaks`. Returns (status, periods done).
+    strobes (P+1, 2, N+2) hold displacement and velocity, the start first; tops (P, 3) in the order of `peaks`.
+    Returns (status, periods done).
     """
     n = method.steps_per_period
     dtheta = 2.0 * np.pi / n
     m = slots.chain.inverse_mass.size
-    copy(y, strobes[0])
+    keep_strobe(y, stages.k[0], strobes[0])
     for p in range(tops.shape[0]):
         forget_peaks(peaks)
         for j in range(n):
@@ -117,7 +126,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts
             watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p
-        copy(y, strobes[p + 1])
+        keep_strobe(y, stages.k[0], strobes[p + 1])
         copy(peaks[:, 0], tops[p])
         if stop[0] != 0:
             return CANCELLED, p + 1

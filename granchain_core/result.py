@@ -1,0 +1,110 @@
+"""What a run gives back, in SI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .integrate.engine import Counts, Engine
+from .kernels.sampling import Samples
+from .scene import Scene
+from .steady.regime import Regime
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What it took: wall-clock seconds, accepted steps, evaluations of the equations, contact events, method."""
+
+    wall_s: float
+    steps: int
+    rhs: int
+    events: int
+    method: str
+
+    @classmethod
+    def of(cls, wall_s: float, counts: Counts, method: str) -> Cost:
+        """The cost from an engine's counters."""
+        return cls(wall_s, counts.steps, counts.rhs, counts.events, method)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A recorded motion: T samples of N beads and N + 1 contacts.
+
+    `error_estimate` is the largest error of any displacement sample over the largest displacement (None where no
+    claim is made); `energy_residual` is (work − lost − stored)/largest of the three (None where no account was
+    kept). Maxima are those between the samples too.
+    """
+
+    scene: Scene
+    samples: int
+    time: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    force: np.ndarray
+    drive_displacement: np.ndarray
+    max_input_force: float
+    max_output_force: float
+    max_output_force_elastic: float
+    status: str
+    regime: Regime
+    error_estimate: float | None
+    energy_residual: float | None
+    cost: Cost
+
+    @property
+    def kinetic_energy(self) -> np.ndarray:
+        """Kinetic energy of every bead (T, N) [J]."""
+        return 0.5 * self.scene.masses() * self.velocity**2
+
+    @property
+    def input_force(self) -> np.ndarray:
+        """Force of the driver on bead 1 (T,) [N]."""
+        return self.force[:, 0]
+
+    @property
+    def output_force(self) -> np.ndarray:
+        """Total force on the wall, elastic and damping (T,) [N]."""
+        return self.force[:, -1]
+
+    @property
+    def overlap(self) -> np.ndarray:
+        """Overlap of every contact (T, N+1) [m], negative where there is a gap."""
+        rows = len(self.time)
+        bodies = np.hstack([self.drive_displacement[:, None], self.displacement, np.zeros((rows, 1))])
+        return bodies[:, :-1] - bodies[:, 1:] + self.scene.static_overlap()
+
+    @property
+    def output_force_elastic(self) -> np.ndarray:
+        """Elastic part of the force on the wall, the paper's F_out (T,) [N]."""
+        last = np.maximum(self.displacement[:, -1] + self.scene.static_overlap()[-1], 0.0)
+        return self.scene.contact_stiffness()[-1] * last**1.5
+
+
+def residual(energy: np.ndarray | None) -> float | None:
+    """How far the energy account is from closing, relative to its largest entry; columns stored, work, lost."""
+    if energy is None:
+        return None
+    stored, work, lost = (energy[-1] - energy[0])
+    largest = max(abs(work), abs(lost), float(np.abs(energy[:, 0]).max()))
+    return float(abs(work - lost - stored) / largest) if largest > 0.0 else 0.0
+
+
+def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime, error: float | None,
+             cost: Cost, status: str = "done") -> Run:
+    """The `Run` of recorded samples; time counts from drive phase 0, `first_sample` being the index of row 0."""
+    scene, scales = engine.lowered.scene, engine.lowered.scales
+    index = first_sample + np.arange(len(samples.displacement))
+    inside = np.mod(index, engine.samples)
+    tops = np.where(np.isfinite(engine.peaks[:, 0]), engine.peaks[:, 0], 0.0) * scales.force
+    return Run(
+        scene=scene, samples=engine.samples,
+        time=(index // engine.samples + inside / engine.samples) * scene.period,
+        displacement=samples.displacement * scales.length,
+        velocity=samples.velocity * scales.velocity,
+        force=samples.force * scales.force,
+        drive_displacement=scene.A0 * np.sin(2 * np.pi * inside / engine.samples),
+        max_input_force=float(tops[0]), max_output_force=float(tops[1]), max_output_force_elastic=float(tops[2]),
+        status=status, regime=regime, error_estimate=error, energy_residual=residual(samples.energy), cost=cost,
+    )

@@ -1,0 +1,129 @@
+"""`run`: a chain from its start through discarded and recorded periods, to the accuracy asked for.
+
+The motion is computed twice, the second time finer; their largest difference bounds the finer one's error. While it
+is above the accuracy asked for, a still finer one is computed: every accuracy is reached by comparison, none by
+trust in a tolerance.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .errors import BadInput
+from .integrate import Engine, Setting, State, method_for
+from .integrate.engine import Counts, new_stop, rest
+from .integrate.methods import setting_of
+from .kernels.sampling import Samples
+from .result import Cost, Run, run_from
+from .scene import Scene
+from .scene.validity import overlap_warnings
+from .steady.lyapunov import exponents
+from .steady.regime import Regime, find_period, irregular
+
+#: Most periods in all and most recorded rows of one run.
+MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
+#: A motion whose computations differ by more than this has no error estimate worth the name.
+_LOST = 0.3
+#: Fewest periods on which a run is called anything but unsettled.
+_ENOUGH = 40
+
+
+@dataclass(eq=False)
+class _Attempt:
+    """One computation of the whole motion."""
+
+    engine: Engine
+    samples: Samples
+    strobes: np.ndarray
+
+
+def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, method: str | None = None,
+        start: State | None = None, stop: np.ndarray | None = None,
+        progress: Callable[[float], None] | None = None) -> Run:
+    """Run `periods` periods and discard them, then record `record` periods at `samples` samples each, both ends.
+
+    The scene's accuracy is the relative error of the displacements asked for; `method` overrides the choice made from
+    it. `stop` is a flag from `new_stop`, `progress` is told the fraction of the present computation. Status is "done",
+    or "accuracy-not-reached" where no finer computation came near enough (chaos amplifies every error).
+    Raises `BadInput`, `NumbersFailed`, `Cancelled`.
+    """
+    _check_sizes(scene, periods, record, samples)
+    began = time.perf_counter()
+    flag = new_stop() if stop is None else stop
+    begin = rest(scene) if start is None else start
+    setting = method_for(scene.accuracy) if method is None else setting_of(method, scene.accuracy)
+    total = Counts()
+    before = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
+    while True:
+        setting = setting.finer()
+        now = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
+        error = _difference(now, before)
+        if error <= scene.accuracy or setting.finest or error > _LOST:
+            break
+        before = now
+    regime = _regime(scene, now, periods + record, flag)
+    status = "done" if error <= scene.accuracy else "accuracy-not-reached"
+    cost = Cost.of(time.perf_counter() - began, total, setting.method)
+    return run_from(now.engine, now.samples, periods * samples, regime, error, cost, status)
+
+
+def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
+    for name, value, low, high in (("periods", periods, 0, MOST_PERIODS), ("record", record, 1, MOST_PERIODS),
+                                   ("samples", samples, 1, 1_000_000)):
+        if not low <= value <= high:
+            raise BadInput(f"{name} = {value} is outside {low} to {high}; the nearest valid value is "
+                           f"{min(max(value, low), high)}.")
+    rows = record * samples * scene.N
+    if rows > MOST_ROWS:
+        raise BadInput(f"{record} periods of {samples} samples for {scene.N} beads are {rows:.1e} values; at most "
+                       f"{MOST_ROWS:.0e} are recorded: record {max(1, MOST_ROWS // (samples * scene.N))} periods.")
+
+
+def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int, int], stop: np.ndarray,
+             progress: Callable[[float], None] | None, total: Counts) -> _Attempt:
+    periods, record, samples = sizes
+    engine = Engine(scene, setting, samples, balance=True, stop=stop)
+    engine.start(start)
+    strobes = [engine.periods(0)[0]]
+    chunk = max(1, periods // 50)
+    for done in range(0, periods, chunk):
+        strobes.append(engine.periods(min(chunk, periods - done), watch=False)[0][1:])
+        if progress is not None:
+            progress(min(done + chunk, periods) / (periods + record))
+    engine.forget_peaks()
+    rows = engine.record(record * samples)
+    if progress is not None:
+        progress(1.0)
+    total.array += engine.counts.array
+    strobes.append(np.stack([rows.displacement[samples::samples], rows.velocity[samples::samples]], axis=1))
+    return _Attempt(engine, rows, np.concatenate(strobes))
+
+
+def _difference(now: _Attempt, before: _Attempt) -> float:
+    """Largest difference of any displacement sample over the largest displacement."""
+    largest = float(np.abs(now.samples.displacement).max())
+    if largest == 0.0:
+        return 0.0
+    return float(np.abs(now.samples.displacement - before.samples.displacement).max()) / largest
+
+
+def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> Regime:
+    """The regime as far as these periods show it; a long irregular run is told apart by its Lyapunov exponent."""
+    tolerance = 10.0 * scene.accuracy
+    regime = find_period(attempt.strobes, rounding=min(1e-6, tolerance))
+    if regime.name == "periodic" or periods < _ENOUGH:
+        return regime
+    engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
+    engine.start(attempt.engine.state)
+    found, strobes = exponents(engine, 10, 20)
+    late = find_period(strobes)
+    return late if late.name == "periodic" else irregular(found, strobes, periods + len(strobes))
+
+
+def warnings(result: Run) -> list[str]:
+    """Sentences on where the model itself stopped being valid during a run."""
+    return overlap_warnings(result.scene, float(result.overlap.max()))

@@ -1,0 +1,1 @@
+"""What a driven chain does in the end: settling, regime, resonance curve."""

@@ -1,0 +1,180 @@
+"""The resonance curve: largest forces over the drive frequency, point by point, on all cores."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
+from ..integrate import Engine, State
+from ..integrate.engine import new_stop
+from ..scene import Scene
+from .regime import Regime
+from .settle import Settling, relax, settle
+
+STARTS = ("rest", "up", "down")
+#: Forces on a curve are not computed to less relative error than this, whatever the scene asks of its picture.
+CURVE_ACCURACY = 1e-5
+#: Most points of one curve.
+MOST_POINTS = 100_000
+
+
+@dataclass(frozen=True, eq=False)
+class CurvePoint:
+    """The steady state at one frequency: largest forces [N], regime, relative error of the output force.
+
+    Where the motion is not periodic the forces are the largest seen in the last periods and no error is claimed.
+    `failure` is a sentence if the numbers failed there; the forces are then NaN.
+    """
+
+    frequency: float
+    max_output_force: float
+    max_output_force_elastic: float
+    max_input_force: float
+    regime: Regime
+    error_estimate: float | None
+    state: State
+    failure: str = ""
+
+
+@dataclass(eq=False)
+class Curve:
+    """A resonance curve in ascending frequency."""
+
+    scene: Scene
+    start: str
+    points: list[CurvePoint] = field(default_factory=list)
+    wall_s: float = 0.0
+
+    def column(self, name: str) -> np.ndarray:
+        """One attribute of all points as an array."""
+        return np.array([getattr(p, name) for p in self.points])
+
+
+def coarse_first(count: int) -> list[int]:
+    """Indices 0..count−1 so that the curve's shape is there early: ends, middle, quarters, …"""
+    step = 1 << max(0, (count - 1).bit_length())
+    order: list[int] = []
+    seen = set()
+    while step >= 1:
+        for i in range(0, count, step):
+            if i not in seen:
+                seen.add(i)
+                order.append(i)
+        step //= 2
+    return order
+
+
+def curve_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
+    """The steady state of `scene` from rest or from `start`, certified where it is periodic."""
+    way = settle(scene, start, stop)
+    if way.regime.name == "periodic":
+        return _certified_point(way)
+    tops = way.tops[-min(len(way.tops), 100) :].max(axis=0) * way.engine.lowered.scales.force
+    return _point(scene, tops, way.regime, None, way.engine)
+
+
+def _certified_point(way: Settling) -> CurvePoint:
+    """Largest forces on the certified orbit; the error is what they still change plus the distance's share."""
+    engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
+    n = way.regime.period
+    assert n is not None
+    _, first = engine.periods(n)
+    finer = Engine(way.scene, engine.setting.finer(), 1, stop=way.stop)
+    finer.start(engine.state)
+    _, second = finer.periods(n)
+    tops, before = second.max(axis=0), first.max(axis=0)
+    change = float(np.abs(tops[1:] - before[1:]).max() / tops[1]) if tops[1] > 0.0 else 0.0
+    # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
+    return _point(way.scene, tops * finer.lowered.scales.force, way.regime, change + 1.5 * distance, finer)
+
+
+def _point(scene: Scene, tops: np.ndarray, regime: Regime, error: float | None, engine: Engine) -> CurvePoint:
+    return CurvePoint(scene.f, float(tops[1]), float(tops[2]), float(tops[0]), regime, error, engine.state)
+
+
+def _safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
+    """A point, or a point that says why there is none: one failed frequency does not lose a curve."""
+    try:
+        return curve_point(scene, start, stop)
+    except NumbersFailed as failed:
+        nothing = Regime("unsettled", None, None, None, 0)
+        resting = State(np.zeros(scene.N), np.zeros(scene.N))
+        return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, None, start or resting, failed.sentence)
+
+
+def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray) -> list[Scene]:
+    """The scenes of a curve; `BadInput` for no points, too many, or a frequency out of range."""
+    if not 1 <= len(frequencies) <= MOST_POINTS:
+        raise BadInput(f"A curve has 1 to {MOST_POINTS} points, not {len(frequencies)}.")
+    return [scene.evolve(f=float(f)) for f in frequencies]
+
+
+def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
+               stop: Callable[[], bool] | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
+    """Points of a resonance curve as they are finished.
+
+    From "rest" every point starts at rest and they come coarse first, on all cores; "up" and "down" carry the state
+    along in that direction. `stop` is asked between points and may end the curve; a running point is then given up.
+    """
+    if start not in STARTS:
+        raise unknown_name("start", start, STARTS)
+    scenes = checked_frequencies(scene, frequencies)
+    flag = new_stop()
+    if start == "rest":
+        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], flag, stop, workers)
+        return
+    state: State | None = None
+    for one in sorted(scenes, key=lambda s: s.f, reverse=start == "down"):
+        if stop is not None and stop():
+            return
+        point = _safe_point(one, state, flag)
+        state = point.state if not point.failure else None
+        yield point
+
+
+def _from_rest(scenes: list[Scene], flag: np.ndarray, stop: Callable[[], bool] | None,
+               workers: int | None) -> Iterator[CurvePoint]:
+    waiting = iter(scenes)
+    with ThreadPoolExecutor(workers or os.cpu_count() or 1, thread_name_prefix="curve") as pool:
+        running: set[Future[CurvePoint]] = set()
+        try:
+            while True:
+                while len(running) < 2 * (workers or os.cpu_count() or 1):
+                    one = next(waiting, None)
+                    if one is None:
+                        break
+                    running.add(pool.submit(_safe_point, one, None, flag))
+                if not running:
+                    return
+                done, running = wait(running, timeout=0.1, return_when=FIRST_COMPLETED)
+                for future in done:
+                    yield future.result()
+                if stop is not None and stop():
+                    return
+        except Cancelled:
+            return
+        finally:
+            flag[0] = 1
+            for future in running:
+                future.cancel()
+
+
+def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
+                    stop: Callable[[], bool] | None = None, on_point: Callable[[CurvePoint], None] | None = None,
+                    workers: int | None = None) -> Curve:
+    """The whole curve in ascending frequency; `on_point` is called with each point as it is finished."""
+    began = time.perf_counter()
+    curve = Curve(scene, start)
+    for point in iter_curve(scene, frequencies, start, stop, workers):
+        curve.points.append(point)
+        if on_point is not None:
+            on_point(point)
+    curve.points.sort(key=lambda p: p.frequency)
+    curve.wall_s = time.perf_counter() - began
+    return curve
