@@ -17,8 +17,9 @@ from ..integrate import Engine, Setting, State
 from ..integrate.engine import rest
 from ..result import Cost, Run, run_from
 from ..scene import Scene
+from .extrapolate import ORDER, reduced_rank, within_reach
 from .lyapunov import exponents
-from .regime import Regime, changes, find_period, irregular, normalised, slowing
+from .regime import Regime, find_period, irregular, normalised, slowing
 
 #: Periods after which a chain that has not settled is called that.
 MOST_PERIODS = 400
@@ -34,8 +35,8 @@ _SHOWN = 4
 _PREVIEW_AFTER = 0.012
 #: Blocks and periods a block for the Lyapunov exponent.
 _BLOCKS, _BLOCK = 10, 20
-#: Periods of relaxation onto the certified orbit at most.
-_MOST_RELAXATIONS = 600
+#: Rounds of relaxation onto the certified orbit at most, each of as many orbits as one extrapolation uses.
+_MOST_ROUNDS = 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,13 +200,38 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
     """
     scene, n = way.scene, way.regime.period
     assert n is not None
-    engine = Engine(scene, Setting("dop853", tolerance=0.5 * min(accuracy, 1e-4)), samples, stop=way.stop)
+    rate = min(0.999, way.regime.multiplier or 0.5)
+    # one period's error e moves the orbit by e/(1 − rate)
+    setting = Setting("dop853", tolerance=max(1e-14, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)))
+    engine = Engine(scene, setting, samples, stop=way.stop)
     engine.start(way.engine.state)
-    rate = min(0.99, way.regime.multiplier or 0.5)
     bound = np.inf
-    for _ in range(_MOST_RELAXATIONS // n):
-        moved, _ = engine.periods(n, watch=False)
-        bound = float(changes(normalised(moved), n)[-1]) * rate / (1.0 - rate)
-        if bound <= 0.3 * accuracy:
-            break
+    for _ in range(_MOST_ROUNDS):
+        before = bound
+        states = engine.periods(0)[0]
+        for _ in range(ORDER):
+            moved, _ = engine.periods(n, watch=False)
+            states = np.concatenate([states, moved[-1:]])
+            change = float(np.abs(normalised(states)[-1] - normalised(states)[-2]).max())
+            bound = change * rate / (1.0 - rate)
+            if bound <= 0.3 * accuracy:
+                return engine, bound
+        if bound > 0.3 * before and not setting.finest:
+            # the changes are the method's own: it has to be finer before it can come nearer
+            setting, state = setting.finer(), engine.state
+            engine = Engine(scene, setting, samples, stop=way.stop)
+            engine.start(state)
+        else:
+            jump(engine, states, change, rate)
     return engine, bound
+
+
+def jump(engine: Engine, states: np.ndarray, change: float, rate: float) -> bool:
+    """Put the engine where successive states (k, 2, N) lead, if that is within reach; whether it was."""
+    there = reduced_rank(states.reshape(len(states), -1)).reshape(states.shape[1:])
+    largest = np.abs(states).max(axis=(0, 2))[:, None]
+    if not within_reach(states[-1] / largest, there / largest, change, rate):
+        return False
+    scales = engine.lowered.scales
+    engine.start(State(there[0] * scales.length, there[1] * scales.velocity))
+    return True

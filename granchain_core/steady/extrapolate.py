@@ -1,0 +1,31 @@
+"""Shortening a slow approach to an orbit without leaving its attractor.
+
+Near its orbit the stroboscopic map is linear, x_{k+1} − x* = M (x_k − x*). Reduced rank extrapolation (Eddy 1979;
+Sidi, Vector Extrapolation Methods, 2017, chapter 2) takes out the slowest modes from a few successive states. It is
+used only where changes are already small and shrinking, and a jump is accepted only if the change there is really
+smaller and the jump no longer than what the decay itself predicts: so the orbit is the one the chain was going to.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+#: Successive changes used; as many slow modes less one are removed.
+ORDER = 8
+#: A jump longer than this times change/(1 − rate) is not where the decay was leading.
+_LONGEST_JUMP = 3.0
+
+
+def reduced_rank(states: np.ndarray) -> np.ndarray:
+    """The limit of the rows x_0..x_k as reduced rank extrapolation sees it: x_0 + Σ ξ_i (x_{i+1} − x_i)."""
+    first = np.diff(states, axis=0)
+    second = np.diff(first, axis=0)
+    weights, *_ = np.linalg.lstsq(second.T, -first[0], rcond=1e-12)
+    return states[0] + weights @ first[:-1]
+
+
+def within_reach(here: np.ndarray, there: np.ndarray, change: float, rate: float) -> bool:
+    """Whether a jump from `here` to `there` is one that the decay leads to."""
+    if not np.isfinite(there).all() or not 0.0 < rate < 1.0:
+        return False
+    return float(np.abs(there - here).max()) <= _LONGEST_JUMP * change / (1.0 - rate)
