@@ -1,0 +1,32 @@
+"""The features of the measured resonance curve that the paper's text states: frequencies with their kind."""
+
+from __future__ import annotations
+
+import functools
+import tomllib
+from dataclasses import dataclass
+
+from ..scene import ASSETS
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One stated feature: frequency [Hz], kind, number of repeated tests, where the text says so."""
+
+    frequency: float
+    kind: str
+    repeats: int
+    source: str
+    quantity: str = "frequency of a local extremum of the maximum transmitted force; no force is stated"
+
+    @property
+    def is_resonance(self) -> bool:
+        """Whether it is a peak (and not a valley)."""
+        return "anti" not in self.kind
+
+
+@functools.cache
+def stated_features() -> tuple[Feature, ...]:
+    """All features in assets/experiment/zhang-2016.toml, in ascending frequency."""
+    data = tomllib.loads((ASSETS / "experiment" / "zhang-2016.toml").read_text(encoding="utf-8"))
+    return tuple(Feature(**f) for f in sorted(data["feature"], key=lambda f: f["frequency"]))

@@ -1,0 +1,161 @@
+"""HDF5 in and out: netCDF-4-style groups with dimension scales, units and provenance.
+
+/run    time (s), bead, contact; displacement, velocity (time, bead); kinetic_energy (time, bead); force (time, contact);
+        drive_displacement, input_force, output_force, output_force_elastic (time)
+/curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, error_estimate (frequency);
+        regime, period (frequency)
+The root carries schema version, scene, method, accuracy asked and reached, cost, versions and time of writing. A file
+is written under a temporary name, synced and renamed: there is never half a file under its own name.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+from collections.abc import Callable
+from dataclasses import asdict
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numba
+import numpy as np
+
+from ..errors import BadInput
+from ..quantities import QUANTITIES
+from ..result import Cost, Run
+from ..scene import Scene
+from ..steady.curve import Curve
+from ..steady.regime import Regime
+
+SCHEMA = 1
+_RUN = {  # name: (dimensions, unit, meaning)
+    "displacement": (("time", "bead"), "m", "bead displacement from its rest position"),
+    "velocity": (("time", "bead"), "m/s", "bead velocity"),
+    "kinetic_energy": (("time", "bead"), "J", "kinetic energy of each bead"),
+    "force": (("time", "contact"), "N", "contact force, elastic and damping; contact 0 is the driver's, N the wall's"),
+    "drive_displacement": (("time",), "m", "displacement of the driver"),
+    "input_force": (("time",), "N", "force of the driver on bead 1"),
+    "output_force": (("time",), "N", "force on the wall, elastic and damping"),
+    "output_force_elastic": (("time",), "N", "elastic part of the force on the wall, the paper's F_out"),
+}
+_MAXIMA = ("max_input_force", "max_output_force", "max_output_force_elastic")
+
+
+def save(result: Run, path: str | Path) -> Path:
+    """Write a run to `path`; returns the path. Raises `BadInput` where it cannot be written."""
+
+    def write(file: h5py.File) -> None:
+        _provenance(file, result.scene, result.cost.method, result.error_estimate)
+        file.attrs["status"] = result.status
+        file.attrs["energy_residual"] = _or_nan(result.energy_residual)
+        file.attrs["samples_per_period"] = result.samples
+        file.attrs["cost"] = json.dumps(asdict(result.cost))
+        file.attrs["regime"] = json.dumps(asdict(result.regime))
+        for name in _MAXIMA:
+            file.attrs[name] = getattr(result, name)
+        group = file.create_group("run")
+        _scale(group, "time", result.time, "s", "time since the start, at drive phase 0")
+        _scale(group, "bead", np.arange(1, result.scene.N + 1), "1", "bead number from the driver")
+        _scale(group, "contact", np.arange(result.scene.N + 1), "1", "contact number; c joins bodies c and c + 1")
+        for name, (dimensions, unit, meaning) in _RUN.items():
+            _variable(group, name, getattr(result, name), dimensions, unit, meaning)
+
+    return _write(path, write)
+
+
+def save_curve(curve: Curve, path: str | Path) -> Path:
+    """Write a resonance curve to `path`; returns the path. Raises `BadInput` where it cannot be written."""
+
+    def write(file: h5py.File) -> None:
+        reached = [p.error_estimate for p in curve.points if p.error_estimate is not None]
+        _provenance(file, curve.scene, "dop853", max(reached) if reached else None)
+        file.attrs["start"], file.attrs["wall_s"] = curve.start, curve.wall_s
+        group = file.create_group("curve")
+        _scale(group, "frequency", curve.column("frequency"), "Hz", "drive frequency")
+        for name in _MAXIMA:
+            words = name.replace("_", " ").replace("max", "largest", 1)
+            _variable(group, name, curve.column(name), ("frequency",), "N", f"{words} in the steady state")
+        errors = np.array([_or_nan(p.error_estimate) for p in curve.points])
+        _variable(group, "error_estimate", errors, ("frequency",), "1", "relative error of the output forces")
+        periods = np.array([p.regime.period or 0 for p in curve.points])
+        _variable(group, "period", periods, ("frequency",), "1", "period in drive periods, 0 where not periodic")
+        names = np.array([p.regime.name for p in curve.points], dtype=h5py.string_dtype())
+        _variable(group, "regime", names, ("frequency",), "", "periodic, quasi-periodic, chaotic or unsettled")
+
+    return _write(path, write)
+
+
+def load(path: str | Path) -> Run:
+    """The run that `save` wrote. Raises `BadInput` for a file that is not one."""
+    try:
+        with h5py.File(path, "r") as file:
+            if int(file.attrs["granchain_schema"]) != SCHEMA:
+                raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
+            group = file["run"]
+            arrays = {n: group[n][()] for n in ("time", "displacement", "velocity", "force", "drive_displacement")}
+            attrs = dict(file.attrs)
+    except (OSError, KeyError) as problem:
+        raise BadInput(f"{path} is not a run written by granchain: {problem}.") from None
+    regime = json.loads(attrs["regime"])
+    regime["lyapunov"] = tuple(regime["lyapunov"]) if regime["lyapunov"] else None
+    return Run(
+        scene=Scene.from_json(json.loads(attrs["scene"])), samples=int(attrs["samples_per_period"]),
+        status=str(attrs["status"]), regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
+        error_estimate=_or_none(attrs["accuracy_reached"]), energy_residual=_or_none(attrs["energy_residual"]),
+        **{name: float(attrs[name]) for name in _MAXIMA}, **arrays,
+    )
+
+
+def _or_nan(value: float | None) -> float:
+    return np.nan if value is None else value
+
+
+def _or_none(value: float) -> float | None:
+    return None if np.isnan(value) else float(value)
+
+
+def _provenance(file: h5py.File, scene: Scene, method: str, reached: float | None) -> None:
+    from .. import __version__
+
+    file.attrs.update({
+        "Conventions": "CF-1.10", "granchain_schema": SCHEMA, "granchain_version": __version__,
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "versions": json.dumps({"numpy": np.__version__, "numba": numba.__version__, "h5py": h5py.__version__,
+                                "python": platform.python_version()}),
+        "scene_name": scene.name, "scene": json.dumps(scene.to_json()), "scene_digest": scene.digest,
+        "method": method, "accuracy_asked": scene.accuracy, "accuracy_reached": _or_nan(reached),
+    })
+    for name, value in scene.knobs.items():
+        file.attrs[f"knob_{name}"] = value
+        file.attrs[f"knob_{name}_unit"] = QUANTITIES[name].unit
+
+
+def _scale(group: h5py.Group, name: str, values: np.ndarray, unit: str, meaning: str) -> None:
+    data = group.create_dataset(name, data=values)
+    data.make_scale(name)
+    data.attrs["units"], data.attrs["long_name"] = unit, meaning
+
+
+def _variable(group: h5py.Group, name: str, values: Any, dimensions: tuple[str, ...], unit: str, meaning: str) -> None:
+    data = group.create_dataset(name, data=values)
+    for axis, dimension in enumerate(dimensions):
+        data.dims[axis].attach_scale(group[dimension])
+    data.attrs["units"], data.attrs["long_name"] = unit, meaning
+
+
+def _write(path: str | Path, write: Callable[[h5py.File], None]) -> Path:
+    path = Path(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        with h5py.File(temporary, "w") as file:
+            write(file)
+        with open(temporary, "rb") as done:
+            os.fsync(done.fileno())
+        os.replace(temporary, path)
+    except OSError as problem:
+        temporary.unlink(missing_ok=True)
+        raise BadInput(f"Cannot write {path}: {problem.strerror or problem}.") from None
+    return path
