@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from bokeh.document import Document
-from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settling
+
+from granchain_core import BadInput, NumbersFailed, Scene, Settled, settling
 
 from .curves import Curves
 from .exchange import Exchange
-from .frames import SAMPLES, Frames
-from .jobs import LatestWins
-from .live import LiveRun
+from .frames import SAMPLES
+from .jobs import LatestWins, Stop
+from .live import LivePicture, LiveRun
 from .painter import Painter
-from .session import LOOKS, SPEEDS, Session, presets
+from .promptness import send_at_once
+from .session import LOOKS, SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
 from .views.knobs import foundation_words, knob_state
 from .views.shell import Views
@@ -25,14 +26,6 @@ from .views.shell import Views
 log = logging.getLogger("granchain")
 
 _INK = {"light": ("#14181f", 1.0), "dark": ("#eef1f6", 1.0), "projector": ("#000000", 1.5)}
-
-
-@dataclass(frozen=True)
-class LivePicture:
-    """One step of the live run."""
-
-    frames: Frames
-    run: Run
 
 
 class Controller:
@@ -102,7 +95,7 @@ class Controller:
     def close(self, session_context: object) -> None:
         """The visitor left."""
         self._jobs.close()
-        self.curves.stop()
+        self.curves.close()
 
     # Computing and painting
 
@@ -115,10 +108,11 @@ class Controller:
         else:
             self._jobs.submit(partial(self._settled, self.session.scene))
 
-    def _settled(self, scene: Scene) -> Iterator[Settled]:
-        return settling(scene, start=self.session.previous_state(), samples=SAMPLES)
+    def _settled(self, scene: Scene, stop: Stop) -> Iterator[Settled]:
+        return settling(scene, start=self.session.previous_state(), samples=SAMPLES, stop=stop)
 
-    def _live_step(self, samples: int | None = None) -> Iterator[LivePicture]:
+    def _live_step(self, samples: int | None, _: Stop) -> Iterator[LivePicture]:
+        """One step of the live run: so many samples, or as many as viewing time asks for."""
         live = self._live
         if live is not None:
             yield live.advance(samples) if samples else live.step(self.session.speed)
@@ -135,16 +129,17 @@ class Controller:
         if isinstance(picture, Settled):
             show_settled(self.views, number, picture)
         else:
-            show_live(self.views, number, picture.frames, picture.run)
+            show_live(self.views, number, picture, self.session.playing)
 
     def _idle(self) -> None:
         """The browser has painted everything: in live mode that asks for the next step."""
         if self.session.mode == "live" and self.session.playing and not self._painter.waits:
-            self._jobs.submit(self._live_step)
+            self._jobs.submit(partial(self._live_step, None))
 
     # What the visitor does
 
     def _ready(self, message: dict[str, Any]) -> None:
+        send_at_once(self._document)
         self._look({"value": message.get("look")})
         self._new_scene()
 
@@ -194,7 +189,7 @@ class Controller:
             self.curves.changed(self.session.scene)
 
     def _choose_frequency(self, frequency: float) -> None:
-        low, high = self.session.scene.ranges["f"]
+        low, high = slider_range(self.session.scene, "f")
         self.session.change("f", round(min(max(frequency, low), high), 1))
         self._echo()
         self._turned("f")
@@ -223,6 +218,8 @@ class Controller:
         self.session.playing = bool(message.get("value"))
         if self._live is not None:
             self._live.hold()
+            if not self.session.playing:
+                self._jobs.submit(partial(self._live_step, 1))
         self._idle()
 
     def _reset(self, _: dict[str, Any]) -> None:

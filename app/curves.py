@@ -5,11 +5,13 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from granchain_core import CurvePoint, Scene
-from granchain_core.experiment import Measured, stated_features
 from panel.io import unlocked
 
-from .sweep import DIRECTIONS, Progress, Sweep
+from granchain_core import CurvePoint, Scene
+from granchain_core.experiment import Measured, stated_features
+
+from .session import slider_range
+from .sweep import DIRECTIONS, Progress, Sweep, without_frequency
 from .views.shell import Views
 
 _QUIET = 350
@@ -39,7 +41,7 @@ class Curves:
         """Another scene: an empty figure over its frequencies."""
         self._computed.clear()
         self._views.curve.clear()
-        self._views.curve.range(*scene.ranges["f"])
+        self._views.curve.range(*slider_range(scene, "f"))
         self._wanted["features"] = False
         self._show_features(scene)
         self.changed(scene)
@@ -78,13 +80,17 @@ class Curves:
         self._sweep.cancel()
         self._views.curvebar.show(done=-1.0)
 
+    def close(self) -> None:
+        """The visitor left."""
+        self._sweep.cancel()
+
     def measured(self, measured: Measured | None) -> None:
         """The visitor's own data."""
         self._views.curve.measured(measured)
 
     def _begin(self, scene: Scene) -> None:
         """Compute what is wanted and not there yet; moving f alone makes nothing new."""
-        key = scene.evolve(f=sum(scene.ranges["f"]) / 2)
+        key = without_frequency(scene)
         missing = [name for name in DIRECTIONS
                    if self._visible and self._wanted[name] and self._computed.get(name) != key]
         for name in missing:

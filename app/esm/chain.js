@@ -13,7 +13,6 @@ class ChainDrawing {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
     this.palette = palette;
-    this.look();
   }
 
   look() {
@@ -27,6 +26,7 @@ class ChainDrawing {
 
   // Where bead 1 and bead N stand: above the middle of their columns.
   measure(mapBox, gap) {
+    this.look();
     const box = this.canvas.getBoundingClientRect();
     const ratio = window.devicePixelRatio || 1;
     this.width = box.width;
@@ -52,12 +52,16 @@ class ChainDrawing {
         force = Math.max(force, Math.abs(frames.force[row * (beads + 1) + c]));
       }
     const fits = Math.min(0.17 / Math.max(overlap, 1e-30), 0.8 / Math.max(largest, 1e-30));
-    const factor = fits * frames.diameter;
-    const keep = this.factor && this.beads === beads && this.factor <= 1.25 * factor && this.factor > 0.3 * factor;
+    this.largest = Math.max(...frames.radii);
+    const diameter = 2 * this.largest;
+    const factor = fits * diameter;
+    const running = frames.live && rows === 1;
+    const keep = this.factor && this.beads === beads && this.factor <= 1.25 * factor
+      && (running || this.factor > 0.3 * factor);
     if (!keep) this.factor = nice(factor);
-    this.exaggeration = this.factor / frames.diameter;
+    this.exaggeration = this.factor / diameter;
     this.beads = beads;
-    this.force = Math.max(force, 1e-30);
+    this.force = Math.max(force, running ? 0.99 * (this.force ?? 0) : 0, 1e-30);
   }
 
   draw(frames, row) {
@@ -73,7 +77,7 @@ class ChainDrawing {
     this.ground(frames, pitch, radius, y, place);
     for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, pitch, radius, y);
     this.bodies(place, pitch, radius, y, beads);
-    for (let i = 1; i <= beads; i++) this.bead(place(i), y, radius, at.energy(i) / frames.energy_high);
+    for (let i = 1; i <= beads; i++) this.bead(place(i), y, radius * (frames.radii[i - 1] / this.largest), at.energy(i) / frames.energy_high);
     this.words();
   }
 
@@ -158,7 +162,13 @@ function sampler(frames, row) {
   };
 }
 
-export function render({ model, el }) {
+function afterFrame(act) {
+  const channel = new MessageChannel();
+  channel.port1.onmessage = act;
+  channel.port2.postMessage(null);
+}
+
+export function render({ model }) {
   const page = window.granchain;
   const canvas = document.createElement("canvas");
   const drawing = new ChainDrawing(canvas, model.state.palette);
@@ -183,8 +193,8 @@ export function render({ model, el }) {
       drawing.load(message);
       clock.show(message);
       dirty = true;
-      // Bokeh paints in the next animation frame; the one after that begins when it is on the screen.
-      requestAnimationFrame(() => requestAnimationFrame(() => {
+      // Bokeh paints in the next animation frame; a message posted in it arrives when that frame is done.
+      requestAnimationFrame(() => afterFrame(() => {
         model.send_msg({ do: "painted", number: message.number });
         page.emit("painted", { number: message.number, live: message.live, lag: Date.now() - 1000 * message.sent });
       }));

@@ -43,7 +43,7 @@ const TABS = {
 
 export function render({ model }) {
   const root = document.createElement("div");
-  root.className = "corner";
+  root.className = "part tabbed";
   const tabs = document.createElement("div");
   tabs.className = "tabs";
   tabs.setAttribute("role", "tablist");

@@ -9,7 +9,7 @@ const CHOICES = [
 
 export function render({ model }) {
   const root = document.createElement("div");
-  root.className = "row";
+  root.className = "part row";
   const boxes = CHOICES.map(([name, text, meaning]) => {
     const label = Object.assign(document.createElement("label"), { title: meaning });
     const box = Object.assign(document.createElement("input"), { type: "checkbox" });

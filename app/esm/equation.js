@@ -2,11 +2,11 @@
 
 export function render({ model }) {
   const root = document.createElement("div");
-  root.className = "equation";
+  root.className = "formula";
   const show = () => {
     const { latex } = model.state;
     root.replaceChildren();
-    for (const line of latex ? latex.split("\\\\") : []) {
+    for (const line of latex ? latex.split(/,?\\qquad/) : []) {
       const row = document.createElement("div");
       window.katex.render(line.trim(), row, { output: "mathml", throwOnError: false });
       root.append(row);

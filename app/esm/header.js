@@ -8,6 +8,21 @@ const HELP = [
   ["curve", "Click a frequency to go there. Shape and colour of a point say its regime."],
 ];
 
+// Drawn here, so that no font has to have them.
+const ICONS = {
+  knobs: "M3 6h7m4 0h7M3 12h3m4 0h11M3 18h11m4 0h3M12 4v4M8 10v4M16 16v4",
+  reset: "M4 12a8 8 0 1 0 3-6.2M7 2v4h4",
+  pause: "M8 5v14M16 5v14",
+  play: "M8 5l11 7-11 7z",
+  step: "M5 5l9 7-9 7zM18 5v14",
+  share: "M9 15l6-6M8 11l-3 3a3.5 3.5 0 0 0 5 5l3-3M16 13l3-3a3.5 3.5 0 0 0-5-5l-3 3",
+  save: "M12 4v11m-5-4l5 5 5-5M5 20h14",
+  help: "M9 9a3 3 0 1 1 4.2 2.7c-.9.4-1.2 1-1.2 2.3M12 18v.5",
+  look: "M12 3a9 9 0 1 0 0 18zM12 3a9 9 0 0 1 0 18",
+};
+const icon = (name, words = "") => `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>${
+  words && `<span class="wide">${words}</span>`}`;
+
 const make = (tag, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);
@@ -31,11 +46,11 @@ export function render({ model }) {
     return select;
   };
 
-  const drawer = button("☰ knobs", "Show the knobs", () => page.drawer(true), "knobs-button");
+  const drawer = button(icon("knobs", "knobs"), "Show the knobs", () => page.drawer(true), "knobs-button");
   const scene = chooser("scene", "scene", (name) => send({ do: "scene", name }));
-  const reset = button("⟲ <span class=wide>reset</span>", "Back to rest", () => send({ do: "reset" }));
+  const reset = button(icon("reset", "reset"), "Back to rest", () => send({ do: "reset" }));
   const play = button("", "Play or pause (space)", () => setPlaying(!playing));
-  const period = button("⏭ <span class=wide>period</span>", "One drive period on", () => {
+  const period = button(icon("step", "period"), "One drive period on", () => {
     setPlaying(false);
     page.emit("period");
     send({ do: "step" });
@@ -50,10 +65,10 @@ export function render({ model }) {
   const start = chooser("where the steady state starts", "start", (value) => send({ do: "start", value }));
   start.add(new Option("from rest", "rest"));
   start.add(new Option("from where it was", "previous state"));
-  const share = button("⧉ <span class=wide>share</span>", "Link to this picture", () => send({ do: "share", origin: location.href }));
-  const save = button("⭳ <span class=wide>save</span>", "Save this picture as HDF5", () => send({ do: "save" }), "save");
-  const help = button("?", "Help", () => toggle(helpBox), "icon");
-  const look = button("◐", "Light, dark, projector", () => page.nextLook(), "icon");
+  const share = button(icon("share", "share"), "Link to this picture", () => send({ do: "share", origin: location.href }));
+  const save = button(icon("save", "save"), "Save this picture as HDF5", () => send({ do: "save" }), "save");
+  const help = button(icon("help"), "Help", () => toggle(helpBox), "icon");
+  const look = button(icon("look"), "Light, dark, projector", () => page.nextLook(), "icon");
 
   const list = make("dl");
   for (const [term, meaning] of HELP) list.append(make("dt", { textContent: term }), make("dd", { textContent: meaning }));
@@ -67,7 +82,7 @@ export function render({ model }) {
   };
 
   let playing = true;
-  const drawPlay = () => { play.innerHTML = playing ? "⏸ <span class=wide>pause</span>" : "▶ <span class=wide>play</span>"; };
+  const drawPlay = () => { play.innerHTML = playing ? icon("pause", "pause") : icon("play", "play"); };
   const setPlaying = (value) => {
     if (value === playing) return;
     playing = value;
@@ -90,7 +105,7 @@ export function render({ model }) {
     const { state } = model;
     scene.replaceChildren(...(state.scenes ?? []).map(({ name, title }) => new Option(`${name} — ${title}`, name)));
     scene.value = state.scene ?? "";
-    speed.replaceChildren(...(state.speeds ?? []).map((value) => new Option(`${value} periods/s`, value)));
+    speed.replaceChildren(...(state.speeds ?? []).map((value) => new Option(`${value} period${value > 1 ? "s" : ""}/s`, value)));
     speed.value = String(state.speed ?? 1);
     page.emit("speed", state.speed ?? 1);
     modes.forEach((element, i) => element.setAttribute("aria-pressed", String(state.mode === ["settled", "live"][i])));
@@ -119,7 +134,7 @@ export function render({ model }) {
     }
   });
 
-  const root = make("div", { className: "bar" }, drawer, make("h1", { textContent: "granchain" }), scene, reset, play,
+  const root = make("div", { className: "part bar" }, drawer, make("h1", { textContent: "granchain" }), scene, reset, play,
     period, speed, segments, start, make("span", { className: "grow" }), share, save, help, look, helpBox, linkBox);
   show();
   return root;

@@ -36,7 +36,7 @@ class Knob {
     this.el.dataset.knob = spec.name;
     const label = document.createElement("label");
     label.title = spec.meaning;
-    label.innerHTML = `${spec.symbol || ""} <small>${spec.label}</small>`;
+    label.innerHTML = `${spec.symbol || ""} <small>${spec.label.split(",")[0]}</small>`;
     this.el.append(label);
     this.el.addEventListener("dblclick", (event) => {
       if (event.target.type === "text") return;
@@ -108,6 +108,7 @@ class Knob {
       this.select.value = String(value);
     } else if (typeof value === "number") {
       this.field.value = written(value, this.spec.factor);
+      this.field.style.width = `${Math.max(3, this.field.value.length) + 1.6}ch`;
       const place = RANGE[this.spec.scale].place(value, this.spec);
       this.slider.value = Math.round(STEPS * Math.max(0, Math.min(1, place)));
       this.slider.setAttribute("aria-valuetext", `${this.field.value} ${this.spec.unit}`);
@@ -118,17 +119,21 @@ class Knob {
 
 export function render({ model }) {
   const root = document.createElement("div");
+  root.className = "part";
   let knobs = new Map();
   let sent = 0;
-  // One message per animation frame and knob is all the eye can follow.
+  // One message per animation frame and knob is all the eye can follow; the first goes at once.
   const waiting = new Map();
+  let resting = true;
   const flush = () => {
+    resting = !waiting.size;
     for (const message of waiting.values()) model.send_msg({ ...message, seq: ++sent });
     waiting.clear();
+    if (!resting) requestAnimationFrame(flush);
   };
   const send = (message) => {
-    if (!waiting.size) requestAnimationFrame(flush);
     waiting.set(message.name, message);
+    if (resting) flush();
   };
 
   const build = () => {

@@ -31,13 +31,14 @@ class Clock {
   }
 
   moveTo(fraction) {
-    if (!this.frames) return;
+    if (!this.frames || this.frames.rows < 2) return;
     this.row = Math.max(0, Math.min(1, fraction)) * (this.frames.rows - 1);
     this.onMove();
   }
 
   get fraction() {
-    return this.frames ? this.row / (this.frames.rows - 1) : 0;
+    if (!this.frames) return 0;
+    return this.frames.rows > 1 ? this.row / (this.frames.rows - 1) : 1;
   }
 }
 
@@ -74,7 +75,7 @@ class Cursor {
     scale.style.top = `${map.bottom - stage.top - this.bottom + 8}px`;
     const key = document.getElementById("key");
     key.style.left = `${right.left - stage.left + this.gap}px`;
-    key.style.top = `${right.top - stage.top + this.top - 24}px`;
+    key.style.top = `${right.top - stage.top + this.top - 44}px`;
   }
 
   grab(event, element) {

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from bokeh.palettes import Inferno256
+
 from granchain_core import Scene
 
 from ..frames import SAMPLES, Frames, prefixed
@@ -23,23 +24,26 @@ class Chain(Component):
 PALETTE = list(Inferno256)
 
 
-def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live: bool) -> dict[str, Any]:
-    """What the browser needs to draw the chain at every instant of `frames`."""
+def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live: bool,
+                   running: bool) -> dict[str, Any]:
+    """What the browser needs to draw the chain at every instant of `frames`; a running chain only has a now."""
     factor, letter = prefixed(scale)
+    rows = slice(-1, None) if running else slice(None)
     return {
         "type": "frames",
         "number": number,
         "live": live,
-        "rows": frames.rows,
+        "rows": 1 if running else frames.rows,
+        "window": frames.rows,
         "beads": frames.beads,
         "samples": SAMPLES,
-        "diameter": scene.diameter,
+        "radii": [bead.radius for bead in scene.beads],
         "foundation": scene.knobs["k"] > 0.0,
         "energy_high": scale,
         "energy_label": f"{scale / factor:g} {letter}J",
         "sent": time.time(),
-        "displacement": np.ascontiguousarray(frames.displacement, dtype=np.float32),
-        "force": np.ascontiguousarray(frames.force, dtype=np.float32),
-        "energy": np.ascontiguousarray(frames.kinetic_energy, dtype=np.float32),
-        "drive": np.ascontiguousarray(frames.drive_displacement, dtype=np.float32),
+        "displacement": np.ascontiguousarray(frames.displacement[rows], dtype=np.float32),
+        "force": np.ascontiguousarray(frames.force[rows], dtype=np.float32),
+        "energy": np.ascontiguousarray(frames.kinetic_energy[rows], dtype=np.float32),
+        "drive": np.ascontiguousarray(frames.drive_displacement[rows], dtype=np.float32),
     }

@@ -29,7 +29,7 @@ class Component(JSComponent):
     __abstract = True
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(**params)
+        super().__init__(margin=0, **params)
         self._received = received
 
     def tell(self, **message: Any) -> None:

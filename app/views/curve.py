@@ -9,6 +9,7 @@ import numpy as np
 from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Range1d, Span
 from bokeh.plotting import figure
+
 from granchain_core import CurvePoint
 from granchain_core.experiment import Feature, Measured
 
@@ -41,6 +42,7 @@ class Curve:
     def __init__(self, choose: Callable[[float], None]) -> None:
         self._points: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
         self._scale = (1.0, "")
+        self._place: tuple[object, ...] = ()
         self._now = ColumnDataSource({"frequency": [], "force": []})
         self._measured = ColumnDataSource({"frequency": [], "force": [], "low": [], "high": []})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
@@ -142,6 +144,10 @@ class Curve:
 
     def now(self, frequency: float, force: float | None) -> None:
         """The current point; without a force only its frequency."""
+        place = (frequency, None if force is None else float(f"{force:.3g}"), self._scale)
+        if place == self._place:
+            return
+        self._place = place
         self._current.location = frequency
         factor = self._scale[0]
         self._now.data = {"frequency": [frequency] if force is not None else [],

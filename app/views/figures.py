@@ -8,7 +8,7 @@ import panel as pn
 from bokeh.models import Plot
 from bokeh.plotting import figure
 
-TOP, BOTTOM, LEFT, GAP = 50, 52, 64, 6
+TOP, BOTTOM, LEFT, GAP = 50, 52, 56, 6
 """Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly."""
 
 DRIVE, INPUT, OUTPUT = "#e5484d", "#3b82f6", "#2f9e6a"

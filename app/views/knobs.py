@@ -8,6 +8,7 @@ from typing import Any
 from granchain_core import Scene, scene
 from granchain_core.quantities import QUANTITIES
 
+from ..session import slider_range
 from .component import Component, text
 
 MAIN = ("f", "A0", "D", "k", "kappa", "accuracy")
@@ -52,8 +53,7 @@ def _spec(name: str, current: Scene) -> dict[str, Any]:
         "unit": unit, "factor": factor, "choices": list(quantity.choices), "numeric": quantity.numeric,
         "whole": quantity.whole, "more": name in MORE, "step": quantity.step, "scale": quantity.scale,
     }
-    if name in current.ranges:
-        spec["low"], spec["high"] = current.ranges[name]
+    spec["low"], spec["high"] = slider_range(current, name)
     if name in _CUBIC:
         spec["scale"] = "cubic"
     if name == "accuracy":

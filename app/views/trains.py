@@ -58,13 +58,14 @@ class Trains:
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
         out, out_letter = prefixed(max(map(abs, output_range)))
-        self._source.data = {
+        columns = {
             "time": time,
             "drive": frames.drive_displacement / drive,
             "input": frames.input_force / push,
             "output": frames.output_force / out,
             "elastic": frames.output_force_elastic / out,
         }
+        self._source.data = {name: np.asarray(column, dtype=np.float32) for name, column in columns.items()}
         edge = 1.15 * drive_high / drive
         self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
         self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)

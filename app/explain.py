@@ -1,0 +1,37 @@
+"""What --explain prints: which effects are compiled into this scene's kernel, which are absent, which method and why."""
+
+from __future__ import annotations
+
+from granchain_core.integrate.methods import METHODS, method_for, setting_of
+from granchain_core.lower import lower
+from granchain_core.scene import Scene
+from granchain_core.warm import structure
+
+_SLOTS = {
+    "chain": "Hertz contact", "dissipation": "dissipation law", "tension": "tension cut", "foundation": "foundation",
+    "preload": "preload", "driver": "driver", "balance": "energy account",
+}
+
+
+def explanation(scene: Scene, method: str | None) -> str:
+    """The slots of the kernel that `run` uses, and its method, in a few lines."""
+    lowered = lower(scene, balance=True)
+    present, absent = [], []
+    for name, title in _SLOTS.items():
+        slot = getattr(lowered.slots, name)
+        if slot is None:
+            absent.append(title)
+        else:
+            present.append(f"{title} ({type(slot).__name__})")
+    setting = method_for(scene.accuracy) if method is None else setting_of(method, scene.accuracy)
+    chosen = METHODS[setting.method]
+    why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"
+    fineness = (f"tolerance per step {setting.tolerance:.1e}" if chosen.adaptive
+                else f"{setting.steps_per_period(lowered, 1)} steps a period")
+    return "\n".join((
+        f"compiled in: {', '.join(present)}",
+        f"absent, with no code and no array: {', '.join(absent) if absent else 'nothing'}",
+        f"structure: {structure(scene)}",
+        f"method: {chosen.title}, {why}; first {fineness}, then finer until two computations agree to that accuracy",
+        f"restrictions: {chosen.restrictions}; reference: {chosen.reference}",
+    ))

@@ -1,0 +1,118 @@
+"""How fast the page answers: slider step to painted settled picture, and frames and lag of the live mode.
+
+    python tests/benchmarks/browser_latency.py [--steps 60] [--seconds 60] [--address URL]
+
+Every figure is taken in the browser: from the slider's input event to the animation frame after the one in which
+Bokeh painted the new picture. A step counts only if the pixels of the energy map have changed by then.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import sys
+import tempfile
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import Page, sync_playwright
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from browser.server import dashboard, launch
+
+FIND = """
+window.findDeep = (selector, node = document) => {
+  const found = node.querySelector(selector);
+  if (found) return found;
+  for (const element of node.querySelectorAll("*"))
+    if (element.shadowRoot) { const inner = findDeep(selector, element.shadowRoot); if (inner) return inner; }
+  return null;
+};
+"""
+
+STEP = """
+async (key) => {
+  const field = findDeep('[data-knob="f"] input[type="range"]');
+  const canvas = findDeep("canvas.bk-layer, canvas", document.getElementById("map"));
+  const pixels = () => {
+    const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+    let sum = 0;
+    for (let i = 0; i < data.length; i += 97) sum = (sum * 31 + data[i]) >>> 0;
+    return sum;
+  };
+  const before = pixels();
+  const first = new Promise((done) => { window.paintedOnce = done; });
+  const start = performance.now();
+  field.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, composed: true }));
+  await first;
+  return { milliseconds: performance.now() - start, changed: pixels() !== before };
+}
+"""
+
+LIVE = """
+async (seconds) => {
+  const frames = [];
+  const start = performance.now();
+  window.paintedLive = (event) => frames.push({ at: performance.now() - start, lag: event.lag });
+  await new Promise((done) => setTimeout(done, 1000 * seconds));
+  window.paintedLive = null;
+  return frames;
+}
+"""
+
+
+def quantile(values: list[float], share: float) -> float:
+    """The value below which `share` of the values lie."""
+    return statistics.quantiles(values, n=100, method="inclusive")[round(100 * share) - 1]
+
+
+def settled_latency(page: Page, steps: int) -> dict[str, Any]:
+    """Slider steps of 0.1 Hz around 340 Hz, each begun when the page is quiet."""
+    times, unchanged = [], 0
+    for number in range(steps + 5):
+        page.wait_for_timeout(250)
+        result = page.evaluate(STEP, "ArrowRight" if number % 20 < 10 else "ArrowLeft")
+        if number >= 5:
+            times.append(result["milliseconds"])
+            unchanged += not result["changed"]
+    return {"steps": steps, "p50_ms": quantile(times, 0.5), "p95_ms": quantile(times, 0.95), "max_ms": max(times),
+            "unchanged_pictures": unchanged}
+
+
+def live_figures(page: Page, seconds: float) -> dict[str, Any]:
+    """Frames a second and lag from computed on the server to painted, while nothing is touched."""
+    page.get_by_role("button", name="The run goes on").click()
+    page.wait_for_timeout(1500)
+    frames = page.evaluate(LIVE, seconds)
+    lags = [frame["lag"] for frame in frames]
+    gaps = [b["at"] - a["at"] for a, b in zip(frames[:-1], frames[1:], strict=True)]
+    return {"seconds": seconds, "frames_per_second": len(frames) / seconds, "lag_p50_ms": quantile(lags, 0.5),
+            "lag_p95_ms": quantile(lags, 0.95), "gap_p95_ms": quantile(gaps, 0.95)}
+
+
+def main() -> None:
+    """Print the figures as one JSON object."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--steps", type=int, default=60)
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--address", help="a dashboard that runs already")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
+        served = nullcontext(options.address) if options.address else dashboard(Path(folder) / "log")
+        with served as address:
+            browser = launch(playwright)
+            page = browser.new_page(viewport={"width": 1280, "height": 800})
+            page.goto(address)
+            page.evaluate(FIND)
+            page.evaluate("granchain.on('painted', (e) => { const once = window.paintedOnce; window.paintedOnce = null;"
+                          " if (once && !e.live) once(); if (e.live && window.paintedLive) window.paintedLive(e); })")
+            page.wait_for_timeout(15_000)
+            figures = {"settled": settled_latency(page, options.steps), "live": live_figures(page, options.seconds)}
+            browser.close()
+    print(json.dumps(figures, indent=2))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""A really started dashboard and a really started browser, for the browser tests and the latency figures."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from playwright.sync_api import Browser, Playwright
+
+ROOT = Path(__file__).resolve().parents[2]
+
+CHROMIUM_OPTIONS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync",
+]
+
+
+def free_port() -> int:
+    """A port nobody listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+@contextmanager
+def dashboard(log: Path) -> Iterator[str]:
+    """The address of a dashboard that runs until the block ends."""
+    port = free_port()
+    code = f"from app.server import serve; serve(port={port})"
+    with log.open("wb") as output:
+        process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output)
+        try:
+            address = f"http://127.0.0.1:{port}/"
+            _wait_until_alive(process, address, log)
+            yield address
+        finally:
+            process.terminate()
+            process.wait(timeout=20)
+
+
+def _wait_until_alive(process: subprocess.Popen[bytes], address: str, log: Path) -> None:
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        if process.poll() is not None:
+            break
+        try:
+            with urllib.request.urlopen(address + "liveness", timeout=2):
+                return
+        except OSError:
+            time.sleep(0.1)
+    raise RuntimeError(f"The dashboard did not start:\n{log.read_text(errors='replace')[-3000:]}")
+
+
+def launch(playwright: Playwright) -> Browser:
+    """The system's Chromium, or the one playwright installed; without one this fails, it never skips."""
+    system = next((path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))),
+                  None)
+    if system is None and not Path(playwright.chromium.executable_path).exists():
+        raise RuntimeError("The browser tests need Chromium: install the system's chromium package, "
+                           "or run `playwright install chromium`.")
+    return playwright.chromium.launch(executable_path=system, args=CHROMIUM_OPTIONS)
