@@ -1,0 +1,65 @@
+"""Compiling kernels ahead of time, so that nobody waits for a compiler inside a visit.
+
+A *structure* is the set of effects a scene has; moving a slider never changes it, adding a foundation or another
+dissipation law does, and the kernels of a new structure are compiled once per machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+from .integrate import Engine, Setting
+from .kernels.jit import CACHE_FOLDER
+from .scene import Scene, scene, scene_names
+from .steady.lyapunov import exponents
+
+#: What the pieces of one structure's kernels are for; each can be compiled in its own process.
+PIECES = ("live", "certified", "live account", "certified account")
+
+
+def structure(shown: Scene) -> str:
+    """Name of the set of effects that picks the compiled kernels of a scene."""
+    law = shown.dissipation if shown.has_dissipation else "none"
+    cut = "+cut" if shown.has_dissipation and shown.tension == "cut" else ""
+    return law + cut + ("+foundation" if shown.k > 0 else "") + ("+preload" if shown.F0 > 0 else "")
+
+
+def is_warm(shown: Scene, pieces: Iterable[str] = ("live", "certified")) -> bool:
+    """Whether the kernels of this scene's structure have been compiled on this machine."""
+    return all(_marker(structure(shown), piece).exists() for piece in pieces)
+
+
+def _marker(name: str, piece: str) -> Path:
+    return CACHE_FOLDER / f"compiled-{name}-{piece.replace(' ', '-')}"
+
+
+def warm(shown: Scene, pieces: Iterable[str] = PIECES) -> None:
+    """Compile and cache the kernels of one scene's structure by running them shortly."""
+    short = shown.evolve(f=max(shown.f, 1000.0))
+    for piece in pieces:
+        method = "rk4-split" if piece.startswith("live") else "dop853"
+        engine = Engine(short, Setting(method, tolerance=1e-3), 2, balance=piece.endswith("account"))
+        engine.periods(1)
+        engine.record(2)
+        if piece == "live":
+            exponents(engine, 1, 1)
+        _marker(structure(shown), piece).touch()
+
+
+def _warm_piece(job: tuple[Scene, str]) -> str:
+    warm(job[0], (job[1],))
+    return f"{structure(job[0])}, {job[1]}"
+
+
+def warm_presets(workers: int = 2) -> Iterable[str]:
+    """Compile everything the presets need, in `workers` processes; yields what has been finished."""
+    seen: dict[str, Scene] = {}
+    for name in scene_names():
+        seen.setdefault(structure(scene(name)), scene(name))
+    jobs = [(one, piece) for piece in reversed(PIECES) for one in seen.values()]
+    jobs.sort(key=lambda job: "certified" not in job[1])
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        yield from pool.map(_warm_piece, jobs)
