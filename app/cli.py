@@ -205,9 +205,9 @@ def _curve(arguments: argparse.Namespace) -> None:
     if not 1 <= arguments.points <= MOST_POINTS:
         raise BadInput(f"--points {arguments.points} is outside 1 to {MOST_POINTS}; the nearest valid value is "
                        f"{min(max(arguments.points, 1), MOST_POINTS)}.")
-    ends = [float(chosen.evolve(f=edge).f) for edge in (arguments.low, arguments.high)]
-    if ends[0] > ends[1]:
-        raise BadInput(f"--from {ends[0]:g} is above --to {ends[1]:g}; exchange them, and sweep with --start down.")
+    low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
+    if low > high:
+        raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
     done = [0]
 
     def count(point: Any) -> None:
@@ -217,7 +217,7 @@ def _curve(arguments: argparse.Namespace) -> None:
         if sys.stderr.isatty():
             _progress(done[0] / arguments.points)
 
-    curve = in_background(lambda stop: resonance_curve(chosen, np.linspace(*ends, arguments.points), arguments.start,
+    curve = in_background(lambda stop: resonance_curve(chosen, np.linspace(low, high, arguments.points), arguments.start,
                                                        stop=lambda: bool(stop[0]), on_point=count))
     if arguments.out:
         save_curve(curve, arguments.out)

@@ -1,4 +1,4 @@
-"""What --explain prints: which effects are compiled into this scene's kernel, which are absent, which method and why."""
+"""What --explain prints: the effects compiled into a scene's kernel, those that are absent, the method and why."""
 
 from __future__ import annotations
 

@@ -101,7 +101,10 @@ def joined(pieces: list[Run]) -> Run:
 
     cost = Cost(sum(p.cost.wall_s for p in pieces), sum(p.cost.steps for p in pieces),
                 sum(p.cost.rhs for p in pieces), sum(p.cost.events for p in pieces), pieces[-1].cost.method)
-    arrays = {name: rows(name) for name in ("time", "displacement", "velocity", "force", "drive_displacement")}
-    tops = {name: max(getattr(p, name) for p in pieces)
-            for name in ("max_input_force", "max_output_force", "max_output_force_elastic")}
-    return replace(pieces[-1], cost=cost, **arrays, **tops)
+    return replace(
+        pieces[-1], cost=cost, time=rows("time"), displacement=rows("displacement"), velocity=rows("velocity"),
+        force=rows("force"), drive_displacement=rows("drive_displacement"),
+        max_input_force=max(p.max_input_force for p in pieces),
+        max_output_force=max(p.max_output_force for p in pieces),
+        max_output_force_elastic=max(p.max_output_force_elastic for p in pieces),
+    )

@@ -59,8 +59,8 @@ class Counts:
 def rest(scene: Scene) -> State:
     """The scene's start: at rest at drive phase 0, except for beads that are given a velocity."""
     velocity = np.zeros(scene.N)
-    for place, v in scene.start_velocity:
-        velocity[place - 1] = v
+    for bead, v in scene.start_velocity:
+        velocity[bead - 1] = v
     return State(np.zeros(scene.N), velocity)
 
 
@@ -107,8 +107,9 @@ class Engine:
     def _prepare_adaptive(self) -> None:
         lo = self.lowered
         self.method = Dop853(self.setting.tolerance, lo.period / _LEAST_STEPS)
-        vectors = [np.zeros(lo.size) for _ in range(4)]
-        self.work = Work(np.zeros((ALL_STAGES, lo.size)), *vectors, np.zeros((7, lo.size)), np.zeros(2), lo.forces())
+        size = lo.size
+        self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
+                         slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2), forces=lo.forces())
         self.clock = np.array([min(0.01, lo.period / _LEAST_STEPS)])
         self.grid = self.samples * max(1, int(np.ceil(lo.period / self.samples / _PEAK_SPACING)))
 

@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 import numba
-from numba.core import config, types
+from numba import types
 from numba.extending import overload
 
 _FLAGS = {"nsz", "arcp", "contract", "reassoc"}
@@ -47,17 +47,17 @@ def cache_folder() -> Path:
 CACHE_FOLDER = cache_folder()
 
 
-def kernel(function):  # type: ignore[no-untyped-def]  # Numba's decorators are untyped
+def kernel(function):
     """Decorator for compiled, cached kernels on floats and arrays."""
-    before = config.CACHE_DIR
-    config.CACHE_DIR = str(CACHE_FOLDER)
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(CACHE_FOLDER)
     try:
         return numba.njit(cache=True, nogil=True, fastmath=_FLAGS, error_model="numpy")(function)
     finally:
-        config.CACHE_DIR = before
+        numba.config.CACHE_DIR = before
 
 
-def term(absent):  # type: ignore[no-untyped-def]
+def term(absent):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 
     The decorated function is the code for an absent effect (slot None). `function.of(Slot)` registers the code
@@ -65,24 +65,24 @@ def term(absent):  # type: ignore[no-untyped-def]
     """
     implementations = {type(None): absent}
 
-    def generic(*args):  # type: ignore[no-untyped-def]
+    def generic(*args):
         return implementations[type(args[0])](*args)
 
     generic.__name__ = generic.__qualname__ = absent.__name__
     generic.__doc__ = absent.__doc__
 
     @overload(generic, strict=False, jit_options={"fastmath": _FLAGS, "error_model": "numpy"})
-    def _typed(*args):  # type: ignore[no-untyped-def]
+    def _typed(*args):
         slot = args[0]
         found = slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)
         return implementations[found]
 
-    def of(slot_class):  # type: ignore[no-untyped-def]
-        def register(implementation):  # type: ignore[no-untyped-def]
+    def of(slot_class):
+        def register(implementation):
             implementations[slot_class] = implementation
             return implementation
 
         return register
 
-    generic.of = of  # type: ignore[attr-defined]
+    generic.of = of
     return generic

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import math
 from dataclasses import asdict, dataclass, replace
@@ -92,7 +93,7 @@ class Scene:
         """Hertz stiffness of contacts 0..N (N+1,) [N/m^{3/2}]; the driver is a bead like bead 1."""
         beads = self.beads
         bodies = (beads[0], *beads)
-        between = [hertz_stiffness(a, b) for a, b in zip(bodies[:-1], bodies[1:], strict=True)]
+        between = [hertz_stiffness(a, b) for a, b in itertools.pairwise(bodies)]
         return np.array([*between, self.wall_factor * hertz_stiffness(beads[-1], beads[-1])])
 
     def static_overlap(self) -> np.ndarray:

@@ -1,6 +1,6 @@
 """HDF5 in and out: netCDF-4-style groups with dimension scales, units and provenance.
 
-/run    time (s), bead, contact; displacement, velocity (time, bead); kinetic_energy (time, bead); force (time, contact);
+/run    time (s), bead, contact; displacement, velocity, kinetic_energy (time, bead); force (time, contact);
         drive_displacement, input_force, output_force, output_force_elastic (time)
 /curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, error_estimate (frequency);
         regime, period (frequency)
@@ -105,7 +105,8 @@ def load(path: str | Path) -> Run:
         scene=Scene.from_json(json.loads(attrs["scene"])), samples=int(attrs["samples_per_period"]),
         status=str(attrs["status"]), regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
         error_estimate=_or_none(attrs["accuracy_reached"]), energy_residual=_or_none(attrs["energy_residual"]),
-        **{name: float(attrs[name]) for name in _MAXIMA}, **arrays,
+        max_input_force=float(attrs["max_input_force"]), max_output_force=float(attrs["max_output_force"]),
+        max_output_force_elastic=float(attrs["max_output_force_elastic"]), **arrays,
     )
 
 

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 from ..jit import term
 
-
 #: Where an absent driver or wall stands, in length units: too far to touch, near enough not to overflow.
 FAR = 1e30
 
