@@ -165,11 +165,12 @@ class Controller:
         self.views.corner.show(effects=list(scene.effects), validity=list(scene.validity()))
 
     def _set(self, message: dict[str, Any]) -> None:
+        name = str(message.get("name"))
         try:
-            self.session.change(str(message.get("name")), message.get("value"))
+            self.session.change(name, message.get("value"))
+            self._turned(name)
         finally:
             self._echo(message.get("seq"))
-        self._turned(str(message.get("name")))
 
     def _restore(self, message: dict[str, Any]) -> None:
         self.session.restore(str(message.get("name")))
@@ -181,10 +182,10 @@ class Controller:
         self.views.knobs.tell(type="values", values=dict(scene.knobs), foundation=foundation_words(scene), seq=seq)
 
     def _turned(self, name: str) -> None:
+        self._compute()
         if self.session.sentence:
             self.say("")
         self._describe()
-        self._compute()
         if name != "f":
             self.curves.changed(self.session.scene)
 

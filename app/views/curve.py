@@ -51,7 +51,8 @@ class Curve:
         self.figure = self._frame(choose)
         self._old = {name: self._line(name, grey=True) for name in _DASHES}
         self._new = {name: self._line(name, grey=False) for name in _DASHES}
-        self._current = Span(dimension="height", line_color=_MARK, line_width=1)
+        # In the overlay, so that moving f repaints a line and a dot and not the whole curve.
+        self._current = Span(dimension="height", line_color=_MARK, line_width=1, level="overlay")
         self.figure.add_layout(self._current)
         self._marks()
 
@@ -98,7 +99,7 @@ class Curve:
         plot.add_tools(HoverTool(renderers=[self._dots], tooltips=[
             ("measured at", "@frequency{0.0} Hz"), ("force", "@force{0.000}")]))
         self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=OUTPUT,
-                                 line_width=3)
+                                 line_width=3, level="overlay")
 
     def ink(self, colour: str, thick: float) -> None:
         """The colour of measured data and of the current point's ring: dark on light, light on dark."""
