@@ -217,7 +217,8 @@ def _curve(arguments: argparse.Namespace) -> None:
         if sys.stderr.isatty():
             _progress(done[0] / arguments.points)
 
-    curve = in_background(lambda stop: resonance_curve(chosen, np.linspace(low, high, arguments.points), arguments.start,
+    frequencies = np.linspace(low, high, arguments.points)
+    curve = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start,
                                                        stop=lambda: bool(stop[0]), on_point=count))
     if arguments.out:
         save_curve(curve, arguments.out)
