@@ -9,8 +9,9 @@ from typing import Any
 
 from bokeh.document import Document
 
-from granchain_core import BadInput, NumbersFailed, Scene, Settled, settling
+from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settling
 
+from .compiling import CERTIFIED, COMPILER, LIVE, SENTENCE
 from .curves import Curves
 from .exchange import Exchange
 from .frames import SAMPLES
@@ -76,17 +77,18 @@ class Controller:
         """Do something a little later."""
         self._document.add_timeout_callback(partial(self._guarded, action, *arguments), milliseconds)
 
-    def say(self, sentence: str) -> None:
-        """One sentence for the visitor; an empty one takes it away."""
+    def say(self, sentence: str, until_picture: bool = False) -> None:
+        """One sentence for the visitor, until the next valid action or picture; an empty one takes it away."""
         self.session.sentence = sentence
-        self.views.badge.show(sentence=sentence)
+        self.session.until_picture = until_picture
+        self.views.badge.display(sentence=sentence)
 
     def failed(self, error: Exception) -> None:
         """The last good picture stays, and one sentence says what happened."""
         if isinstance(error, BadInput):
             self.say(str(error))
         elif isinstance(error, NumbersFailed):
-            self.say(error.sentence)
+            self.say(error.sentence, until_picture=True)
         else:
             log.error("unexpected failure", exc_info=error)
             self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture stays. "
@@ -109,12 +111,24 @@ class Controller:
             self._jobs.submit(partial(self._settled, self.session.scene))
 
     def _settled(self, scene: Scene, stop: Stop) -> Iterator[Settled]:
-        return settling(scene, start=self.session.previous_state(), samples=SAMPLES, stop=stop)
+        """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
+        self._await_live_kernels(scene, stop)
+        pictures = settling(scene, start=self.session.previous_state(), samples=SAMPLES, stop=stop)
+        yield next(pictures)
+        if COMPILER.await_piece(scene, CERTIFIED, stop):
+            yield from pictures
 
-    def _live_step(self, samples: int | None, _: Stop) -> Iterator[LivePicture]:
+    def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
+        if not COMPILER.has(scene, LIVE):
+            COMPILER.ask(scene, CERTIFIED)
+            self.later(self.say, SENTENCE, True)
+            COMPILER.await_piece(scene, LIVE, stop)
+
+    def _live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
         """One step of the live run: so many samples, or as many as viewing time asks for."""
         live = self._live
         if live is not None:
+            self._await_live_kernels(self.session.scene, stop)
             yield live.advance(samples) if samples else live.step(self.session.speed)
 
     def _arrived(self, picture: Settled | LivePicture) -> None:
@@ -122,8 +136,16 @@ class Controller:
         if live != (self.session.mode == "live") or picture.run.scene.name != self.session.scene.name:
             return
         if isinstance(picture, Settled):
-            self.session.accept(picture)
+            self.session.picture = picture
+        if self.session.sentence and self.session.until_picture:
+            self.say("")
         self._painter.offer(picture)
+
+    def shown_run(self) -> Run | None:
+        """What is on the screen, as a run."""
+        if self._live is not None:
+            return self._live.window_run()
+        return None if self.session.picture is None else self.session.picture.run
 
     def _send(self, number: int, picture: Settled | LivePicture) -> None:
         if isinstance(picture, Settled):
@@ -146,7 +168,7 @@ class Controller:
     def _new_scene(self) -> None:
         scene = self.session.scene
         self.views.knobs.state = knob_state(scene)
-        self.views.corner.show(look_at=scene.look_at, paper=scene.paper)
+        self.views.corner.display(look_at=scene.look_at, paper=scene.paper)
         self._header()
         self._describe()
         self.curves.open(scene)
@@ -156,13 +178,13 @@ class Controller:
 
     def _header(self) -> None:
         session = self.session
-        self.views.header.show(scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start,
-                               speeds=list(SPEEDS), speed=session.speed, playing=session.playing)
+        self.views.header.display(scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start,
+                               speeds=list(SPEEDS), speed=session.speed, playing=session.playing, look=session.look)
 
     def _describe(self) -> None:
         scene = self.session.scene
-        self.views.equation.show(latex=scene.equation_latex())
-        self.views.corner.show(effects=list(scene.effects), validity=list(scene.validity()))
+        self.views.equation.display(latex=scene.equation_latex())
+        self.views.corner.display(effects=list(scene.effects), validity=list(scene.validity()))
 
     def _set(self, message: dict[str, Any]) -> None:
         name = str(message.get("name"))

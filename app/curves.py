@@ -10,7 +10,8 @@ from panel.io import unlocked
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Measured, stated_features
 
-from .session import slider_range
+from .compiling import CERTIFIED, COMPILER, LIVE
+from .session import rig_beads, slider_range
 from .sweep import DIRECTIONS, Progress, Sweep, without_frequency
 from .views.shell import Views
 
@@ -42,7 +43,7 @@ class Curves:
         self._computed.clear()
         self._views.curve.clear()
         self._views.curve.range(*slider_range(scene, "f"))
-        self._wanted["features"] = False
+        self._wanted["features"] = scene.pattern == rig_beads()
         self._show_features(scene)
         self.changed(scene)
 
@@ -53,8 +54,12 @@ class Curves:
         self._after(_QUIET, self._begin_if_last, scene, self._due)
 
     def _begin_if_last(self, scene: Scene, due: int) -> None:
-        if due == self._due:
+        if due != self._due:
+            return
+        if COMPILER.has(scene, LIVE, CERTIFIED):
             self._begin(scene)
+        else:
+            self._after(_QUIET, self._begin_if_last, scene, due)
 
     def visible(self, visible: bool, scene: Scene) -> None:
         """The figure came on the screen or left it."""
@@ -69,7 +74,7 @@ class Curves:
         if name not in self._wanted:
             return
         self._wanted[name] = wanted
-        self._views.curvebar.show(**self._wanted)
+        self._views.curvebar.display(**self._wanted)
         if name == "features":
             self._show_features(scene)
         else:
@@ -78,7 +83,7 @@ class Curves:
     def stop(self) -> None:
         """Give up what is being computed; what there is stays."""
         self._sweep.cancel()
-        self._views.curvebar.show(done=-1.0)
+        self._views.curvebar.display(done=-1.0)
 
     def close(self) -> None:
         """The visitor left."""
@@ -100,12 +105,12 @@ class Curves:
         with unlocked():
             self._views.curve.show_directions(shown)
             self._views.curve.begin(missing)
-            self._views.curvebar.show(**self._wanted, done=0.0 if missing else -1.0)
+            self._views.curvebar.display(**self._wanted, done=0.0 if missing else -1.0)
         self._remaining = list(missing)
         self._sweep.start(scene, missing)
 
     def _show_features(self, scene: Scene) -> None:
-        self._views.curvebar.show(**self._wanted)
+        self._views.curvebar.display(**self._wanted)
         self._views.curve.features(stated_features() if self._wanted["features"] else [])
 
     def _report(self, progress: Progress) -> None:
@@ -127,9 +132,9 @@ class Curves:
             for direction, new in points.items():
                 self._views.curve.add(direction, new, direction in covers)
             for progress in buffer:
-                if progress.complete:
+                if progress.complete and self._key is not None:
                     self._computed[progress.direction] = self._key
-            self._views.curvebar.show(done=self._overall(buffer[-1]))
+            self._views.curvebar.display(done=self._overall(buffer[-1]))
 
     def _overall(self, progress: Progress) -> float:
         """Progress over all directions of this request."""

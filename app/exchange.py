@@ -35,14 +35,14 @@ class Exchange:
         self._page.views.header.tell(type="link", query=query)
 
     def _save(self, _: dict[str, Any]) -> None:
-        picture = self._page.session.picture
-        if picture is None:
-            raise BadInput("There is no settled picture to save yet; choose settled and wait for the first one.")
+        run = self._page.shown_run()
+        if run is None:
+            raise BadInput("There is no picture to save yet; wait for the first one.")
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "picture.h5"
-            save(picture.run, path)
+            save(run, path)
             content = path.read_bytes()
-        scene = picture.run.scene
+        scene = run.scene
         self._page.views.header.tell(type="file", name=f"{scene.name}-{scene.knobs['f']:g}Hz.h5", content=content)
 
     def _csv(self, message: dict[str, Any]) -> None:
@@ -54,11 +54,11 @@ class Exchange:
         measured = read_measured_csv(text)
         self._page.curves.measured(measured)
         name = str(message.get("name", "data"))[:60]
-        self._page.views.corner.show(understood=f"{name}: {measured.understood}")
+        self._page.views.corner.display(understood=f"{name}: {measured.understood}")
 
     def _too_large(self, _: dict[str, Any]) -> None:
         raise BadInput("The measurement is larger than 2 MB; a curve of frequency and force needs a few kB.")
 
     def _remove(self, _: dict[str, Any]) -> None:
         self._page.curves.measured(None)
-        self._page.views.corner.show(understood="")
+        self._page.views.corner.display(understood="")

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+
 from granchain_core import Cancelled
 
 _CORES = os.cpu_count() or 1

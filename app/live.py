@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import threading
 import time
+from collections import deque
 from dataclasses import dataclass
 
 from granchain_core import LiveChain, Run, Scene
+from granchain_core.live import joined
 
-from .frames import SAMPLES, Frames, LiveWindow
+from .frames import LIVE_PERIODS, SAMPLES, Frames, LiveWindow
 
 _LONGEST_STEP = 0.1
 """Seconds of viewing time one step may catch up: after a hidden tab the run goes on, it does not jump."""
@@ -35,6 +37,7 @@ class LiveRun:
         self._last: float | None = None
         self._owed = 0.0
         self._samples = 0
+        self._runs: deque[Run] = deque()
 
     def change(self, scene: Scene) -> None:
         """New knobs, taken over before the next sample."""
@@ -62,6 +65,10 @@ class LiveRun:
         self._last = time.perf_counter()
         return self.advance(int(self._owed))
 
+    def window_run(self) -> Run | None:
+        """The periods on the screen as one run, to be saved."""
+        return joined(list(self._runs)) if self._runs else None
+
     def advance(self, samples: int) -> LivePicture:
         """The window after `samples` more samples."""
         with self._lock:
@@ -72,8 +79,17 @@ class LiveRun:
         if reset:
             self._chain.reset()
             self._window = LiveWindow()
+            self._runs.clear()
             self._samples = 0
         self._owed = max(0.0, self._owed - samples)
         run = self._chain.advance(samples)
         self._samples += samples
+        self._remember(run)
         return LivePicture(self._window.add(run), run, self._samples / SAMPLES)
+
+    def _remember(self, run: Run) -> None:
+        if self._runs and self._runs[-1].displacement.shape[1] != run.displacement.shape[1]:
+            self._runs.clear()
+        self._runs.append(run)
+        while sum(len(piece.time) - 1 for piece in self._runs) > LIVE_PERIODS * SAMPLES and len(self._runs) > 1:
+            self._runs.popleft()

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import panel as pn
 
+from .compiling import COMPILER
 from .controller import Controller
-from .session import MODES, STARTS, Session
+from .session import Session
 from .share import decode
 
 
 def page() -> pn.Template:
     """A new page for a new visitor; the address may carry a shared scene."""
     pn.extension("katex")
+    document = pn.state.curdoc
+    if document is None:
+        raise RuntimeError("the page is made inside a request; serve it, do not call it")
     session, sentences = session_from_address(pn.state.location.search if pn.state.location else "")
-    controller = Controller(pn.state.curdoc, session)
+    COMPILER.prepare(session.scene)
+    controller = Controller(document, session)
     pn.config.exception_handler = controller.failed
     if sentences:
         controller.say(" ".join(sentences))
@@ -28,10 +33,7 @@ def session_from_address(query: str) -> tuple[Session, list[str]]:
         return session, []
     scene, extras, sentences = decode(query)
     session.scene = scene
-    for name, known in (("mode", MODES), ("start", STARTS)):
-        value = extras.get(name)
-        if value in known:
-            setattr(session, name, value)
-        elif value is not None:
-            sentences.append(f"The link's {name} {str(value)[:40]!r} is not one of {', '.join(known)}.")
+    session.mode = extras.get("mode", session.mode)
+    session.start = extras.get("start", session.start)
+    session.look = extras.get("look", session.look)
     return session, sentences

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field
 
 from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
+from granchain_core.scene import Bead
 
 MODES = ("settled", "live")
-STARTS = ("rest", "previous state")
+STARTS = ("rest", "previous")
 LOOKS = ("light", "dark", "projector")
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0)
 
@@ -23,10 +24,12 @@ class Session:
     scene: Scene = field(default_factory=lambda: scene("sec2"))
     mode: str = "settled"
     start: str = "rest"
+    look: str = "auto"
     speed: float = 1.0
     playing: bool = True
     picture: Settled | None = None
     sentence: str = ""
+    until_picture: bool = False
 
     def change(self, name: str, value: object) -> None:
         """Turn knob `name` to `value`."""
@@ -65,11 +68,6 @@ class Session:
         state = self.picture.state
         return state if len(state.displacement) == self.scene.knobs["N"] else None
 
-    def accept(self, picture: Settled) -> None:
-        """Keep `picture` as the last good one."""
-        self.picture = picture
-        self.sentence = ""
-
 
 def slider_range(current: Scene, name: str) -> tuple[float, float]:
     """The scene's range for a slider; where it has none, all that granchain accepts."""
@@ -77,6 +75,11 @@ def slider_range(current: Scene, name: str) -> tuple[float, float]:
         if knob == name:
             return low, high
     return QUANTITIES[name].low, QUANTITIES[name].high
+
+
+def rig_beads() -> tuple[Bead, ...]:
+    """The beads of the paper's experiment: what it states about its rig is drawn over scenes that have them."""
+    return scene("rig").pattern
 
 
 def _one_of(what: str, value: object, known: tuple[str, ...]) -> str:

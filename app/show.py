@@ -22,7 +22,7 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
         views.trains.left.yaxis.axis_label = f"time ({letter}s)"
         _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s")
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
-        views.badge.show(**settled_entries(picture), sentence="")
+        views.badge.display(**settled_entries(picture))
 
 
 def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
@@ -32,7 +32,7 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
         views.trains.left.yaxis.axis_label = "time (drive periods before now)"
         _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)
         views.curve.now(run.scene.knobs["f"], float(frames.output_force.max()))
-        views.badge.show(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
+        views.badge.display(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,

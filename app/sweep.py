@@ -43,7 +43,7 @@ def grid(scene: Scene, points: int) -> np.ndarray:
 
 def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
     """Where the curve needs more points: where it bends, and where the regime changes."""
-    points = sorted(points, key=lambda point: point.frequency)
+    points = sorted((p for p in points if np.isfinite(p.max_output_force)), key=lambda p: p.frequency)
     force = np.array([point.max_output_force for point in points])
     frequency = np.array([point.frequency for point in points])
     if len(points) < 4:

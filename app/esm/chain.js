@@ -178,6 +178,13 @@ export function render({ model }) {
   document.querySelector("#scale b").style.background =
     `linear-gradient(to right, ${model.state.palette.filter((_, i) => i % 15 === 0).join(",")})`;
 
+  const scale = document.getElementById("scale");
+  scale.addEventListener("click", () => {
+    const locked = scale.getAttribute("aria-pressed") !== "true";
+    scale.setAttribute("aria-pressed", String(locked));
+    model.send_msg({ do: "lock", value: locked });
+  });
+
   const measure = () => {
     drawing.measure(cursor.map.getBoundingClientRect(), cursor.gap);
     cursor.measure();

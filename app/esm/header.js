@@ -64,7 +64,7 @@ export function render({ model }) {
   segments.append(...modes);
   const start = chooser("where the steady state starts", "start", (value) => send({ do: "start", value }));
   start.add(new Option("from rest", "rest"));
-  start.add(new Option("from where it was", "previous state"));
+  start.add(new Option("from where it was", "previous"));
   const share = button(icon("share", "share"), "Link to this picture", () => send({ do: "share", origin: location.href }));
   const save = button(icon("save", "save"), "Save this picture as HDF5", () => send({ do: "save" }), "save");
   const help = button(icon("help"), "Help", () => toggle(helpBox), "icon");
@@ -117,6 +117,7 @@ export function render({ model }) {
     }
     drawPlay();
   };
+  if (model.state.look && model.state.look !== "auto") page.setLook(model.state.look, false);
   model.on("state", show);
   model.on("msg:custom", (message) => {
     if (message.type === "link") {

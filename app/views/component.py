@@ -36,7 +36,7 @@ class Component(JSComponent):
         """Send a message to this part in the browser."""
         self._send_msg(message)
 
-    def show(self, **changes: Any) -> None:
+    def display(self, **changes: Any) -> None:
         """Change some entries of `state`."""
         merged = {**self.state, **changes}
         if merged != self.state:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -130,7 +130,7 @@ class Curve:
 
     def add(self, direction: str, points: list[CurvePoint], covers: bool) -> None:
         """More points; once they cover the range the grey curve goes."""
-        self._points[direction] += points
+        self._points[direction] += [point for point in points if np.isfinite(point.max_output_force)]
         if covers:
             self._old[direction].data = {name: [] for name in _COLUMNS}
         self._rescale()
@@ -154,7 +154,7 @@ class Curve:
         self._now.data = {"frequency": [frequency] if force is not None else [],
                           "force": [force / factor] if force is not None else []}
 
-    def features(self, features: list[Feature]) -> None:
+    def features(self, features: Sequence[Feature]) -> None:
         """Vertical marks at what the paper states; they carry no force."""
         self._features.data = {
             "frequency": [f.frequency for f in features],
