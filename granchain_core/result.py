@@ -97,7 +97,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
     scene, scales = engine.lowered.scene, engine.lowered.scales
     index = first_sample + np.arange(len(samples.displacement))
     inside = np.mod(index, engine.samples)
-    tops = np.where(np.isfinite(engine.peaks[:, 0]), engine.peaks[:, 0], 0.0) * scales.force
+    tops = np.where(np.isfinite(engine.tops), engine.tops, 0.0) * scales.force
     return Run(
         scene=scene, samples=engine.samples,
         time=(index // engine.samples + inside / engine.samples) * scene.period,

@@ -13,6 +13,7 @@ from ..kernels.certified import run_certified
 from ..kernels.dop853 import ALL_STAGES, Dop853, Work
 from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.motion import place
+from ..kernels.peaks import ROWS, forget
 from ..lower import Lowered, lower
 from ..scene import Scene
 from .methods import METHODS, Setting
@@ -81,7 +82,7 @@ class Engine:
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
-        self.peaks = np.full((3, 3), -np.inf)
+        self.peaks = np.zeros(3 * ROWS)
         self.stop = new_stop() if stop is None else stop
         self.y = np.zeros(self.lowered.size)
         self._adaptive = METHODS[setting.method].adaptive
@@ -126,7 +127,7 @@ class Engine:
         if self._adaptive:
             self.work.scale[0] = max(1e-3, float(np.abs(self.y[1 : row - 1]).max()))
             self.work.scale[1] = max(1e-3, float(np.abs(self.y[row + 1 : 2 * row - 1]).max()))
-        sampling.forget_peaks(self.peaks)
+        self.forget_peaks()
 
     def place(self, from_velocity: bool = False) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
@@ -168,7 +169,12 @@ class Engine:
 
     def forget_peaks(self) -> None:
         """Watch for the largest forces afresh."""
-        sampling.forget_peaks(self.peaks)
+        forget(self.peaks)
+
+    @property
+    def tops(self) -> np.ndarray:
+        """The largest input, output and elastic output force since then, in scaled units."""
+        return self.peaks[::ROWS].copy()
 
     def periods(self, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:
         """Advance by whole periods from phase 0.
@@ -190,14 +196,14 @@ class Engine:
         lo, keep, row = self.lowered, self.empty_samples(2), self.lowered.row
         strobes[0] = self.y[:row], self.work.k[0, :row]
         for p in range(len(tops)):
-            sampling.forget_peaks(self.peaks)
+            self.forget_peaks()
             status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
                                       self.grid, self.grid, self.grid if watch else 0, keep, self.peaks,
                                       self.counts.array, self.stop)
             self.raise_for(status, p)
             strobes[p + 1] = self.y[:row], self.work.k[0, :row]
             if watch:
-                tops[p] = self.peaks[:, 0]
+                tops[p] = self.tops
 
     def raise_for(self, status: int, periods: float) -> None:
         """Turn a kernel's status into an outcome a student understands."""

@@ -12,12 +12,13 @@ from .effects.preload import overlap
 from .fixed_step import step
 from .jit import kernel, term
 from .motion import contact_force, copy, stored_energy
+from .peaks import ROWS, forget, watch
 
 #: Outcome of a kernel: 0 done, positive why it stopped.
 DONE, CANCELLED, NOT_FINITE, STEP_TOO_SMALL, CHATTER = 0, 1, 2, 3, 4
 
-#: Rows of a peaks array: input force, output force, its elastic part; columns: best, last, the one before.
-INPUT, OUTPUT, OUTPUT_ELASTIC = 0, 1, 2
+#: Where the memories of the three forces start in an array of peaks.
+INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
 
 
 class Samples(NamedTuple):
@@ -58,22 +59,6 @@ def _(balance, slots, row, y, dy, samples):
 
 
 @kernel
-def watch(peaks, q, value):
-    """Follow force q at equal steps; a maximum is the top of the parabola through its three highest values.
-
-    Across the jump of a dashpot force there is no parabola: both neighbours must be within a fifth.
-    """
-    last, before = peaks[q, 1], peaks[q, 2]
-    if value > peaks[q, 0]:
-        peaks[q, 0] = value
-    if last >= value and last > before and before > 0.8 * last and value > 0.8 * last:
-        top = last - (value - before) ** 2 / (8.0 * (before - 2.0 * last + value))
-        if top > peaks[q, 0]:
-            peaks[q, 0] = top
-    peaks[q, 1], peaks[q, 2] = value, last
-
-
-@kernel
 def watch_forces(slots, y, dy, e, peaks):
     """Follow input force, output force and its elastic part at one state."""
     last = e.size - 1
@@ -81,14 +66,6 @@ def watch_forces(slots, y, dy, e, peaks):
     watch(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
     d = positive_part(overlap(slots.preload, y, last))
     watch(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
-
-
-@kernel
-def forget_peaks(peaks):
-    """Start watching afresh."""
-    for q in range(peaks.shape[0]):
-        for i in range(peaks.shape[1]):
-            peaks[q, i] = -np.inf
 
 
 @kernel
@@ -120,14 +97,14 @@ def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts
     m = slots.chain.inverse_mass.size
     keep_strobe(y, stages.k[0], strobes[0])
     for p in range(tops.shape[0]):
-        forget_peaks(peaks)
+        forget(peaks)
         for j in range(n):
             step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, counts)
             watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p
         keep_strobe(y, stages.k[0], strobes[p + 1])
-        copy(peaks[:, 0], tops[p])
+        copy(peaks[::ROWS], tops[p])
         if stop[0] != 0:
             return CANCELLED, p + 1
     return DONE, tops.shape[0]

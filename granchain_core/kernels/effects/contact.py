@@ -7,12 +7,12 @@ Values     inverse_mass (N+2,) with 0 for driver and wall; stiffness (N+1,) of c
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from ..jit import kernel
+from ..simd import gate, root
 
 
 class Chain(NamedTuple):
@@ -25,16 +25,16 @@ class Chain(NamedTuple):
 @kernel
 def positive_part(overlap):
     """[δ]_+, written so that a NaN overlap stays NaN instead of cutting the chain there."""
-    return 0.0 if overlap <= 0.0 else overlap
+    return gate(overlap, overlap)
 
 
 @kernel
 def elastic_force(stiffness, d):
     """K d^{3/2} for an overlap d that is already non-negative."""
-    return stiffness * d * sqrt(d)
+    return stiffness * d * root(d)
 
 
 @kernel
 def elastic_energy(stiffness, d):
     """(2/5) K d^{5/2}."""
-    return 0.4 * stiffness * d * d * sqrt(d)
+    return 0.4 * stiffness * d * d * root(d)

@@ -10,10 +10,10 @@ Terms      damping, primitive, keep_primitive, velocity (absent: v = w)
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import NamedTuple
 
 from ..jit import term
+from ..simd import gate, load, root
 
 
 class LinearDashpot(NamedTuple):
@@ -45,17 +45,17 @@ def damping(law, d):
 
 @damping.of(LinearDashpot)
 def _(law, d):
-    return 0.0 if d <= 0.0 else law.coefficient
+    return gate(d, law.coefficient)
 
 
 @damping.of(Tsuji)
 def _(law, d):
-    return law.coefficient * sqrt(sqrt(d))
+    return law.coefficient * root(root(d))
 
 
 @damping.of(KuwabaraKono)
 def _(law, d):
-    return law.coefficient * sqrt(d)
+    return law.coefficient * root(d)
 
 
 @term
@@ -71,12 +71,12 @@ def _(law, d):
 
 @primitive.of(Tsuji)
 def _(law, d):
-    return 0.8 * law.coefficient * d * sqrt(sqrt(d))
+    return 0.8 * law.coefficient * d * root(root(d))
 
 
 @primitive.of(KuwabaraKono)
 def _(law, d):
-    return 2.0 / 3.0 * law.coefficient * d * sqrt(d)
+    return 2.0 / 3.0 * law.coefficient * d * root(d)
 
 
 @term
@@ -96,7 +96,38 @@ def shifted(law, inverse_mass, v, G, i):
     return v
 
 
+@term
+def lane_values(law):
+    """The law with the values of all lanes, read from its (1, 8) arrays."""
+    return None
+
+
+@lane_values.of(LinearDashpot)
+def _(law):
+    return LinearDashpot(load(law.coefficient, 0))
+
+
+@lane_values.of(Tsuji)
+def _(law):
+    return Tsuji(load(law.coefficient, 0))
+
+
+@lane_values.of(KuwabaraKono)
+def _(law):
+    return KuwabaraKono(load(law.coefficient, 0))
+
+
+@term
+def lane_velocity(law, w, inverse_mass, left, right):
+    """v = w + (G_left − G_right)/m of one bead in all lanes."""
+    return w
+
+
 for _law in LAWS:
+
+    @lane_velocity.of(_law)
+    def _(law, w, inverse_mass, left, right):
+        return w + inverse_mass * (left - right)
 
     @keep_primitive.of(_law)
     def _(law, G, c, d):

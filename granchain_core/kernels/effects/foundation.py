@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..jit import term
+from ..simd import load
 
 
 class Foundation(NamedTuple):
@@ -38,3 +39,14 @@ def foundation_energy(foundation, u):
 @foundation_energy.of(Foundation)
 def _(foundation, u):
     return 0.5 * foundation.stiffness * u * u
+
+
+@term
+def lane_foundation(foundation):
+    """The foundation with the stiffness of all lanes, read from its (1, 8) array."""
+    return None
+
+
+@lane_foundation.of(Foundation)
+def _(foundation):
+    return Foundation(load(foundation.stiffness, 0))

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import term
+from ..simd import load
 
 
 class Preload(NamedTuple):
@@ -28,3 +29,14 @@ def overlap(preload, y, c):
 @overlap.of(Preload)
 def _(preload, y, c):
     return y[c] - y[c + 1] + preload.static[c]
+
+
+@term
+def lane_overlap(preload, left, right, c):
+    """δ_c in all lanes from the displacements on its two sides."""
+    return left - right
+
+
+@lane_overlap.of(Preload)
+def _(preload, left, right, c):
+    return left - right + load(preload.static, c)

@@ -1,0 +1,114 @@
+"""A block of eight lanes: scenes are put into lanes, run together, and taken out with their strobes and forces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..errors import Cancelled
+from ..kernels import lanes as kernels
+from ..kernels.lanes import LANES, REMEMBERED
+from ..kernels.motion import place
+from ..kernels.peaks import ROWS
+from ..kernels.sampling import CANCELLED
+from ..lower import Lowered, lower
+from ..scene import Scene
+from .engine import State
+
+
+#: A period that no lane reaches.
+NEVER = int(np.iinfo(np.int64).max)
+
+
+def can_share_lanes(scene: Scene) -> bool:
+    """Whether lanes can run this scene: the tension cut needs all velocities before the forces, which lanes lack."""
+    return not (scene.has_dissipation and scene.tension == "cut")
+
+
+class LaneBlock:
+    """Eight places for scenes of one structure and one N, run by one thread."""
+
+    def __init__(self, example: Scene, stop: np.ndarray) -> None:
+        lowered = lower(example)
+        self.stop = stop
+        n, slots = example.N, lowered.slots
+        one = (1, LANES)
+        dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
+        self.lanes = kernels.Lanes(
+            inverse_mass=np.zeros((n + 2, LANES)), stiffness=np.zeros((n + 1, LANES)),
+            dissipation=None if dissipation is None else type(dissipation)(np.zeros(one)),
+            foundation=None if foundation is None else type(foundation)(np.zeros(one)),
+            preload=None if preload is None else type(preload)(np.zeros((n + 1, LANES))),
+            turn=np.zeros((2, LANES)), beta=np.zeros(one), h=np.zeros(one),
+        )
+        rows = 2 * (n + 2)
+        whole = [np.zeros(LANES, dtype=np.int64) for _ in range(5)]
+        self.state = kernels.LaneState(
+            y=np.zeros((rows, LANES)), acc=np.zeros((rows, LANES)), first=np.zeros((rows, LANES)),
+            second=np.zeros((rows, LANES)), phase=np.zeros((2, LANES)), peaks=np.zeros((3 * ROWS, LANES)),
+            steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4],
+            strobes=np.zeros((LANES, REMEMBERED, rows)), tops=np.zeros((LANES, REMEMBERED, 3)),
+        )
+        for lane in range(LANES):  # an empty lane runs the example, at rest, and is never looked at
+            self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
+
+    def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: int, look: int, earliest: int = 0) -> None:
+        """Start a scene in a lane from the scaled state y at phase 0, with `refine` times the live method's steps.
+
+        It is looked at after `look` periods, or from `earliest` on when it may have settled.
+        """
+        slots, lanes, state = lowered.slots, self.lanes, self.state
+        steps = refine * lowered.steps_per_period()
+        lanes.inverse_mass[:, lane], lanes.stiffness[:, lane] = slots.chain.inverse_mass, slots.chain.stiffness
+        for mine, its in ((lanes.dissipation, slots.dissipation), (lanes.foundation, slots.foundation),
+                          (lanes.preload, slots.preload)):
+            if mine is not None:
+                mine[0][:, lane] = its[0]
+        half = np.pi / steps
+        lanes.turn[:, lane] = np.cos(half), np.sin(half)
+        lanes.beta[0, lane], lanes.h[0, lane] = lowered.beta, lowered.period / steps
+        state.y[:, lane] = y
+        state.phase[:, lane] = 0.0, 1.0
+        state.peaks[:, lane] = 0.0
+        state.steps[lane] = state.left[lane] = steps
+        state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
+        state.strobes[lane, 0] = y
+
+    def run(self) -> tuple[int, bool]:
+        """Run until a lane should be looked at; its number, and whether it is finite."""
+        status, lane = kernels.run_lanes(self.lanes, self.state, self.stop)
+        if status == CANCELLED:
+            raise Cancelled
+        return int(lane), status == 0
+
+    def strobes(self, lane: int) -> np.ndarray:
+        """The remembered strobes of a lane in order, (P, 2, N), displacement and w in scaled units."""
+        run = int(self.state.periods[lane])
+        places = np.arange(max(0, run - REMEMBERED + 1), run + 1) % REMEMBERED
+        n = self.lanes.inverse_mass.shape[0]
+        return self.state.strobes[lane, places].reshape(len(places), 2, n)[:, :, 1:-1]
+
+    def tops(self, lane: int, periods: int) -> np.ndarray:
+        """Largest input, output and elastic output force of the last `periods` periods, in scaled units."""
+        run = int(self.state.periods[lane])
+        places = np.arange(max(1, run - min(periods, REMEMBERED) + 1), run + 1) % REMEMBERED
+        return self.state.tops[lane, places].max(axis=0)
+
+
+def state_of(lowered: Lowered, y: np.ndarray) -> State:
+    """The state in SI of a scaled (u, w) array at phase 0."""
+    slope, row, scales = np.zeros_like(y), lowered.row, lowered.scales
+    place(lowered.slots, 0.0, y.copy(), slope, lowered.forces(), False)
+    return State(y[1 : row - 1] * scales.length, slope[1 : row - 1] * scales.velocity)
+
+
+def scaled_state(lowered: Lowered, state: State) -> np.ndarray:
+    """The scaled (u, w) array of a state at phase 0."""
+    row, scales = lowered.row, lowered.scales
+    y: Any = np.zeros(2 * row)
+    y[1 : row - 1] = state.displacement / scales.length
+    y[row + 1 : 2 * row - 1] = state.velocity / scales.velocity
+    place(lowered.slots, 0.0, y, np.zeros_like(y), lowered.forces(), True)
+    y[0] = 0.0
+    return y

@@ -1,0 +1,53 @@
+"""The largest value of a force known at equal steps: the top of the quartic through five values around a maximum."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .jit import kernel
+from .simd import choose_peak, larger, load, store
+
+#: Rows of what is remembered of one force: the largest so far, then the last four values, newest first.
+ROWS = 5
+
+
+@kernel
+def quartic_top(a, b, c, d, e):
+    """Maximum near the middle of the quartic through five equally spaced values, after two Newton steps."""
+    first = (a - e + 8.0 * (d - b)) / 12.0
+    second = (16.0 * (b + d) - a - e - 30.0 * c) / 12.0
+    third = 0.5 * (e - a) + b - d
+    fourth = a + e + 6.0 * c - 4.0 * (b + d)
+    x = 0.0 - first / second
+    slope = first + x * (second + x * (0.5 * third + x * (fourth / 6.0)))
+    x = x - slope / (second + x * (third + x * (0.5 * fourth)))
+    return c + x * (first + x * (0.5 * second + x * (third / 6.0 + x * (fourth / 24.0))))
+
+
+@kernel
+def watch(peaks, row, value):
+    """Follow one force whose memory starts at peaks[row]."""
+    d, c, b, a = peaks[row + 1], peaks[row + 2], peaks[row + 3], peaks[row + 4]
+    best = max(peaks[row], value)
+    peaks[row] = max(best, choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value)))
+    peaks[row + 4], peaks[row + 3], peaks[row + 2], peaks[row + 1] = b, c, d, value
+
+
+@kernel
+def forget(peaks):
+    """Start watching afresh."""
+    for i in range(peaks.size):
+        peaks[i] = -np.inf if i % ROWS == 0 else 0.0
+
+
+@kernel
+def watch_lanes(peaks, row, value):
+    """Follow one force in all lanes; its memory starts at row `row` of a (rows, 8) array."""
+    d, c = load(peaks, row + 1), load(peaks, row + 2)
+    b, a = load(peaks, row + 3), load(peaks, row + 4)
+    top = choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value))
+    store(peaks, row, larger(larger(load(peaks, row), value), top))
+    store(peaks, row + 4, b)
+    store(peaks, row + 3, c)
+    store(peaks, row + 2, d)
+    store(peaks, row + 1, value)
