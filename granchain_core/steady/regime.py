@@ -22,6 +22,8 @@ _FAR = 1e-3
 #: A change this much smaller than the distance asked for is believed without an even rate: what slow mode there
 #: might be under it would have to decay a hundred times slower than anything seen.
 _DEEP = 1e-2
+#: A change over q periods that decays faster than this, per q periods, is going to zero and not to a longer orbit's.
+_APPROACHING = 0.97
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
 _SLOW_WINDOW, _SHRINKS = 100, 0.98
@@ -94,6 +96,7 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: fl
     Changes below `rounding` are the method's own and count as none.
     """
     states, run = normalised(strobes), len(strobes) - 1
+    approaching: list[int] = []
     for n in range(1, longest + 1):
         window = _window(n)
         if run < window + n:
@@ -107,6 +110,10 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: fl
             return Regime("periodic", n, _earlier_rate(states, n, rounding), rounding, run)
         if rate >= 1.0:
             continue
+        if any(n % q == 0 for q in approaching):
+            continue  # a shorter period is still being approached: this one's small change is that approach
+        if rate < _APPROACHING:
+            approaching.append(n)
         distance = recent * rate / (1.0 - rate)
         if distance <= SETTLED_DISTANCE and (even or recent <= _DEEP * SETTLED_DISTANCE):
             return _shortest(states, Regime("periodic", n, float(rate), float(distance), run))
