@@ -14,7 +14,7 @@ from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settlin
 from .compiling import CERTIFIED, COMPILER, LIVE, SENTENCE
 from .curves import Curves
 from .exchange import Exchange
-from .frames import SAMPLES
+from .frames import samples_for
 from .jobs import LatestWins, Stop
 from .live import LivePicture, LiveRun
 from .painter import Painter
@@ -46,7 +46,7 @@ class Controller:
             "painted": lambda m: self._painter.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene, "mode": self._mode,
             "start": self._start, "speed": self._speed, "playing": self._playing, "reset": self._reset,
-            "step": self._step, "look": self._look, "understood": lambda _: self.say(""),
+            "step": self._step, "look": self._look, "understood": self._understood,
             "lock": self._lock, "curve": self._curve,
             "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
             "curve-stop": lambda _: self.curves.stop(), **self.exchange.actions,
@@ -59,7 +59,7 @@ class Controller:
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
-            self.say(f"The page sent a request {str(name)[:40]!r} that granchain does not know; reload the page.")
+            self.say(f"The page sent a request {str(name)[:40]!r} that is not known here; reload the page.")
             return
         self._guarded(action, message)
 
@@ -77,22 +77,29 @@ class Controller:
         """Do something a little later."""
         self._document.add_timeout_callback(partial(self._guarded, action, *arguments), milliseconds)
 
-    def say(self, sentence: str, until_picture: bool = False) -> None:
-        """One sentence for the visitor, until the next valid action or picture; an empty one takes it away."""
+    def say(self, sentence: str) -> None:
+        """One sentence for the visitor, until the next valid action; an empty one takes it away."""
         self.session.sentence = sentence
-        self.session.until_picture = until_picture
-        self.views.badge.display(sentence=sentence)
+        self._show_sentences()
+
+    def note(self, notice: str) -> None:
+        """One sentence that the next picture takes away."""
+        self.session.notice = notice
+        self._show_sentences()
+
+    def _show_sentences(self) -> None:
+        self.views.badge.display(sentence=f"{self.session.sentence} {self.session.notice}".strip())
 
     def failed(self, error: Exception) -> None:
         """The last good picture stays, and one sentence says what happened."""
         if isinstance(error, BadInput):
             self.say(str(error))
         elif isinstance(error, NumbersFailed):
-            self.say(error.sentence, until_picture=True)
+            self.note(error.sentence)
         else:
             log.error("unexpected failure", exc_info=error)
-            self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture stays. "
-                     "Move the knob back or reset, and please report it.")
+            self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
+                     "stays. Move the knob back or reset, and please report it.")
 
     def close(self, session_context: object) -> None:
         """The visitor left."""
@@ -113,7 +120,7 @@ class Controller:
     def _settled(self, scene: Scene, stop: Stop) -> Iterator[Settled]:
         """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
         self._await_live_kernels(scene, stop)
-        pictures = settling(scene, start=self.session.previous_state(), samples=SAMPLES, stop=stop)
+        pictures = settling(scene, start=self.session.previous_state(), samples=samples_for(scene), stop=stop)
         yield next(pictures)
         if COMPILER.await_piece(scene, CERTIFIED, stop):
             yield from pictures
@@ -121,7 +128,7 @@ class Controller:
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
         if not COMPILER.has(scene, LIVE):
             COMPILER.ask(scene, CERTIFIED)
-            self.later(self.say, SENTENCE, True)
+            self.later(self.note, SENTENCE)
             COMPILER.await_piece(scene, LIVE, stop)
 
     def _live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
@@ -137,8 +144,8 @@ class Controller:
             return
         if isinstance(picture, Settled):
             self.session.picture = picture
-        if self.session.sentence and self.session.until_picture:
-            self.say("")
+        if self.session.notice:
+            self.note("")
         self._painter.offer(picture)
 
     def shown_run(self) -> Run | None:
@@ -162,6 +169,7 @@ class Controller:
 
     def _ready(self, message: dict[str, Any]) -> None:
         send_at_once(self._document)
+        self.views.trains.fit(bool(message.get("narrow")))
         self._look({"value": message.get("look")})
         self._new_scene()
 
@@ -178,8 +186,9 @@ class Controller:
 
     def _header(self) -> None:
         session = self.session
-        self.views.header.display(scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start,
-                               speeds=list(SPEEDS), speed=session.speed, playing=session.playing, look=session.look)
+        self.views.header.display(
+            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, look=session.look,
+            speeds=list(SPEEDS), speed=session.speed, playing=session.playing)
 
     def _describe(self) -> None:
         scene = self.session.scene
@@ -201,7 +210,8 @@ class Controller:
 
     def _echo(self, seq: object = None) -> None:
         scene = self.session.scene
-        self.views.knobs.tell(type="values", values=dict(scene.knobs), foundation=foundation_words(scene), seq=seq)
+        self.views.knobs.tell(type="values", seq=seq, values=dict(scene.knobs),
+                              foundation=foundation_words(scene))
 
     def _turned(self, name: str) -> None:
         self._compute()
@@ -254,7 +264,11 @@ class Controller:
     def _step(self, _: dict[str, Any]) -> None:
         if self._live is not None:
             self.session.playing = False
-            self._jobs.submit(partial(self._live_step, SAMPLES))
+            self._jobs.submit(partial(self._live_step, self._live.samples))
+
+    def _understood(self, _: dict[str, Any]) -> None:
+        self.session.notice = ""
+        self.say("")
 
     def _lock(self, message: dict[str, Any]) -> None:
         self.views.energy.locked = bool(message.get("value"))

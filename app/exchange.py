@@ -43,12 +43,12 @@ class Exchange:
             save(run, path)
             content = path.read_bytes()
         scene = run.scene
-        self._page.views.header.tell(type="file", name=f"{scene.name}-{scene.knobs['f']:g}Hz.h5", content=content)
+        self._page.views.header.tell(type="file", name=f"{scene.name}-{scene.f:g}Hz.h5", content=content)
 
     def _csv(self, message: dict[str, Any]) -> None:
         text = message.get("text")
         if not isinstance(text, str):
-            raise BadInput("The measurement must be the text of a CSV file: frequency, force and optional error.")
+            raise BadInput("The measurement must be the text of a CSV file: frequency, force, optional error.")
         if len(text) > _LARGEST_CSV:
             self._too_large(message)
         measured = read_measured_csv(text)

@@ -6,10 +6,13 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from granchain_core import Run
+from granchain_core import Run, Scene
 
-SAMPLES = 96
-"""Rows of a picture per drive period: smooth at 60 frames a second down to half a period a second."""
+_FEWEST, _MOST, _STEP = 96, 384, 48
+_PER_CONTACT_TIME = 1.5
+"""Rows while the contacts' own time 1/φ passes: a pulse stays on a bead for about three of these times."""
+_LARGEST = 60_000
+"""Values of one quantity in a picture; beyond it rows are left out, because nobody sees them."""
 
 LIVE_PERIODS = 4
 SETTLED_PERIODS = 3
@@ -39,6 +42,7 @@ def round_up(value: float) -> float:
 class Frames:
     """Rows in time, equally spaced; `time` in seconds or, when live, in drive periods before now."""
 
+    samples: int
     time: np.ndarray
     displacement: np.ndarray
     kinetic_energy: np.ndarray
@@ -59,7 +63,14 @@ class Frames:
         return self.displacement.shape[1]
 
 
-_SERIES = tuple(field.name for field in fields(Frames) if field.name != "time")
+_SERIES = tuple(field.name for field in fields(Frames) if field.name not in ("samples", "time"))
+
+
+def samples_for(scene: Scene) -> int:
+    """Rows per drive period: as many as the pulses need, which are short in a slow drive."""
+    rate = np.sqrt(scene.K * np.sqrt(scene.A0) / scene.bead(1).mass)
+    needed = _STEP * round(_PER_CONTACT_TIME * rate / scene.f / _STEP)
+    return int(min(max(needed, _FEWEST), _MOST))
 
 
 def settled_frames(run: Run) -> Frames:
@@ -67,15 +78,19 @@ def settled_frames(run: Run) -> Frames:
     rows = len(run.time)
     periods = max(1, round((rows - 1) / run.samples))
     copies = -(-SETTLED_PERIODS // periods)
-    index = np.concatenate([np.arange(rows - 1) for _ in range(copies)] + [np.array([rows - 1])])
-    time = np.arange(len(index)) / (run.samples * run.scene.knobs["f"])
-    return Frames(time, **{name: getattr(run, name)[index] for name in _SERIES})
+    values = copies * rows * run.displacement.shape[1]
+    stride = next((n for n in (1, 2, 3, 4) if values <= n * _LARGEST), 6)
+    index = np.concatenate([np.arange(0, rows - 1, stride) for _ in range(copies)] + [np.array([rows - 1])])
+    samples = run.samples // stride
+    time = np.arange(len(index)) / (samples * run.scene.f)
+    return Frames(samples, time, **{name: getattr(run, name)[index] for name in _SERIES})
 
 
 class LiveWindow:
     """The last few periods of a live run; every row knows how many drive periods ago it was."""
 
-    def __init__(self, periods: int = LIVE_PERIODS, samples: int = SAMPLES) -> None:
+    def __init__(self, samples: int, periods: int = LIVE_PERIODS) -> None:
+        self._samples = samples
         self._rows = periods * samples + 1
         self._time = -np.arange(self._rows)[::-1] / samples
         self._series: dict[str, np.ndarray] = {}
@@ -88,4 +103,4 @@ class LiveWindow:
             if old is None or old.shape[1:] != new.shape[1:]:
                 old = np.zeros((self._rows, *new.shape[1:]))
             self._series[name] = np.concatenate([old, new[1:]])[-self._rows:]
-        return Frames(self._time, **self._series)
+        return Frames(self._samples, self._time, **self._series)

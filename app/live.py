@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from granchain_core import LiveChain, Run, Scene
 from granchain_core.live import joined
 
-from .frames import LIVE_PERIODS, SAMPLES, Frames, LiveWindow
+from .frames import LIVE_PERIODS, Frames, LiveWindow, samples_for
 
 _LONGEST_STEP = 0.1
 """Seconds of viewing time one step may catch up: after a hidden tab the run goes on, it does not jump."""
@@ -29,14 +29,15 @@ class LiveRun:
     """One chain that keeps running; `step` is called from a worker thread, the rest from the page."""
 
     def __init__(self, scene: Scene) -> None:
-        self._chain = LiveChain(scene, samples=SAMPLES)
-        self._window = LiveWindow()
+        self.samples = samples_for(scene)
+        self._chain = LiveChain(scene, samples=self.samples)
+        self._window = LiveWindow(self.samples)
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None
         self._reset = False
         self._last: float | None = None
         self._owed = 0.0
-        self._samples = 0
+        self._shown = 0
         self._runs: deque[Run] = deque()
 
     def change(self, scene: Scene) -> None:
@@ -55,7 +56,7 @@ class LiveRun:
 
     def step(self, periods_per_second: float) -> LivePicture:
         """As many samples as viewing time has passed since the last step; in slow motion, the next one."""
-        rate = periods_per_second * SAMPLES
+        rate = periods_per_second * self.samples
         now = time.perf_counter()
         elapsed = 0.03 if self._last is None else min(now - self._last, _LONGEST_STEP)
         self._owed = min(self._owed, 1.0) + elapsed * rate
@@ -78,18 +79,18 @@ class LiveRun:
             self._chain.change(scene)
         if reset:
             self._chain.reset()
-            self._window = LiveWindow()
+            self._window = LiveWindow(self.samples)
             self._runs.clear()
-            self._samples = 0
+            self._shown = 0
         self._owed = max(0.0, self._owed - samples)
         run = self._chain.advance(samples)
-        self._samples += samples
+        self._shown += samples
         self._remember(run)
-        return LivePicture(self._window.add(run), run, self._samples / SAMPLES)
+        return LivePicture(self._window.add(run), run, self._shown / self.samples)
 
     def _remember(self, run: Run) -> None:
         if self._runs and self._runs[-1].displacement.shape[1] != run.displacement.shape[1]:
             self._runs.clear()
         self._runs.append(run)
-        while sum(len(piece.time) - 1 for piece in self._runs) > LIVE_PERIODS * SAMPLES and len(self._runs) > 1:
+        while sum(len(piece.time) - 1 for piece in self._runs) > LIVE_PERIODS * self.samples and len(self._runs) > 1:
             self._runs.popleft()

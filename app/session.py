@@ -29,7 +29,7 @@ class Session:
     playing: bool = True
     picture: Settled | None = None
     sentence: str = ""
-    until_picture: bool = False
+    notice: str = ""
 
     def change(self, name: str, value: object) -> None:
         """Turn knob `name` to `value`."""

@@ -231,6 +231,8 @@ export function render({ model }) {
     requestAnimationFrame(loop);
   };
   requestAnimationFrame(loop);
-  setTimeout(() => model.send_msg({ do: "ready", look: page.look() }), 0);
+  setTimeout(() => model.send_msg({
+    do: "ready", look: page.look(), narrow: matchMedia("(max-width: 820px)").matches,
+  }), 0);
   return canvas;
 }

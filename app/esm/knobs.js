@@ -24,7 +24,7 @@ const rounded = (value) => Number(value.toPrecision(4));
 const written = (value, factor) => {
   const shown = Number((value / factor).toPrecision(10));
   if (shown !== 0 && (Math.abs(shown) < 1e-3 || Math.abs(shown) >= 1e6)) return shown.toExponential().replace("e+", "e");
-  return String(Number(shown.toPrecision(7)));
+  return String(Number(shown.toPrecision(6)));
 };
 
 class Knob {
@@ -35,8 +35,8 @@ class Knob {
     this.el.className = "knob";
     this.el.dataset.knob = spec.name;
     const label = document.createElement("label");
-    label.title = spec.meaning;
-    label.innerHTML = `${spec.symbol || ""} <small>${spec.label.split(",")[0]}</small>`;
+    label.title = `${spec.label}: ${spec.meaning}`;
+    label.innerHTML = `${spec.symbol || ""} <small>${spec.short}</small>`;
     this.el.append(label);
     this.el.addEventListener("dblclick", (event) => {
       if (event.target.type === "text") return;

@@ -33,12 +33,16 @@ def regime_words(picture: Settled) -> str:
         f"{regime.name}, {regime.sentence}")
 
 
+def _duration(seconds: float) -> str:
+    return f"{seconds:.1f} s" if seconds >= 1.0 else f"{1e3 * seconds:.3g} ms"
+
+
 def run_entries(run: Run) -> dict[str, Any]:
     """Error, cost, method and effects of a run."""
     error = run.error_estimate
     return {
         "error": "no claim" if error is None else f"{error:.0e}".replace("e-0", "e-"),
-        "time": f"{1e3 * run.cost.wall_s:.1f} ms",
+        "time": _duration(run.cost.wall_s),
         "method": run.cost.method,
         "effects": list(run.scene.effects),
     }

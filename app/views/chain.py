@@ -10,7 +10,7 @@ from bokeh.palettes import Inferno256
 
 from granchain_core import Scene
 
-from ..frames import SAMPLES, Frames, prefixed
+from ..frames import Frames, prefixed
 from .component import Component, text
 
 
@@ -26,7 +26,7 @@ PALETTE = list(Inferno256)
 
 def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live: bool,
                    running: bool) -> dict[str, Any]:
-    """What the browser needs to draw the chain at every instant of `frames`; a running chain only has a now."""
+    """What the browser needs to draw the chain at every instant; a running chain only has a now."""
     factor, letter = prefixed(scale)
     rows = slice(-1, None) if running else slice(None)
     return {
@@ -36,7 +36,7 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live
         "rows": 1 if running else frames.rows,
         "window": frames.rows,
         "beads": frames.beads,
-        "samples": SAMPLES,
+        "samples": frames.samples,
         "radii": [bead.radius for bead in scene.beads],
         "foundation": scene.knobs["k"] > 0.0,
         "energy_high": scale,

@@ -93,7 +93,8 @@ class Curve:
                                  text_color=_MARK, x_offset=-3)
         plot.add_tools(HoverTool(renderers=[feature], line_policy="interp",
                                  tooltips=[("stated", "@label"), ("source", "@source")]))
-        self._bars = plot.segment("frequency", "low", "frequency", "high", source=self._measured, line_width=2)
+        self._bars = plot.segment("frequency", "low", "frequency", "high", source=self._measured,
+                                  line_width=2)
         self._dots = plot.scatter("frequency", "force", source=self._measured, marker="square", size=7,
                                   line_width=2)
         plot.add_tools(HoverTool(renderers=[self._dots], tooltips=[

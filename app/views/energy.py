@@ -24,7 +24,7 @@ class EnergyMap:
     def _build(self, time: Range1d) -> figure:
         plot = quiet_figure(GAP, GAP, y_range=time, x_range=Range1d(0.5, 11.5), x_axis_location="above")
         plot.yaxis.visible = False
-        plot.grid.grid_line_color = None
+        plot.grid.visible = False
         quiet_axis(plot.xaxis[0])
         plot.xaxis[0].axis_label = "bead"
         plot.xaxis[0].ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)
@@ -41,7 +41,7 @@ class EnergyMap:
             self._scale = needed
 
     def update(self, frames: Frames, time: np.ndarray, unit: str, live: bool) -> float:
-        """Show `frames`, whose rows are at `time` (in `unit`) on the shared axis; returns the scale in joules."""
+        """Show `frames`, whose rows are at `time` (in `unit`); returns the top of the scale in joules."""
         self._choose_scale(frames, live)
         factor, letter = prefixed(self._scale)
         step = float(time[1] - time[0])
@@ -56,6 +56,7 @@ class EnergyMap:
         self.figure.x_range.end = frames.beads + 0.5
         self.figure.xaxis[0].ticker.interval = max(1, round(frames.beads / 12))
         self._hover.tooltips = [
-            ("bead", "$x{0}"), ("time", f"$y{{0.000}} {unit}"), ("kinetic energy", f"@image{{0.000}} {letter}J"),
+            ("bead", "$x{0}"), ("time", f"$y{{0.000}} {unit}"),
+            ("kinetic energy", f"@image{{0.000}} {letter}J"),
         ]
         return self._scale

@@ -17,6 +17,9 @@ MORE = ("N", "F0", "wall", "dissipation", "tension")
 _SHOWN_IN = {"A0": (1e-6, "µm")}
 """Quantities that are read in another unit than SI: factor and unit."""
 
+_SHORT = {"D": "damping", "k": "foundation", "kappa": "k / (K√A₀)", "N": "beads", "F0": "preload"}
+"""Labels that fit beside a number; the whole one is a hover away."""
+
 _CUBIC = ("k", "kappa")
 """Knobs that start at zero and span decades: the slider's cube, fine near zero, where κ = 0.001 lies."""
 
@@ -49,7 +52,8 @@ def _spec(name: str, current: Scene) -> dict[str, Any]:
     quantity = QUANTITIES[name]
     factor, unit = _SHOWN_IN.get(name, (1.0, quantity.unit if quantity.unit != "1" else ""))
     spec: dict[str, Any] = {
-        "name": name, "symbol": quantity.symbol, "label": quantity.label, "meaning": quantity.meaning,
+        "name": name, "symbol": quantity.symbol, "label": quantity.label,
+        "short": _SHORT.get(name, quantity.label), "meaning": quantity.meaning,
         "unit": unit, "factor": factor, "choices": list(quantity.choices), "numeric": quantity.numeric,
         "whole": quantity.whole, "more": name in MORE, "step": quantity.step, "scale": quantity.scale,
     }

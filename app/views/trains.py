@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from bokeh.models import ColumnDataSource, LinearAxis, Range1d
+from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
 from bokeh.plotting import figure
 
 from ..frames import Frames, prefixed, round_up
 from .figures import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
+
+_WORDS = ("drive u₀", "input force", "output force")
+_SHORT = ("drive", "in", "out")
 
 
 class Trains:
@@ -16,7 +19,8 @@ class Trains:
     def __init__(self, time: Range1d) -> None:
         names = ("time", "drive", "input", "output", "elastic")
         self._source = ColumnDataSource({name: np.zeros(0) for name in names})
-        self._lines: list = []
+        self._lines: list[GlyphRenderer] = []
+        self._narrow = False
         self.left = self._left_figure(time)
         self.right = self._right_figure(time)
 
@@ -70,9 +74,16 @@ class Trains:
         self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
         self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)
         self.right.x_range.update(start=output_range[0] / out, end=output_range[1] / out)
-        self.left.xaxis[0].axis_label = f"drive u₀ ({drive_letter}m)"
-        self.left.xaxis[1].axis_label = f"input force ({push_letter}N)"
-        self.right.xaxis[0].axis_label = f"output force ({out_letter}N)"
+        words = _SHORT if self._narrow else _WORDS
+        self.left.xaxis[0].axis_label = f"{words[0]} ({drive_letter}m)"
+        self.left.xaxis[1].axis_label = f"{words[1]} ({push_letter}N)"
+        self.right.xaxis[0].axis_label = f"{words[2]} ({out_letter}N)"
+
+    def fit(self, narrow: bool) -> None:
+        """Fewer ticks and shorter words where there is little room."""
+        self._narrow = narrow
+        for axis in (*self.left.xaxis, *self.right.xaxis):
+            axis.ticker.desired_num_ticks = 1 if narrow else 3
 
     def thicken(self, factor: float) -> None:
         """Wider lines for the projector."""

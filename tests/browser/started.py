@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import socket
 import subprocess
@@ -30,12 +31,13 @@ def free_port() -> int:
 
 
 @contextmanager
-def dashboard(log: Path) -> Iterator[str]:
+def dashboard(log: Path, **environment: str) -> Iterator[str]:
     """The address of a dashboard that runs until the block ends."""
     port = free_port()
     code = f"from app.server import serve; serve(port={port})"
     with log.open("wb") as output:
-        process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output)
+        process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output,
+                                   env={**os.environ, **environment})
         try:
             address = f"http://127.0.0.1:{port}/"
             _wait_until_alive(process, address, log)
@@ -60,8 +62,8 @@ def _wait_until_alive(process: subprocess.Popen[bytes], address: str, log: Path)
 
 def launch(playwright: Playwright) -> Browser:
     """The system's Chromium, or the one playwright installed; without one this fails, it never skips."""
-    system = next((path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))),
-                  None)
+    names = ("chromium", "chromium-browser", "google-chrome")
+    system = next((path for name in names if (path := shutil.which(name))), None)
     if system is None and not Path(playwright.chromium.executable_path).exists():
         raise RuntimeError("The browser tests need Chromium: install the system's chromium package, "
                            "or run `playwright install chromium`.")

@@ -1,0 +1,81 @@
+"""One dashboard and one Chromium for all browser tests; every test opens a page of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+from started import dashboard, launch
+
+
+@pytest.fixture(scope="session")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of the running dashboard."""
+    with dashboard(tmp_path_factory.mktemp("dashboard") / "log") as url:
+        yield url
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    """A running Chromium."""
+    with sync_playwright() as playwright:
+        browser = launch(playwright)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
+    """Opens the dashboard; at the end no page may have complained or asked another host for anything."""
+    contexts = []
+    complaints: list[str] = []
+
+    def open_page(query: str = "", url: str = address, **options: Any) -> Page:
+        context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: message.type == "error" and complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: request.url.startswith((url, "data:", "blob:"))
+                or complaints.append(f"asked another host: {request.url}"))
+        page.add_init_script(RUNTIME)
+        page.goto(url + query)
+        page.wait_for_function("window.painted.length > 0", timeout=60_000)
+        return page
+
+    yield open_page
+    for context in contexts:
+        context.close()
+    assert complaints == []
+
+
+RUNTIME = """
+window.painted = [];
+document.addEventListener("DOMContentLoaded", () => {
+  if (window.granchain) granchain.on("painted", (event) => window.painted.push(event));
+});
+window.pixels = (id) => {
+  const find = (node) => {
+    for (const element of node.querySelectorAll("*")) {
+      if (element.tagName === "CANVAS") return element;
+      const inner = element.shadowRoot && find(element.shadowRoot);
+      if (inner) return inner;
+    }
+    return null;
+  };
+  const canvas = find(document.getElementById(id));
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  let sum = 0;
+  for (let i = 0; i < data.length; i += 7) sum = (sum * 31 + data[i]) >>> 0;
+  return sum;
+};
+// What a visitor's own script could do: another value in the next message of a knob.
+const send = WebSocket.prototype.send;
+WebSocket.prototype.send = function (data) {
+  if (window.forged !== undefined && typeof data === "string" && data.includes('["do","set"]'))
+    data = data.replace(/\\["value",[^\\]]*\\]/, `["value",${window.forged}]`);
+  send.call(this, data);
+};
+"""

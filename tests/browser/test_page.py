@@ -1,0 +1,221 @@
+"""The page as a visitor meets it, in a real browser on a really started server."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import pytest
+from playwright.sync_api import Browser, Page, expect
+from started import dashboard
+
+Visit = Callable[..., Page]
+
+
+def knob(page: Page, name: str) -> str:
+    """What stands in the number field of a knob."""
+    return page.locator(f'[data-knob="{name}"] input[type="text"]').input_value()
+
+
+def type_into(page: Page, name: str, text: str) -> None:
+    """Type a value and press Enter."""
+    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
+    field.fill(text)
+    field.press("Enter")
+
+
+def settled(page: Page) -> None:
+    """Wait until the certified picture is on the screen."""
+    page.wait_for_timeout(200)
+    expect(page.locator("#foot b")).not_to_contain_text("preview", timeout=20_000)
+
+
+def test_the_chain_moves(visit: Visit) -> None:
+    page = visit()
+    first = page.evaluate("pixels('chain')")
+    page.wait_for_timeout(400)
+    assert page.evaluate("pixels('chain')") != first
+    settled(page)
+    expect(page.locator("#foot")).to_contain_text("period 1")
+
+
+def test_pause_stops_the_chain_and_a_dragged_cursor_moves_it(visit: Visit) -> None:
+    page = visit()
+    settled(page)
+    page.get_by_role("button", name="Play or pause").click()
+    page.wait_for_timeout(200)
+    still = page.evaluate("pixels('chain')")
+    page.wait_for_timeout(300)
+    assert page.evaluate("pixels('chain')") == still
+    box = page.locator("#map").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 100, box["y"] + 120)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 100, box["y"] + 260)
+    page.mouse.up()
+    page.wait_for_timeout(200)
+    assert page.evaluate("pixels('chain')") != still
+
+
+def test_everything_is_in_view_without_scrolling(visit: Visit) -> None:
+    page = visit()
+    size = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+    assert size == [1280, 800]
+    foot = page.locator("#foot").bounding_box()
+    assert foot is not None and foot["y"] + foot["height"] <= 800
+
+
+@pytest.mark.parametrize("key", ["ArrowRight", "Shift+ArrowRight"])
+def test_a_slider_step_repaints_the_map(visit: Visit, key: str) -> None:
+    page = visit()
+    settled(page)
+    before, count = page.evaluate("[pixels('map'), painted.length]")
+    page.locator('[data-knob="f"] input[type="range"]').press(key)
+    page.wait_for_function(f"painted.length > {count}")
+    page.wait_for_timeout(100)
+    assert page.evaluate("pixels('map')") != before
+
+
+def test_fine_coarse_typed_and_back(visit: Visit) -> None:
+    page = visit()
+    slider = page.locator('[data-knob="f"] input[type="range"]')
+    slider.press("ArrowRight")
+    assert float(knob(page, "f")) == pytest.approx(340.1)
+    slider.press("Shift+ArrowRight")
+    assert float(knob(page, "f")) > 345
+    type_into(page, "f", "615")
+    assert knob(page, "f") == "615"
+    page.locator('[data-knob="f"] label').dblclick()
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("340")
+
+
+def test_k_shows_kappa_and_the_foundation_frequency(visit: Visit) -> None:
+    page = visit("?v=1&scene=rig")
+    assert float(knob(page, "kappa")) == pytest.approx(1e-3)
+    type_into(page, "k", "0")
+    expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("0")
+    expect(page.locator("#knobs .aside")).to_contain_text("none")
+
+
+def test_live_frames_advance(visit: Visit) -> None:
+    page = visit()
+    page.get_by_role("button", name="The run goes on").click()
+    page.wait_for_function("painted.filter((event) => event.live).length > 10")
+    count = page.evaluate("painted.length")
+    page.wait_for_timeout(2000)
+    frames = page.evaluate("painted.length") - count
+    # 20 a second are asked for on a quiet machine; a machine that runs tests is not quiet
+    assert frames >= 16
+    expect(page.locator("#foot b")).to_contain_text("live")
+
+
+def test_live_stops_when_paused_and_steps_by_one_period(visit: Visit) -> None:
+    page = visit()
+    page.get_by_role("button", name="The run goes on").click()
+    page.wait_for_function("painted.filter((event) => event.live).length > 10")
+    page.get_by_role("button", name="Play or pause").click()
+    page.wait_for_timeout(500)
+    count = page.evaluate("painted.length")
+    page.wait_for_timeout(400)
+    assert page.evaluate("painted.length") == count
+    page.get_by_role("button", name="One drive period on").click()
+    page.wait_for_function(f"painted.length > {count}")
+
+
+def test_a_click_on_the_curve_sets_the_frequency(visit: Visit) -> None:
+    page = visit()
+    box = page.locator("#curve").bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
+    page.wait_for_function("""() => {
+      const host = document.querySelector("#knobs > div").shadowRoot ?? document.querySelector("#knobs > div > *").shadowRoot;
+      return host.querySelector('[data-knob="f"] input[type="text"]').value !== "340";
+    }""")
+    assert 1000 < float(knob(page, "f")) < 2500
+
+
+def test_a_shared_link_brings_the_picture_back(visit: Visit) -> None:
+    page = visit()
+    type_into(page, "f", "615.3")
+    type_into(page, "D", "80")
+    page.get_by_role("button", name="Link to this picture").click()
+    page.wait_for_function("location.search.length > 1")
+    query = page.evaluate("location.search")
+    other = visit(query)
+    assert (knob(other, "f"), knob(other, "D")) == ("615.3", "80")
+
+
+def test_a_bad_field_of_a_link_is_told_and_the_others_count(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=615&D=lots")
+    expect(page.get_by_role("alert")).to_contain_text("lots")
+    assert knob(page, "f") == "615"
+
+
+@pytest.mark.parametrize("value", ["1e15", '{"type":"number","value":"nan"}', '"three"', "null", "[1]", "-5"])
+def test_wrong_values_get_their_sentence(visit: Visit, value: str) -> None:
+    page = visit()
+    settled(page)
+    regime = page.locator("#foot b").inner_text()
+    page.evaluate("value => { window.forged = value; }", value)
+    page.locator('[data-knob="f"] input[type="range"]').press("ArrowRight")
+    expect(page.get_by_role("alert")).to_contain_text("drive frequency")
+    assert page.locator("#foot b").inner_text() == regime
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("340")
+    page.evaluate("window.forged = undefined")
+    page.locator('[data-knob="f"] input[type="range"]').press("ArrowRight")
+    expect(page.get_by_role("alert")).to_be_hidden()
+
+
+def test_measured_data_is_read_strictly(visit: Visit) -> None:
+    page = visit("?v=1&scene=rig")
+    page.get_by_role("tab", name="data").click()
+    chosen = page.locator('input[type="file"]')
+    good = b"frequency_Hz,force_N,error_N\n40,5.5,0.4\n60,12.1,0.6\n"
+    chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": good})
+    expect(page.locator("#corner")).to_contain_text("2 points")
+    bad = b"frequency_Hz,force_N\n40,5.5\n60,twelve\n"
+    chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": bad})
+    expect(page.get_by_role("alert")).to_contain_text("Line 3")
+
+
+def test_the_picture_can_be_saved(visit: Visit, tmp_path: Path) -> None:
+    page = visit()
+    settled(page)
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save this picture").click()
+    path = tmp_path / download.value.suggested_filename
+    download.value.save_as(path)
+    with h5py.File(path) as file:
+        assert file["run/displacement"].shape[1] == 11
+
+
+def test_another_scene_can_be_opened(visit: Visit) -> None:
+    page = visit()
+    page.locator("select.scene").select_option("fig3b")
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("1130")
+    expect(page.locator("#foot b")).to_contain_text("period 3", timeout=20_000)
+
+
+def test_dark_on_a_dark_system(visit: Visit) -> None:
+    page = visit(color_scheme="dark")
+    assert page.evaluate("document.documentElement.dataset.look") == "dark"
+
+
+def test_a_phone_has_the_knobs_in_a_drawer(visit: Visit) -> None:
+    page = visit(viewport={"width": 390, "height": 844}, has_touch=True)
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    expect(page.locator("#side")).to_be_hidden()
+    page.get_by_role("button", name="Show the knobs").click()
+    expect(page.locator('[data-knob="f"] input[type="range"]')).to_be_visible()
+
+
+def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromium: Browser,
+                                                            tmp_path: Path) -> None:
+    with dashboard(tmp_path / "log", GRANCHAIN_CACHE=str(tmp_path / "cache")) as url:
+        page = chromium.new_page()
+        page.goto(url)
+        expect(page.get_by_role("alert")).to_contain_text("Compiling the kernels", timeout=10_000)
+        expect(page.locator("#foot b")).to_contain_text("period 1", timeout=90_000)
+        expect(page.get_by_role("alert")).to_be_hidden()
+        page.close()
