@@ -1,0 +1,65 @@
+"""One bead against a wall does what Hertz, Tsuji and the linear dashpot say in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from chains import Undriven
+
+from granchain_core.kernels.effects.dissipation import LinearDashpot, Tsuji
+
+#: Duration 3.2180655 (m*/K)^{2/5} v^{-1/5} and peak force 1.1432626 K^{2/5} m*^{3/5} v^{6/5}; both constants are
+#: known to eight digits, which is the tolerance 1e-7 below.
+DURATION, PEAK = 3.2180655, 1.1432626
+
+
+def impact(law, speed: float, stiffness: float = 1.0):
+    """(contact duration, largest overlap at half the Hertz duration, speed after / speed before) at the wall."""
+    hertz = DURATION * stiffness**-0.4 * speed**-0.2
+    chain = Undriven(1, law, 2.0 * hertz, 4, wall=stiffness)
+    kept = chain.run(np.array([speed]))
+    after = -kept.velocity[-1, 0]
+    # with the wall behind it the bead flies freely: its distance tells when it left
+    duration = chain.time[-1] + kept.displacement[-1, 0] / after
+    return duration, kept.displacement[1, 0], after / speed
+
+
+@pytest.mark.parametrize("stiffness", [1.0, 2.0**0.5, 2.0 * 2.0**0.5])
+@pytest.mark.parametrize("speed", [0.01, 1.0, 10.0])
+def test_hertz_collision_has_its_duration_peak_force_and_no_loss(speed, stiffness):
+    """A loss-free impact lasts as long and pushes as hard as Hertz's theory says, for every wall factor."""
+    duration, overlap, restitution = impact(Tsuji(0.0), speed, stiffness)
+    assert duration == pytest.approx(DURATION * stiffness**-0.4 * speed**-0.2, rel=1e-7)
+    assert stiffness * overlap**1.5 == pytest.approx(PEAK * stiffness**0.4 * speed**1.2, rel=1e-7)
+    assert restitution == pytest.approx(1.0, abs=1e-10)  # 1000 times the tolerance per step
+
+
+@pytest.mark.parametrize("restitution", [0.95, 0.7, 0.3])
+@pytest.mark.parametrize("speed", [0.1, 3.0])
+def test_tsuji_restitution_is_exact_and_independent_of_speed(speed, restitution):
+    """α = √5·(−ln e)/√(π² + ln² e) gives the restitution e at every speed (contact ends at zero overlap)."""
+    loss = -np.log(restitution)
+    alpha = np.sqrt(5.0) * loss / np.hypot(np.pi, loss)
+    _, _, found = impact(Tsuji(alpha), speed)
+    assert found == pytest.approx(restitution, rel=1e-9)  # exact formula; 1e4 times the tolerance per step
+
+
+def test_linear_dashpot_restitution_depends_on_one_number_to_first_order():
+    """e = 1 − 1.78783 L + O(L²) with L = D/(m^{3/5} K^{2/5} v^{1/5}): the slope at L → 0."""
+    small = np.array([1e-3, 2e-3])
+    lost = np.array([1.0 - impact(LinearDashpot(x), 1.0)[2] for x in small])
+    slope = 2.0 * lost[0] / small[0] - lost[1] / small[1]  # Richardson takes the O(L) of the slope away
+    assert slope == pytest.approx(1.78783, rel=1e-5)  # the constant has six digits; O(L²) = 1e-6
+    same = [impact(LinearDashpot(0.1 * v**0.2), v)[2] for v in (0.01, 1.0, 5.0)]
+    assert np.ptp(same) < 1e-9  # the same L at any speed; solver tolerance 1e-13
+
+
+@pytest.mark.parametrize("speed", [0.2, 1.0, 4.0])
+def test_bead_between_two_contacts_swings_as_the_pure_three_halves_oscillator(speed):
+    """x'' = −|x|^{3/2} sgn x has ω = 0.9546936 A^{1/4}: after one period the bead is where it began."""
+    amplitude = (1.25 * speed**2) ** 0.4  # v²/2 = (2/5) A^{5/2}
+    period = 2.0 * np.pi / (0.9546936 * amplitude**0.25)
+    kept = Undriven(1, LinearDashpot(0.0), period, 4, stands=True).run(np.array([speed]))
+    expected = amplitude * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
+    # ω is given to seven digits: in one period the bead is 2π·1e-7 of the amplitude off at most, and the solver adds none
+    np.testing.assert_allclose(kept.displacement[:, 0], expected, atol=1e-6 * amplitude)

@@ -1,0 +1,73 @@
+"""The product agrees with the independent extended-precision solution (tests/reference, another formulation, another
+method, 80-bit numbers) at every sample."""
+
+from __future__ import annotations
+
+import h5py
+import numpy as np
+import pytest
+from chains import reference, reference_names, reference_scene
+
+from app.cli import main
+from granchain_core import run
+
+#: The issue's own list: 1e-8 of the largest displacement, asked for 1e-9.
+REQUIRED = ["sec2-340", "sec2-340-founded", "sec2-500", "sec2-500-founded", "sec2-1130", "sec2-1130-founded", "rig-60"]
+OTHERS = sorted(set(reference_names()) - set(REQUIRED) - {"sec2-340-none"})
+
+
+def worst(found: np.ndarray, true: np.ndarray, first: int = 0) -> float:
+    """Largest difference from sample `first` on over the largest value."""
+    return float(np.abs(found[first:] - true[first:]).max() / np.abs(true).max())
+
+
+@pytest.mark.parametrize("name", REQUIRED + OTHERS)
+def test_displacements_agree_to_1e_8_at_every_sample(name):
+    """Asked for 1e-9 the run is within 1e-8 for every stored law, tension, preload, wall and foundation."""
+    true = reference(name)
+    assert true["record"]["samples_trusted"] == len(true["time"])
+    result = run(reference_scene(name).evolve(accuracy=1e-9), true["record"]["scene"]["periods"] * 0,
+                 record=true["record"]["scene"]["periods"], samples=8)
+    assert result.status == "done"
+    np.testing.assert_allclose(result.time, true["time"], rtol=1e-14)  # sample numbers over f: rounding only
+    assert worst(result.displacement, true["displacement"]) < 1e-8  # the issue's own figure
+    # velocities and forces are functions of the same state; 1e-8 times their order-one sensitivity
+    assert worst(result.velocity, true["velocity"], 1) < 2e-8
+    for found, stored in ((result.output_force, "output_total"), (result.output_force_elastic, "output_elastic"),
+                          (result.input_force, "input_total")):
+        assert worst(found, true[stored], 1) < 2e-8  # sample 0 is on the dashpot's jump, where the gate is a choice
+
+
+@pytest.mark.parametrize("name", REQUIRED + OTHERS)
+def test_asked_for_more_it_comes_nearer(name):
+    """At 1e-11 the difference is below 1e-11 too, the figure to which the reference itself is trusted."""
+    true = reference(name)
+    result = run(reference_scene(name).evolve(accuracy=1e-11), 0, true["record"]["scene"]["periods"], 8)
+    # Kuwabara–Kono has no dashpot at onset to calm what rounding does there: it ends near 3e-12 and says not reached
+    assert worst(result.displacement, true["displacement"]) < 1.1e-11
+    if name != "sec2-340-kuwabara-kono":
+        assert result.status == "done"
+
+
+def test_undamped_chain_is_as_near_as_its_instability_lets_it_be():
+    """Without damping errors grow 5e4-fold: trusted samples only, and the estimate says what was not reached."""
+    true = reference("sec2-340-none")
+    trusted = true["record"]["samples_trusted"]
+    assert 30 <= trusted < len(true["time"])
+    result = run(reference_scene("sec2-340-none").evolve(accuracy=1e-9), 0, 5, 8)
+    error = worst(result.displacement[:trusted], true["displacement"][:trusted])
+    # rounding 1e-16 and the smallest tolerance 1e-14, each times the sensitivity of 5e4 and some hundred events
+    assert error < 1e-7
+    assert error <= result.error_estimate
+
+
+def test_the_command_line_writes_the_same_numbers(tmp_path):
+    """`granchain run sec2 --set f=340 --periods 0 --record 20 --samples 8 --accuracy 1e-9 --out a.h5`, as it stands."""
+    out = tmp_path / "a.h5"
+    words = "run sec2 --set f=340 --periods 0 --record 20 --samples 8 --accuracy 1e-9 --out".split()
+    assert main([*words, str(out)]) == 0
+    true = reference("sec2-340")
+    with h5py.File(out) as file:
+        assert worst(file["run/displacement"][()], true["displacement"]) < 1e-8
+        assert worst(file["run/output_force"][()], true["output_total"], 1) < 2e-8
+        assert file.attrs["accuracy_reached"] <= 1e-9
