@@ -15,7 +15,7 @@ _LARGEST = 60_000
 """Values of one quantity in a picture; beyond it rows are left out, because nobody sees them."""
 
 LIVE_PERIODS = 4
-SETTLED_PERIODS = 3
+SETTLED_PERIODS, _REPEATED = 4, 4
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"),
              (1e-12, "p"), (1e-15, "f"), (1e-18, "a"))
@@ -30,12 +30,12 @@ def prefixed(largest: float) -> tuple[float, str]:
 
 
 def round_up(value: float) -> float:
-    """The next of 1, 1.5, 2, 3, 5, 7 times a power of ten: a scale that keeps still while a knob moves."""
+    """The next of a few steps in every decade: a scale that keeps still while a knob moves."""
     if not value > 0.0 or not np.isfinite(value):
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))
-    return float(next((step * power for step in (1.0, 1.5, 2.0, 3.0, 5.0, 7.0) if value <= step * power),
-                      10.0 * power))
+    steps = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0)
+    return float(next((step * power for step in steps if value <= step * power), 10.0 * power))
 
 
 @dataclass(frozen=True)
@@ -74,10 +74,15 @@ def samples_for(scene: Scene) -> int:
 
 
 def settled_frames(run: Run) -> Frames:
-    """Whole periods from time 0, the orbit repeated until a travelling wave can be followed by eye."""
+    """Whole periods from time 0, the orbit repeated until one sees that it repeats.
+
+    What is not periodic does not repeat, and is shown as it was recorded.
+    """
     rows = len(run.time)
     periods = max(1, round((rows - 1) / run.samples))
-    copies = -(-SETTLED_PERIODS // periods)
+    copies = max(-(-SETTLED_PERIODS // periods), 2 if periods <= _REPEATED else 1)
+    if run.regime.name != "periodic":
+        copies = 1
     values = copies * rows * run.displacement.shape[1]
     stride = next((n for n in (1, 2, 3, 4) if values <= n * _LARGEST), 6)
     index = np.concatenate([np.arange(0, rows - 1, stride) for _ in range(copies)] + [np.array([rows - 1])])

@@ -83,7 +83,7 @@ class Trains:
         """Fewer ticks and shorter words where there is little room."""
         self._narrow = narrow
         for axis in (*self.left.xaxis, *self.right.xaxis):
-            axis.ticker.desired_num_ticks = 1 if narrow else 3
+            axis.ticker.desired_num_ticks = 2 if narrow else 3
 
     def thicken(self, factor: float) -> None:
         """Wider lines for the projector."""

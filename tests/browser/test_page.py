@@ -129,7 +129,8 @@ def test_a_click_on_the_curve_sets_the_frequency(visit: Visit) -> None:
     assert box is not None
     page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
     page.wait_for_function("""() => {
-      const host = document.querySelector("#knobs > div").shadowRoot ?? document.querySelector("#knobs > div > *").shadowRoot;
+      const inner = document.querySelector("#knobs > div > *");
+      const host = document.querySelector("#knobs > div").shadowRoot ?? inner.shadowRoot;
       return host.querySelector('[data-knob="f"] input[type="text"]').value !== "340";
     }""")
     assert 1000 < float(knob(page, "f")) < 2500
