@@ -9,11 +9,13 @@ import numpy as np
 
 from ..errors import Cancelled, NumbersFailed
 from ..kernels import sampling
+from ..kernels.along import Along
 from ..kernels.certified import run_certified
 from ..kernels.dop853 import ALL_STAGES, Dop853, Work
 from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.motion import place
 from ..kernels.peaks import ROWS, forget
+from ..kernels.simd import LANES
 from ..lower import Lowered, lower
 from ..scene import Scene
 from .methods import METHODS, Setting
@@ -102,8 +104,28 @@ class Engine:
         theta = np.pi * np.arange(2 * n + 1) / n
         driver = lo.slots.driver
         self.drive = np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
-        self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), lo.forces())
+        self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), lo.forces(),
+                                self._along())
         self.grid = n
+
+    def _along(self) -> Along | None:
+        """The workspace of SIMD steps, where there is neither a tension cut nor an energy account in the equations."""
+        lo, slots = self.lowered, self.lowered.slots
+        if self.setting.method != "rk4-split" or slots.tension is not None or slots.balance is not None:
+            return None
+        blocks = -(-lo.row // LANES)
+
+        def padded(values: np.ndarray) -> np.ndarray:
+            return np.pad(values, (0, blocks * LANES - len(values))).reshape(blocks, LANES)
+
+        def empty(rows: int) -> np.ndarray:
+            return np.zeros((rows, LANES))
+
+        preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
+        return Along(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
+                     now=empty(2 * blocks), before=empty(2 * blocks), acc=empty(2 * blocks), first=empty(2 * blocks),
+                     second=empty(2 * blocks), gap=empty(blocks), slope=empty(blocks), elastic=empty(blocks),
+                     signs=np.zeros(blocks, dtype=np.int64))
 
     def _prepare_adaptive(self) -> None:
         lo = self.lowered

@@ -28,12 +28,16 @@ class Rk4Split(NamedTuple):
 
 
 class Stages(NamedTuple):
-    """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays."""
+    """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays.
+
+    `along` is the workspace of steps with SIMD along the chain (along.py), None where the scene or method cannot.
+    """
 
     k: np.ndarray
     stage: np.ndarray
     end: np.ndarray
     forces: Any
+    along: Any
 
 
 #: More contacts than this many changing in one step: the rest of the step is taken whole.

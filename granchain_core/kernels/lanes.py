@@ -16,8 +16,8 @@ from .effects.dissipation import damping, lane_values, lane_velocity, primitive
 from .effects.foundation import lane_foundation, pull_back
 from .effects.preload import lane_overlap
 from .jit import kernel
-from .peaks import ROWS, watch_lanes
-from .sampling import CANCELLED, DONE, INPUT, NOT_FINITE, OUTPUT, OUTPUT_ELASTIC
+from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, watch_lanes
+from .sampling import CANCELLED, DONE, NOT_FINITE
 from .simd import LANES, load, store
 
 #: Strobes remembered of each lane.

@@ -10,6 +10,9 @@ from .simd import choose_peak, larger, load, store
 #: Rows of what is remembered of one force: the largest so far, then the last four values, newest first.
 ROWS = 5
 
+#: Where the memories of the three forces start in an array of peaks.
+INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
+
 
 @kernel
 def quartic_top(a, b, c, d, e):
@@ -28,8 +31,12 @@ def quartic_top(a, b, c, d, e):
 def watch(peaks, row, value):
     """Follow one force whose memory starts at peaks[row]."""
     d, c, b, a = peaks[row + 1], peaks[row + 2], peaks[row + 3], peaks[row + 4]
-    best = max(peaks[row], value)
-    peaks[row] = max(best, choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value)))
+    if value > peaks[row]:
+        peaks[row] = value
+    if b < c and c >= d:
+        top = choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value))
+        if top > peaks[row]:
+            peaks[row] = top
     peaks[row + 4], peaks[row + 3], peaks[row + 2], peaks[row + 1] = b, c, d, value
 
 

@@ -6,19 +6,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .along import smooth_steps
 from .effects.balance import Balance, account_ends
 from .effects.contact import elastic_force, positive_part
 from .effects.preload import overlap
 from .fixed_step import step
 from .jit import kernel, term
-from .motion import contact_force, copy, stored_energy
-from .peaks import ROWS, forget, watch
+from .motion import contact_force, copy, motion, stored_energy
+from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, forget, watch
 
 #: Outcome of a kernel: 0 done, positive why it stopped.
 DONE, CANCELLED, NOT_FINITE, STEP_TOO_SMALL, CHATTER = 0, 1, 2, 3, 4
-
-#: Where the memories of the three forces start in an array of peaks.
-INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
 
 
 class Samples(NamedTuple):
@@ -86,6 +84,23 @@ def keep_strobe(y, dy, strobe):
 
 
 @kernel
+def advance(method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts):
+    """Take `count` steps from step index j of the period: along the chain while no contact changes, else one by one."""
+    done = 0
+    while done < count:
+        smooth = smooth_steps(stages.along, slots, drive, j + done, count - done, h, y, peaks)
+        if smooth > 0:
+            done += smooth
+            counts[0] += smooth
+            counts[1] += 4 * smooth
+            motion(slots, drive[2 * (j + done), 0], drive[2 * (j + done), 1], y, stages.k[0], stages.forces)
+        if done < count:
+            step(method, slots, drive, j + done, (j + done) * dtheta, dtheta, h, y, stages, counts)
+            watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+            done += 1
+
+
+@kernel
 def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts, stop):
     """Run whole periods with a fixed-step method, keeping the state and the largest forces of each.
 
@@ -98,9 +113,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts
     keep_strobe(y, stages.k[0], strobes[0])
     for p in range(tops.shape[0]):
         forget(peaks)
-        for j in range(n):
-            step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, counts)
-            watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+        advance(method, slots, drive, 0, n, dtheta, h, y, stages, peaks, counts)
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p
         keep_strobe(y, stages.k[0], strobes[p + 1])
@@ -123,10 +136,8 @@ def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples,
     watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
     keep(slots, 0, y, stages.k[0], stages.forces.e, samples)
     for row in range(1, samples.displacement.shape[0]):
-        for _ in range(stride):
-            step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, counts)
-            watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
-            j = 0 if j + 1 == n else j + 1
+        advance(method, slots, drive, j, stride, dtheta, h, y, stages, peaks, counts)
+        j = 0 if j + stride == n else j + stride
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, row
         keep(slots, row, y, stages.k[0], stages.forces.e, samples)

@@ -114,6 +114,45 @@ def store(typingctx, array, row, value):
     return types.void(array, types.intp, vector), codegen
 
 
+def _neighbour(first: int):
+    """An intrinsic that takes lanes first, first + 1, … of two registers laid side by side."""
+
+    @intrinsic
+    def shifted(typingctx, left, right):
+        def codegen(context, builder, sig, args):
+            mask = ir.Constant(ir.VectorType(ir.IntType(32), LANES), list(range(first, first + LANES)))
+            return builder.shuffle_vector(args[0], args[1], mask)
+
+        return vector(vector, vector), codegen
+
+    return shifted
+
+
+#: from_left(before, here): every lane's left neighbour; from_right(here, ahead): every lane's right neighbour.
+from_left, from_right = _neighbour(LANES - 1), _neighbour(1)
+
+
+@intrinsic
+def with_first(typingctx, value, first):
+    """The vector with another number in its first lane."""
+
+    def codegen(context, builder, sig, args):
+        return builder.insert_element(args[0], args[1], ir.Constant(ir.IntType(32), 0))
+
+    return vector(vector, types.float64), codegen
+
+
+@intrinsic
+def positive_mask(typingctx, value):
+    """One bit a lane: whether it is above zero."""
+
+    def codegen(context, builder, sig, args):
+        above = builder.fcmp_ordered(">", args[0], ir.Constant(_VECTOR, [0.0] * LANES))
+        return builder.zext(builder.bitcast(above, ir.IntType(LANES)), ir.IntType(64))
+
+    return types.int64(vector), codegen
+
+
 @intrinsic
 def _vector_root(typingctx, value):
     def codegen(context, builder, sig, args):
