@@ -1,4 +1,4 @@
-"""The command line: serve, scenes, warm, run, curve.
+"""The command line: serve, scenes, warm, run, curve, accuracy.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled. With --json one object goes to stdout and nothing else; progress goes to stderr.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import sys
 import threading
 from collections.abc import Callable, Sequence
@@ -52,6 +53,10 @@ def _parser() -> _Parser:
     run.add_argument("--samples", type=int, default=96, metavar="S", help="samples a period")
     run.add_argument("--method", metavar="M", help="integration method instead of the one accuracy chooses")
     run.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
+    accuracy = command("accuracy", "what accuracy costs: error against time for every method")
+    accuracy.add_argument("scene", metavar="SCENE")
+    accuracy.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
+    accuracy.add_argument("--json", action="store_true", help="print one JSON object on stdout")
     curve = _scene_command(command("curve", "resonance curve: largest forces over frequency"))
     curve.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
     curve.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
@@ -73,7 +78,7 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
     """The scene that SCENE, --set and --accuracy describe."""
     changes: dict[str, str] = {}
     settings = list(arguments.set)
-    if arguments.accuracy is not None:
+    if getattr(arguments, "accuracy", None) is not None:
         settings.append(f"accuracy={arguments.accuracy}")
     for setting in settings:
         name, equals, value = setting.partition("=")
@@ -240,11 +245,32 @@ def _curve(arguments: argparse.Namespace) -> None:
 
 
 def _null(value: float) -> float | None:
-    """A number, or null where there is none; NaN is no JSON."""
-    return value if value == value else None
+    """A number, or null where there is none; NaN and infinity are no JSON."""
+    return value if math.isfinite(value) else None
 
 
-_COMMANDS = {"serve": _serve, "scenes": _scenes, "warm": _warm, "run": _run, "curve": _curve}
+def _accuracy(arguments: argparse.Namespace) -> None:
+    from granchain_core.accuracy import work_precision
+
+    chosen = chosen_scene(arguments)
+    progress = _progress if sys.stderr.isatty() else None
+    found = in_background(lambda stop: work_precision(chosen, stop, progress))
+    if arguments.json:
+        rows = [{**asdict(row), "error": _null(row.error)} for row in found.rows]
+        _show_json({"reference": {"method": found.reference, "agreement": _null(found.agreement)}, "rows": rows})
+        return
+    print(f"reference: {found.reference}; a second one agrees to {found.agreement:.1e}")
+    print("method          setting                   error     time_ms  evaluations")
+    for row in found.rows:
+        print(f"{row.method:14}  {row.setting:22}  {row.error:8.1e}  {1e3 * row.wall_s:8.2f}  {row.rhs:11d}")
+    for error in (1e-3, 1e-6, 1e-9):
+        best = found.cheapest(error)
+        if best is not None:
+            print(f"the cheapest way to {error:g} is {best.method}, {best.setting}: {1e3 * best.wall_s:.2f} ms")
+
+
+_COMMANDS = {"serve": _serve, "scenes": _scenes, "warm": _warm, "run": _run, "curve": _curve,
+             "accuracy": _accuracy}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -14,6 +14,7 @@ from ..kernels.certified import run_certified
 from ..kernels.dop853 import ALL_STAGES, Dop853, Work
 from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.motion import place
+from ..kernels.naive import Rk4Naive, VerletNaive, naive_motion
 from ..kernels.peaks import ROWS, forget
 from ..kernels.simd import LANES
 from ..lower import Lowered, lower
@@ -25,7 +26,7 @@ _PEAK_SPACING = 0.25
 #: The certified method makes at least this many steps a period, so that the driver is never stepped over.
 _LEAST_STEPS = 16
 
-_FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split}
+_FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split, "rk4-naive": Rk4Naive, "verlet-naive": VerletNaive}
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +81,8 @@ class Engine:
 
     def __init__(self, scene: Scene, setting: Setting, samples: int = 1, balance: bool = False,
                  stop: np.ndarray | None = None) -> None:
-        self.lowered: Lowered = lower(scene, balance)
+        self._in_uv = METHODS[setting.method].variables == "uv"
+        self.lowered: Lowered = lower(scene, balance and not self._in_uv)
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
@@ -153,8 +155,12 @@ class Engine:
 
     def place(self, from_velocity: bool = False) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
-        theta = 2 * np.pi * self.grid_index / self.grid
-        place(self.lowered.slots, theta, self.y, self.work.k[0], self.work.forces, from_velocity)
+        theta, slots = 2 * np.pi * self.grid_index / self.grid, self.lowered.slots
+        if self._in_uv:
+            v0 = slots.driver.amplitude * slots.driver.beta * np.cos(theta)
+            naive_motion(slots, slots.driver.amplitude * np.sin(theta), v0, self.y, self.work.k[0], self.work.forces)
+        else:
+            place(slots, theta, self.y, self.work.k[0], self.work.forces, from_velocity)
 
     @property
     def state(self) -> State:

@@ -16,7 +16,6 @@ from ..lower import Lowered, lower
 from ..scene import Scene
 from .engine import State
 
-
 #: A period that no lane reaches.
 NEVER = int(np.iinfo(np.int64).max)
 

@@ -2,8 +2,8 @@
 
 Every scene starts in a lane at a coarse step. When its regime is decided its place is filled with the next one; a
 periodic scene comes back once more at a third of the step, from where it settled, for as many periods as its decay needs to
-forget the coarse orbit. The forces of the finer run are given, with their change as error estimate. What is not
-periodic within the budget is told apart by its Lyapunov exponent, as everywhere.
+forget the coarse orbit. The forces of the finer run are given, with their change as error estimate. What is
+not periodic within the budget is told apart by its Lyapunov exponent, as everywhere.
 """
 
 from __future__ import annotations

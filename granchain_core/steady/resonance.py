@@ -17,7 +17,7 @@ from ..result import Run
 STRONG = 0.7
 #: A push ends where the force falls below this part of the largest push.
 _ENDED = 0.05
-#: A frequency belongs to a peak (valley) if its force has gone less than this part of the way to the next valley (peak).
+#: A frequency belongs to a peak (valley) if its force is less than this part of the way from it to the next valley.
 _NEAR = 0.35
 #: A peak or valley of the curve stands out if it differs from both neighbouring extrema by this part of the larger.
 _STANDS_OUT = 0.1
