@@ -28,8 +28,8 @@ from .scene import Scene
 _STEP = 0.2
 #: RK4's stability limit on the negative real axis is 2.78; half of it for the fastest dashpot mode 4λ/m.
 _DASHPOT_LIMIT = 1.39
-#: More steps than this in one drive period are refused: one period would take longer than a minute.
-MOST_STEPS = 200_000_000
+#: More steps than this in one drive period are refused: one period would take a good part of a minute.
+MOST_STEPS = 50_000_000
 
 
 @dataclass(frozen=True)

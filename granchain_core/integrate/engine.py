@@ -26,6 +26,9 @@ _PEAK_SPACING = 0.25
 #: The certified method makes at least this many steps a period, so that the driver is never stepped over.
 _LEAST_STEPS = 16
 
+#: Steps in a period up to which the driver's motion is tabulated.
+_LARGEST_TABLE = 200_000
+
 _FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split, "rk4-naive": Rk4Naive, "verlet-naive": VerletNaive}
 
 
@@ -103,7 +106,8 @@ class Engine:
         n = self.setting.steps_per_period(lo, self.samples)
         self.method: Any = _FIXED[self.setting.method](n)
         self.h = lo.period / n
-        theta = np.pi * np.arange(2 * n + 1) / n
+        # the table is the faster way, but a period of many steps would not fit into memory
+        theta = np.pi * np.arange(2 * n + 1 if n <= _LARGEST_TABLE else 0) / n
         driver = lo.slots.driver
         self.drive = np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
         self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), lo.forces(),

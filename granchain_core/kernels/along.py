@@ -15,6 +15,7 @@ from .effects.contact import elastic_force, positive_part
 from .effects.dissipation import LAWS, damping, primitive
 from .effects.foundation import pull_back
 from .effects.preload import lane_overlap
+from .fixed_step import drive_displacement, drive_velocity
 from .jit import kernel, term
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from .simd import LANES, from_left, from_right, load, positive_mask, splat, store, with_first
@@ -42,31 +43,32 @@ class Along(NamedTuple):
 
 
 @term
-def smooth_steps(along, slots, drive, j, count, h, y, peaks):
+def smooth_steps(along, slots, drive, j, count, dtheta, h, y, peaks):
     """Take up to `count` steps from half-step index 2j of the drive; how many were taken. Absent: none."""
     return 0
 
 
 @smooth_steps.of(Along)
-def _(along, slots, drive, j, count, h, y, peaks):
+def _(along, slots, drive, j, count, dtheta, h, y, peaks):
     now, before, blocks = along.now, along.before, along.inverse_mass.shape[0]
     m = slots.chain.inverse_mass.size
     unpack(y, m, now, blocks)
     done = 0
     while True:
         i = 2 * (j + done)
-        changed = first_stage(along, slots, drive[i, 0], h)
+        changed = first_stage(along, slots, drive_displacement(slots, drive, i, dtheta), h)
         if done > 0:
             if changed:
                 pack(before, blocks, y, m)
                 return done - 1
-            watch_ends(slots, along, drive[i, 1], peaks)
+            watch_ends(slots, along, drive_velocity(slots, drive, i, dtheta), peaks)
         if done == count:
             pack(now, blocks, y, m)
             return done
-        later_stage(along, slots, drive[i + 1, 0], along.first, along.second, h, 0.5, 1.0 / 3.0)
-        later_stage(along, slots, drive[i + 1, 0], along.second, along.first, h, 1.0, 1.0 / 3.0)
-        later_stage(along, slots, drive[i + 2, 0], along.first, along.second, h, 0.0, 1.0 / 6.0)
+        middle, end = drive_displacement(slots, drive, i + 1, dtheta), drive_displacement(slots, drive, i + 2, dtheta)
+        later_stage(along, slots, middle, along.first, along.second, h, 0.5, 1.0 / 3.0)
+        later_stage(along, slots, middle, along.second, along.first, h, 1.0, 1.0 / 3.0)
+        later_stage(along, slots, end, along.first, along.second, h, 0.0, 1.0 / 6.0)
         for b in range(2 * blocks):
             store(before, b, load(now, b))
             store(now, b, load(along.acc, b))

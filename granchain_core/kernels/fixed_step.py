@@ -1,6 +1,7 @@
 """Fixed-step methods: classical Runge–Kutta of order 4 in w, plain or with its step split at contact events.
 
-The drive phase comes from an integer step count: `drive` holds (u_0, v_0) at every half step of one period.
+The drive phase comes from an integer step count: `drive` holds (u_0, v_0) at every half step of one period, or is
+empty where a period has so many steps that the table would not fit, and the driver is asked instead.
 """
 
 from __future__ import annotations
@@ -44,6 +45,18 @@ class Stages(NamedTuple):
 _MOST_SPLITS = 64
 #: Events nearer to the step's ends than this fraction are not worth a split.
 _NEAR_END = 1e-6
+
+
+@kernel
+def drive_displacement(slots, drive, i, dtheta):
+    """u_0 at half-step index i of the period."""
+    return drive[i, 0] if drive.shape[0] > 0 else driver_displacement(slots.driver, 0.5 * dtheta * i)
+
+
+@kernel
+def drive_velocity(slots, drive, i, dtheta):
+    """v_0 at half-step index i of the period."""
+    return drive[i, 1] if drive.shape[0] > 0 else driver_velocity(slots.driver, 0.5 * dtheta * i)
 
 
 @kernel
@@ -118,27 +131,36 @@ def step(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
     raise NotImplementedError
 
 
+@kernel
+def whole_step(slots, drive, j, dtheta, h, y, stages):
+    """One RK4 step from half-step index 2j to stages.end; returns the driver's displacement and velocity there."""
+    ua, va = drive_displacement(slots, drive, 2 * j + 1, dtheta), drive_velocity(slots, drive, 2 * j + 1, dtheta)
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
+    rk4(slots, ua, va, ub, vb, h, y, stages)
+    return ub, vb
+
+
 @step.of(Rk4)
 def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
-    rk4(slots, drive[2 * j + 1, 0], drive[2 * j + 1, 1], drive[2 * j + 2, 0], drive[2 * j + 2, 1], h, y, stages)
+    ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
     for i in range(y.size):
         y[i] = stages.end[i]
-    motion(slots, drive[2 * j + 2, 0], drive[2 * j + 2, 1], y, stages.k[0], stages.forces)
+    motion(slots, ub, vb, y, stages.k[0], stages.forces)
     counts[0] += 1
     counts[1] += 4
 
 
 @step.of(Rk4Split)
 def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
-    rk4(slots, drive[2 * j + 1, 0], drive[2 * j + 1, 1], drive[2 * j + 2, 0], drive[2 * j + 2, 1], h, y, stages)
+    ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
     counts[0] += 1
     counts[1] += 4
     if any_change(slots, y, stages.end):
-        split_rest(slots, theta, dtheta, drive[2 * j + 2, 0], drive[2 * j + 2, 1], h, y, stages, counts)
+        split_rest(slots, theta, dtheta, ub, vb, h, y, stages, counts)
     else:
         for i in range(y.size):
             y[i] = stages.end[i]
-        motion(slots, drive[2 * j + 2, 0], drive[2 * j + 2, 1], y, stages.k[0], stages.forces)
+        motion(slots, ub, vb, y, stages.k[0], stages.forces)
 
 
 @kernel

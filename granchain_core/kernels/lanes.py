@@ -22,6 +22,8 @@ from .simd import LANES, load, store
 
 #: Strobes remembered of each lane.
 REMEMBERED = 432
+#: Steps after which the stop flag is asked at the latest.
+_PATIENCE = 4096
 #: Longest period looked for when a lane is screened, and the relative change that makes it worth a look.
 SCREENED, SMALL_CHANGE = 16, 1e-6
 
@@ -174,8 +176,8 @@ def end_period(state, lane):
 def run_lanes(lanes, state, stop):
     """Run until a lane should be looked at; returns (status, lane)."""
     while True:
-        count = state.left[0]
-        for lane in range(1, LANES):
+        count = _PATIENCE
+        for lane in range(LANES):
             count = min(count, state.left[lane])
         lane_steps(lanes, state, count)
         found = -1

@@ -14,7 +14,7 @@ from .effects.dissipation import damping
 from .effects.foundation import pull_back
 from .effects.preload import overlap
 from .effects.tension import NoTension
-from .fixed_step import step
+from .fixed_step import drive_displacement, drive_velocity, step
 from .jit import kernel, term
 
 
@@ -63,7 +63,8 @@ def naive_motion(slots, u0, v0, y, dy, forces):
 @step.of(Rk4Naive)
 def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
     k, stage, forces = stages.k, stages.stage, stages.forces
-    ua, va, ub, vb = drive[2 * j + 1, 0], drive[2 * j + 1, 1], drive[2 * j + 2, 0], drive[2 * j + 2, 1]
+    ua, va = drive_displacement(slots, drive, 2 * j + 1, dtheta), drive_velocity(slots, drive, 2 * j + 1, dtheta)
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
     for i in range(y.size):
         stage[i] = y[i] + 0.5 * h * k[0, i]
     naive_motion(slots, ua, va, stage, k[1], forces)
@@ -86,7 +87,8 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         y[i] += h * y[m + i]
-    naive_motion(slots, drive[2 * j + 2, 0], drive[2 * j + 2, 1], y, k[0], stages.forces)
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
+    naive_motion(slots, ub, vb, y, k[0], stages.forces)
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         k[0, i] = y[m + i]

@@ -10,13 +10,17 @@ from .along import smooth_steps
 from .effects.balance import Balance, account_ends
 from .effects.contact import elastic_force, positive_part
 from .effects.preload import overlap
-from .fixed_step import step
+from .fixed_step import drive_displacement, drive_velocity, step
 from .jit import kernel, term
 from .motion import contact_force, copy, motion, stored_energy
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, forget, watch
 
 #: Outcome of a kernel: 0 done, positive why it stopped.
 DONE, CANCELLED, NOT_FINITE, STEP_TOO_SMALL, CHATTER = 0, 1, 2, 3, 4
+
+
+#: Steps after which the stop flag is asked at the latest.
+_PATIENCE = 4096
 
 
 class Samples(NamedTuple):
@@ -84,16 +88,21 @@ def keep_strobe(y, dy, strobe):
 
 
 @kernel
-def advance(method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts):
-    """Take `count` steps from step index j of the period: along the chain while no contact changes, else one by one."""
+def advance(method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts, stop):
+    """Take `count` steps from step index j of the period: along the chain while no contact changes, else one by one.
+
+    The stop flag is asked often enough to end within milliseconds; the steps are then incomplete.
+    """
     done = 0
-    while done < count:
-        smooth = smooth_steps(stages.along, slots, drive, j + done, count - done, h, y, peaks)
+    while done < count and stop[0] == 0:
+        smooth = smooth_steps(stages.along, slots, drive, j + done, min(count - done, _PATIENCE), dtheta, h, y, peaks)
         if smooth > 0:
             done += smooth
             counts[0] += smooth
             counts[1] += 4 * smooth
-            motion(slots, drive[2 * (j + done), 0], drive[2 * (j + done), 1], y, stages.k[0], stages.forces)
+            i = 2 * (j + done)
+            u0, v0 = drive_displacement(slots, drive, i, dtheta), drive_velocity(slots, drive, i, dtheta)
+            motion(slots, u0, v0, y, stages.k[0], stages.forces)
         if done < count:
             step(method, slots, drive, j + done, (j + done) * dtheta, dtheta, h, y, stages, counts)
             watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
@@ -113,13 +122,13 @@ def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts
     keep_strobe(y, stages.k[0], strobes[0])
     for p in range(tops.shape[0]):
         forget(peaks)
-        advance(method, slots, drive, 0, n, dtheta, h, y, stages, peaks, counts)
+        advance(method, slots, drive, 0, n, dtheta, h, y, stages, peaks, counts, stop)
+        if stop[0] != 0:
+            return CANCELLED, p
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p
         keep_strobe(y, stages.k[0], strobes[p + 1])
         copy(peaks[::ROWS], tops[p])
-        if stop[0] != 0:
-            return CANCELLED, p + 1
     return DONE, tops.shape[0]
 
 
@@ -136,11 +145,11 @@ def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples,
     watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
     keep(slots, 0, y, stages.k[0], stages.forces.e, samples)
     for row in range(1, samples.displacement.shape[0]):
-        advance(method, slots, drive, j, stride, dtheta, h, y, stages, peaks, counts)
+        advance(method, slots, drive, j, stride, dtheta, h, y, stages, peaks, counts, stop)
         j = 0 if j + stride == n else j + stride
+        if stop[0] != 0:
+            return CANCELLED, row
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, row
         keep(slots, row, y, stages.k[0], stages.forces.e, samples)
-        if stop[0] != 0:
-            return CANCELLED, row + 1
     return DONE, samples.displacement.shape[0]

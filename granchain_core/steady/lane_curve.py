@@ -1,8 +1,8 @@
 """Many steady states at once by lanes: settle coarsely, then finely, and let the difference be the error.
 
 Every scene starts in a lane at a coarse step. When its regime is decided its place is filled with the next one; a
-periodic scene comes back once more at a third of the step, from where it settled, for as many periods as its decay needs to
-forget the coarse orbit. The forces of the finer run are given, with their change as error estimate. What is
+periodic scene comes back once more at a third of the step, from where it settled, for as many periods as its decay
+needs to forget the coarse orbit. The forces of the finer run are given, with their change as error estimate. What is
 not periodic within the budget is told apart by its Lyapunov exponent, as everywhere.
 """
 
@@ -22,7 +22,7 @@ from ..lower import Lowered, lower
 from ..scene import Scene
 from .lyapunov import exponents
 from .regime import Regime, changes, find_period, irregular, normalised, slowing
-from .settle import MOST_PERIODS, SLOW_PERIODS
+from .settle import MOST_PERIODS, MOST_STEPS, SLOW_PERIODS
 
 #: Looks at a slow lane, every so many periods; and blocks and periods a block for the Lyapunov exponent.
 _SLOW_CHECK, _BLOCKS, _BLOCK = 400, 10, 20
@@ -108,9 +108,14 @@ def _job_or_none(scenes: Iterator[Scene]) -> _Job | None:
 def _start(block: LaneBlock, lane: int, job: _Job) -> None:
     """Put a job into a lane: the coarse run to be looked at when it may have settled, the finer one at its end."""
     if job.coarse is None:
-        block.put(lane, job.lowered, job.y, 1, MOST_PERIODS)
+        block.put(lane, job.lowered, job.y, 1, min(MOST_PERIODS, _affordable_periods(job)))
         return
     block.put(lane, job.lowered, job.y, _FINER, _fine_periods(job.coarse[0]), NEVER)
+
+
+def _affordable_periods(job: _Job) -> int:
+    """Periods of the coarse run that the budget of steps allows."""
+    return max(2, MOST_STEPS // job.lowered.steps_per_period())
 
 
 def _idle(block: LaneBlock, lane: int, job: _Job) -> None:
@@ -135,10 +140,12 @@ def _look(block: LaneBlock, lane: int, job: _Job) -> LaneResult | _Job | None:
     if regime.name == "periodic":
         assert regime.period is not None
         return replace_job(job, block, lane, (regime, block.tops(lane, regime.period)))
+    if run >= _affordable_periods(job):
+        return _unsettled_result(block, lane, job)
     if run >= MOST_PERIODS and (run >= SLOW_PERIODS or not slowing(block.strobes(lane))):
         return _irregular_result(block, lane, job)
     if run >= block.state.look[lane]:
-        block.state.look[lane] = run + _SLOW_CHECK
+        block.state.look[lane] = min(run + _SLOW_CHECK, _affordable_periods(job))
     block.state.earliest[lane] = run + max(2, run // 8)
     return None
 
@@ -173,6 +180,14 @@ def _irregular_result(block: LaneBlock, lane: int, job: _Job) -> LaneResult:
         regime = irregular(found, strobes, run + len(later))
     tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
     return LaneResult(job.scene, tops, regime, None, engine.state)
+
+
+def _unsettled_result(block: LaneBlock, lane: int, job: _Job) -> LaneResult:
+    """What a lane has come to when its budget of steps is spent."""
+    run = int(block.state.periods[lane])
+    tops = block.tops(lane, min(run, _IRREGULAR_PERIODS)) * job.lowered.scales.force
+    state = state_of(job.lowered, block.state.y[:, lane])
+    return LaneResult(job.scene, tops, Regime("unsettled", None, None, None, run), None, state)
 
 
 def _failed(job: _Job) -> LaneResult:

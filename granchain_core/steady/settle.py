@@ -27,6 +27,8 @@ MOST_PERIODS = 400
 SLOW_PERIODS, _SLOW_CHECK = 4000, 400
 #: Strobes looked at when the regime is decided.
 _REMEMBERED = 420
+#: Steps of the live method after which settling is given up in any case: about half a minute.
+MOST_STEPS = 100_000_000
 #: Samples a period of a picture.
 PICTURE_SAMPLES = 96
 #: Periods shown of a motion that is not periodic.
@@ -63,6 +65,7 @@ class Settling:
         self.engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
         self.stop = self.engine.stop
         self.engine.start(start if start is not None else rest(scene))
+        self._steps = self.engine.grid
         first = self.engine.state
         scales = self.engine.lowered.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
@@ -77,7 +80,7 @@ class Settling:
             if per_period and left < per_period:
                 return
             chunk = 2 if per_period == 0.0 else max(1, int(min(self._until_next_look(), left / per_period)))
-            chunk = min(chunk, self._next_stop() - self.regime.periods_run)
+            chunk = min(chunk, self._next_stop() - self.regime.periods_run, max(1, self._steps_left() // self._steps))
             began = time.perf_counter()
             strobes, tops = self.engine.periods(chunk)
             per_period = (time.perf_counter() - began) / chunk
@@ -85,6 +88,9 @@ class Settling:
             self.tops = np.concatenate([self.tops, tops])
             self.regime = find_period(self.strobes[-_REMEMBERED:])
             self.regime = replace(self.regime, periods_run=len(self.strobes) - 1)
+
+    def _steps_left(self) -> int:
+        return MOST_STEPS - self.engine.counts.steps
 
     def _until_next_look(self) -> float:
         """Periods until the regime is looked for again: an eighth of those run, so that looking costs little."""
@@ -99,12 +105,17 @@ class Settling:
     def finished(self) -> bool:
         """Whether the regime is known or running on would not help."""
         run = self.regime.periods_run
-        if self.regime.name == "periodic" or run >= SLOW_PERIODS:
+        if self.regime.name == "periodic" or run >= SLOW_PERIODS or self._steps_left() <= 0:
             return True
         return run >= MOST_PERIODS and run % _SLOW_CHECK == 0 and not slowing(self.strobes)
 
     def decide_irregular(self) -> None:
-        """Tell chaotic from quasi-periodic from not settled; the engine goes on meanwhile."""
+        """Tell chaotic from quasi-periodic from not settled; the engine goes on meanwhile.
+
+        Where the budget of steps is spent the chain stays unsettled: a Lyapunov exponent would cost as much again.
+        """
+        if self._steps_left() <= 0:
+            return
         found, strobes = exponents(self.engine, _BLOCKS, _BLOCK)
         self.strobes = np.concatenate([self.strobes, strobes])
         self.regime = find_period(self.strobes[-_REMEMBERED:])
