@@ -1,0 +1,49 @@
+# granchain's dashboard:  docker build -t granchain .  then  docker run --rm -p 5006:5006 granchain
+#
+# Numba compiles for the kind of CPU it runs on and keeps that in the name of its cache files. The cache that is baked in
+# is therefore used by machines of the builder's kind; on another kind the kernels are compiled at the first visit
+# (seconds, once per container) into the same folder, which the user may write to. Build on the kind you run on, or
+# keep the folder with a volume:  -v granchain-kernels:/opt/granchain/kernels
+
+FROM python:3.12-slim AS build
+
+ENV PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1
+RUN python -m venv /opt/granchain/venv
+ENV PATH=/opt/granchain/venv/bin:$PATH
+
+WORKDIR /opt/granchain/source
+COPY pyproject.toml README.md LICENSE ./
+COPY granchain_core ./granchain_core
+COPY app ./app
+COPY assets ./assets
+RUN pip install .
+
+# Numba's cache holds the place and the time of the source it was made from. The place: work from another folder, so that
+# the installed package is compiled and not the source beside it. The time: image layers keep whole seconds only, so the
+# sources get whole seconds before they are compiled.
+WORKDIR /opt/granchain
+ENV GRANCHAIN_CACHE=/opt/granchain/kernels
+RUN python -c "import granchain_core, os, pathlib; [os.utime(path, (int(path.stat().st_mtime),) * 2) \
+        for path in pathlib.Path(granchain_core.__file__).parent.rglob('*.py')]" \
+    && granchain warm
+
+
+FROM python:3.12-slim
+
+RUN useradd --create-home --uid 10001 granchain
+COPY --from=build /opt/granchain/venv /opt/granchain/venv
+COPY --from=build --chown=granchain:granchain /opt/granchain/kernels /opt/granchain/kernels
+
+ENV PATH=/opt/granchain/venv/bin:$PATH \
+    GRANCHAIN_CACHE=/opt/granchain/kernels \
+    PYTHONUNBUFFERED=1
+USER granchain
+WORKDIR /home/granchain
+EXPOSE 5006
+
+HEALTHCHECK --interval=10s --timeout=5s --start-period=30s --retries=3 \
+    CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:5006/liveness', timeout=4)"]
+
+# Browsers may reach it as localhost; for another name add --allow-websocket-origin NAME:PORT to the run command.
+ENTRYPOINT ["granchain", "serve", "--address", "0.0.0.0", "--port", "5006", \
+            "--allow-websocket-origin", "localhost:5006", "--allow-websocket-origin", "127.0.0.1:5006"]
