@@ -41,7 +41,9 @@ class Curve:
 
     def __init__(self, choose: Callable[[float], None]) -> None:
         self._points: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
+        self._before: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
         self._scale = (1.0, "")
+        self._shown: tuple[float, float | None] = (0.0, None)
         self._place: tuple[object, ...] = ()
         self._now = ColumnDataSource({"frequency": [], "force": []})
         self._measured = ColumnDataSource({"frequency": [], "force": [], "low": [], "high": []})
@@ -124,32 +126,33 @@ class Curve:
         """New curves will come: the present ones become the grey ones."""
         for name in _DASHES:
             if name in directions:
-                if self._points[name]:
-                    self._old[name].data = dict(self._new[name].data)
+                self._before[name] = self._points[name] or self._before[name]
                 self._points[name] = []
-            self._draw(name)
+                self._draw_before(name)
+                self._draw(name)
 
     def add(self, direction: str, points: list[CurvePoint], covers: bool) -> None:
         """More points; once they cover the range the grey curve goes."""
         self._points[direction] += [point for point in points if np.isfinite(point.max_output_force)]
         if covers:
-            self._old[direction].data = {name: [] for name in _COLUMNS}
+            self._before[direction] = []
+            self._draw_before(direction)
         self._rescale()
         self._draw(direction)
 
     def clear(self) -> None:
         """No curve: another scene was opened."""
         for name in _DASHES:
-            self._points[name] = []
-            self._old[name].data = {column: [] for column in _COLUMNS}
+            self._points[name], self._before[name] = [], []
             self._draw(name)
+            self._draw_before(name)
 
     def now(self, frequency: float, force: float | None) -> None:
         """The current point; without a force only its frequency."""
-        place = (frequency, None if force is None else float(f"{force:.3g}"), self._scale)
-        if place == self._place:
+        shown = frequency, None if force is None else float(f"{force:.3g}")
+        if (shown, self._scale) == self._place:
             return
-        self._place = place
+        self._shown, self._place = shown, (shown, self._scale)
         self._current.location = frequency
         factor = self._scale[0]
         self._now.data = {"frequency": [frequency] if force is not None else [],
@@ -178,7 +181,8 @@ class Curve:
                                "low": (force - error) / factor, "high": (force + error) / factor}
 
     def _rescale(self) -> None:
-        forces = [p.max_output_force for points in self._points.values() for p in points]
+        curves = (*self._points.values(), *self._before.values())
+        forces = [point.max_output_force for points in curves for point in points]
         if self._measurement is not None:
             forces.append(float(np.max(self._measurement.force)))
         high = round_up(max(forces, default=1.0))
@@ -187,6 +191,8 @@ class Curve:
             self._scale = scale
             for name in _DASHES:
                 self._draw(name)
+                self._draw_before(name)
+            self.now(*self._shown)
             if self._measurement is not None:
                 self.measured(self._measurement)
         self.figure.y_range.end = 1.05 * high / scale[0]
@@ -196,9 +202,15 @@ class Curve:
             self._features.data = {**self._features.data, "top": top}
 
     def _draw(self, direction: str) -> None:
-        points = sorted(self._points[direction], key=lambda point: point.frequency)
+        self._new[direction].data = self._columns(self._points[direction])
+
+    def _draw_before(self, direction: str) -> None:
+        self._old[direction].data = self._columns(self._before[direction])
+
+    def _columns(self, points: list[CurvePoint]) -> dict[str, Any]:
+        points = sorted(points, key=lambda point: point.frequency)
         looks = [REGIMES[regime_key(point)] for point in points]
-        columns: dict[str, Any] = {
+        return {
             "frequency": [point.frequency for point in points],
             "force": [point.max_output_force / self._scale[0] for point in points],
             "marker": [look[0] for look in looks],
@@ -206,4 +218,3 @@ class Curve:
             "size": [look[2] for look in looks],
             "regime": [point.regime.sentence for point in points],
         }
-        self._new[direction].data = columns

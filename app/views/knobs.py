@@ -17,7 +17,8 @@ MORE = ("N", "F0", "wall", "dissipation", "tension")
 _SHOWN_IN = {"A0": (1e-6, "µm")}
 """Quantities that are read in another unit than SI: factor and unit."""
 
-_SHORT = {"D": "damping", "k": "foundation", "kappa": "k / (K√A₀)", "N": "beads", "F0": "preload"}
+_SHORT = {"D": "damping", "k": "foundation", "kappa": "k / (K√A₀)", "N": "beads", "F0": "preload",
+          "wall": "wall", "dissipation": "law", "tension": "tension"}
 """Labels that fit beside a number; the whole one is a hover away."""
 
 _CUBIC = ("k", "kappa")
@@ -52,7 +53,7 @@ def _spec(name: str, current: Scene) -> dict[str, Any]:
     quantity = QUANTITIES[name]
     factor, unit = _SHOWN_IN.get(name, (1.0, quantity.unit if quantity.unit != "1" else ""))
     spec: dict[str, Any] = {
-        "name": name, "symbol": quantity.symbol, "label": quantity.label,
+        "name": name, "symbol": "" if quantity.choices else quantity.symbol, "label": quantity.label,
         "short": _SHORT.get(name, quantity.label), "meaning": quantity.meaning,
         "unit": unit, "factor": factor, "choices": list(quantity.choices), "numeric": quantity.numeric,
         "whole": quantity.whole, "more": name in MORE, "step": quantity.step, "scale": quantity.scale,
