@@ -151,7 +151,19 @@ class Engine:
         self.y[:] = 0.0
         self.y[1 : row - 1] = state.displacement / lo.scales.length
         self.y[row + 1 : 2 * row - 1] = state.velocity / lo.scales.velocity
-        self.place(from_velocity=True)
+        self._begin(from_velocity=True)
+
+    def start_scaled(self, x: np.ndarray) -> None:
+        """Put the chain into a scaled state (2N,) of displacements, then w, at phase 0."""
+        row, n = self.lowered.row, self.lowered.beads
+        self.grid_index = 0
+        self.y[:] = 0.0
+        self.y[1 : row - 1], self.y[row + 1 : 2 * row - 1] = x[:n], x[n:]
+        self._begin(from_velocity=False)
+
+    def _begin(self, from_velocity: bool) -> None:
+        row = self.lowered.row
+        self.place(from_velocity)
         if self._adaptive:
             self.work.scale[0] = max(1e-3, float(np.abs(self.y[1 : row - 1]).max()))
             self.work.scale[1] = max(1e-3, float(np.abs(self.y[row + 1 : 2 * row - 1]).max()))

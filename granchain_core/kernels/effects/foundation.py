@@ -50,3 +50,14 @@ def lane_foundation(foundation):
 @lane_foundation.of(Foundation)
 def _(foundation):
     return Foundation(load(foundation.stiffness, 0))
+
+
+@term
+def foundation_pull(foundation):
+    """The pull per displacement, for tangents."""
+    return 0.0
+
+
+@foundation_pull.of(Foundation)
+def _(foundation):
+    return foundation.stiffness

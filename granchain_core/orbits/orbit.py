@@ -1,0 +1,125 @@
+"""Periodic orbits by Newton's method on the stroboscopic map, with their Floquet multipliers.
+
+A fixed point of the n-period map is an orbit whether it is stable or not; its multipliers, the eigenvalues of the
+map's derivative, say which. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016,
+is a second chain pushed by the first one's input force: linearised about the first its tangents are the chain's own
+without the driver's contact, so its multipliers come from the same orbit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput, NumbersFailed
+from ..integrate import State
+from ..integrate.lane_block import scaled_state, state_of
+from ..scene import Scene
+from ..steady.regime import LONGEST_PERIOD
+from ..steady.settle import settle
+from .flow import Flow, StroboscopicMap
+
+#: Residual, relative to the largest displacement and w, at which an orbit is found; and Newton's iterations at most.
+CONVERGED, MOST_ITERATIONS = 1e-11, 12
+#: Damping of a Newton step is halved at most this often before it is called a failure.
+_MOST_HALVINGS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit:
+    """A periodic orbit of `period` drive periods through `state` at phase 0.
+
+    `residual` is the map's remaining change over the state's largest entry, `newton_residuals` its history.
+    `multipliers` (2N,) are sorted by modulus, largest first. `liouville` is the relative difference between the
+    product of the multipliers and exp ∫ trace.
+    """
+
+    scene: Scene
+    period: int
+    state: State
+    residual: float
+    newton_residuals: tuple[float, ...]
+    multipliers: np.ndarray
+    liouville: float
+    observer_multipliers: np.ndarray | None = None
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers are inside the unit circle."""
+        return bool(np.abs(self.multipliers).max() < 1.0)
+
+    @property
+    def observer_stable(self) -> bool | None:
+        """Whether the observer's multipliers are all inside the unit circle."""
+        if self.observer_multipliers is None:
+            return None
+        return bool(np.abs(self.observer_multipliers).max() < 1.0)
+
+
+def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
+                   stop: np.ndarray | None = None) -> Orbit:
+    """The orbit nearest to `start`, or to the steady state from rest; `period` in drive periods, else the settled one.
+
+    Raises `BadInput` for a period out of range, `NumbersFailed` with the residual history where Newton's method does
+    not converge, and `Cancelled`.
+    """
+    if period is not None and not 1 <= period <= LONGEST_PERIOD:
+        raise BadInput(f"period {period} is outside 1 to {LONGEST_PERIOD}; the nearest valid value is "
+                       f"{min(max(period, 1), LONGEST_PERIOD)}.")
+    n, x = period, None
+    if start is None:
+        way = settle(scene, None, stop)
+        n = n or way.regime.period or 1
+        start = way.engine.state
+    n = n or 1
+    strobe = StroboscopicMap(scene, n, stop)
+    x = strobe.inner(scaled_state(strobe.engine.lowered, start))
+    x, flow, history = _newton(strobe, x)
+    return _orbit(scene, n, strobe, x, flow, history, observer)
+
+
+def _newton(strobe: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, list[float]]:
+    """Damped Newton iterations; the residual is taken relative to the largest displacement and the largest w."""
+    flow = strobe(x)
+    history = [_residual(flow.end - x, x)]
+    while history[-1] > CONVERGED and len(history) <= MOST_ITERATIONS:
+        step = np.linalg.solve(flow.derivative - np.eye(len(x)), x - flow.end)
+        for halving in range(_MOST_HALVINGS):
+            trial = x + step / 2**halving
+            after = strobe(trial)
+            if _residual(after.end - trial, trial) < history[-1]:
+                break
+        else:
+            break
+        x, flow = trial, after
+        history.append(_residual(flow.end - x, x))
+    if history[-1] > 100.0 * CONVERGED:
+        shown = ", ".join(f"{r:.1e}" for r in history)
+        raise NumbersFailed(f"Newton's method found no orbit of {strobe.periods} drive periods near this start: its "
+                            f"residuals were {shown}; give another period or start.", "no-convergence")
+    return x, flow, history
+
+
+def _residual(change: np.ndarray, x: np.ndarray) -> float:
+    half = len(x) // 2
+    return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
+               for part in (slice(0, half), slice(half, None)))
+
+
+def _orbit(scene: Scene, n: int, strobe: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
+           observer: bool) -> Orbit:
+    multipliers = sorted_multipliers(flow.derivative)
+    product = float(np.sum(np.log(np.abs(multipliers))))
+    watched = sorted_multipliers(strobe(x, observer=True).derivative) if observer else None
+    lowered, beads = strobe.engine.lowered, scene.N
+    y = np.zeros(2 * lowered.row)
+    y[1 : beads + 1], y[lowered.row + 1 : lowered.row + beads + 1] = x[:beads], x[beads:]
+    return Orbit(scene, n, state_of(lowered, y), history[-1], tuple(history), multipliers,
+                 abs(product - flow.log_determinant) / max(1.0, abs(flow.log_determinant)), watched)
+
+
+def sorted_multipliers(derivative: np.ndarray) -> np.ndarray:
+    """Eigenvalues of a monodromy matrix, largest modulus first."""
+    found = np.linalg.eigvals(derivative)
+    return found[np.argsort(-np.abs(found), kind="stable")]
