@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .certified import certified_step
-from .dop853 import combine, evaluate, new_scale
+from .dop853 import attempt, combine, evaluate, new_scale
 from .dop853_tableau import STAGES, A, C
 from .effects.contact import positive_part
 from .effects.dissipation import damping
@@ -26,6 +26,11 @@ from .effects.preload import overlap
 from .jit import kernel
 from .motion import copy
 from .sampling import CANCELLED, DONE, NOT_FINITE, first_not_finite
+
+
+#: Behind an event tangents go with (t − t_e)^{3/2}, one power less than w: steps begin and end this near to it, and
+#: each step before it leaves this part of the way. Their error is then some 10 · _NEAREST^{3/2} per event.
+_NEAREST, _LEFT = 1e-8, 0.2
 
 
 class Tangent(NamedTuple):
@@ -104,9 +109,17 @@ def run_tangent(method, slots, beta, period, periods, y, work, clock, tangent, f
     for p in range(periods):
         t = 0.0
         while t < period:
-            status, h, _ = certified_step(method, slots, beta, t, period, y, work, clock, counts)
+            status, h, contact = certified_step(method, slots, beta, t, period, y, work, clock, counts)
             if status != DONE:
                 return status, p, trace
+            if contact >= 0 and h > _NEAREST:
+                # towards the event in shrinking steps, each of which leaves a part of the way
+                h *= 1.0 - _LEFT
+                attempt(method, slots, beta, t, h, y, work)
+                counts[1] += STAGES
+                clock[0] = 2.0 * _LEFT * h
+            elif contact >= 0:
+                clock[0] = _NEAREST
             trace += tangent_step(slots, beta, t, h, y, work, tangent, first_contact)
             copy(work.end, y)
             new_scale(y, work, m)

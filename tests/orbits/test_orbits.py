@@ -1,0 +1,117 @@
+"""Periodic orbits: found by Newton, their tangents exact, their multipliers those of closed forms and symmetries."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import BadInput, NumbersFailed, scene
+from granchain_core.integrate.lane_block import scaled_state
+from granchain_core.orbits import periodic_orbit
+from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.orbit import sorted_multipliers
+
+
+@pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
+def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: float, period: int) -> None:
+    orbit = periodic_orbit(scene("sec2").evolve(f=frequency))
+    assert orbit.period == period  # PHYSICS, trap 8: what sec2 reaches from rest
+    assert orbit.residual <= 1e-11  # the map is computed to about 1e-12
+    assert len(orbit.newton_residuals) - 1 <= 4  # quadratic convergence from a settled start
+    assert orbit.stable
+
+
+@pytest.mark.parametrize("changes", [{}, {"kappa": 0.001}, {"dissipation": "tsuji"}, {"dissipation": "kuwabara-kono"},
+                                     {"F0": 0.5}, {"wall": "rigid", "N": 3}])
+def test_the_determinant_of_the_derivative_is_liouvilles(changes: dict[str, object]) -> None:
+    shown = scene("sec2").evolve(**changes)
+    strobe = StroboscopicMap(shown, 1)
+    flow = strobe(0.1 * np.random.default_rng(1).standard_normal(2 * shown.N))
+    sign, logarithm = np.linalg.slogdet(flow.derivative)
+    assert sign > 0
+    # ∫ trace is a quadrature of order 8 of a function with kinks at the events, where steps begin and end
+    assert logarithm == pytest.approx(flow.log_determinant, rel=1e-6, abs=1e-8)
+
+
+@pytest.mark.parametrize("changes", [{}, {"kappa": 0.001}, {"dissipation": "tsuji"}, {"F0": 0.5}])
+def test_every_column_of_the_derivative_is_a_finite_difference_of_the_map(changes: dict[str, object]) -> None:
+    # Contacts open and close on the way; a missing saltation would show here and not in the determinant.
+    shown = scene("sec2").evolve(f=615.0, N=4, **changes)
+    strobe = StroboscopicMap(shown, 1)
+    x = 0.3 * np.random.default_rng(2).standard_normal(2 * shown.N)
+    exact = strobe(x).derivative
+    step = 1e-6  # the central difference errs by step² and by the map's 1e-12/step
+    for column in range(len(x)):
+        e = np.zeros(len(x))
+        e[column] = step
+        difference = (strobe(x + e).end - strobe(x - e).end) / (2 * step)
+        assert np.abs(difference - exact[:, column]).max() < 3e-5 * np.abs(exact).max()
+
+
+def test_a_preloaded_chain_has_the_multipliers_of_its_linear_modes() -> None:
+    # Small drive on a strong preload: every contact is a spring 1.5 K √δ0 and a dashpot D, and the monodromy
+    # matrix is the matrix exponential of the linear equations; the drive's amplitude moves it by about A0/δ0.
+    shown = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
+    orbit = periodic_orbit(shown, period=1)
+    assert np.abs(orbit.multipliers) == pytest.approx(np.abs(linear_multipliers(shown)), rel=1e-4)
+
+
+def linear_multipliers(shown) -> np.ndarray:  # type: ignore[no-untyped-def]
+    """Eigenvalues of exp(A T) of the linearised chain in SI, largest modulus first."""
+    from scipy.linalg import expm
+
+    n, mass = shown.N, shown.masses()
+    spring = 1.5 * shown.contact_stiffness() * np.sqrt(shown.static_overlap())
+    joins = np.zeros((n + 1, n))  # overlap of contact c = u_{c-1} − u_c
+    for c in range(n + 1):
+        if c > 0:
+            joins[c, c - 1] = 1.0
+        if c < n:
+            joins[c, c] = -1.0
+    stiffness, damping = joins.T @ np.diag(spring) @ joins, shown.D * joins.T @ joins
+    matrix = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness / mass[:, None], -damping / mass[:, None]]])
+    return sorted_multipliers(expm(matrix * shown.period))
+
+
+def test_an_orbit_is_found_again_with_twice_its_period_and_squared_multipliers() -> None:
+    once = periodic_orbit(scene("sec2"))
+    twice = periodic_orbit(scene("sec2"), period=2, start=once.state)
+    assert twice.state.displacement == pytest.approx(once.state.displacement, rel=1e-9)
+    # tangents have a (t − t_e)^{3/2} at every event, which the steps of the motion resolve to about 1e-7
+    assert np.abs(twice.multipliers) == pytest.approx(np.abs(once.multipliers) ** 2, abs=1e-7)
+
+
+def test_scaled_chains_have_the_same_multipliers() -> None:
+    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (PHYSICS, section 3)
+    first, s = scene("sec2"), 7.0
+    second = first.evolve(A0=s * first.A0, f=s**0.25 * first.f, D=s**0.25 * first.D)
+    a, b = periodic_orbit(first), periodic_orbit(second)
+    assert np.abs(b.multipliers) == pytest.approx(np.abs(a.multipliers), abs=1e-7)
+
+
+@pytest.mark.parametrize("frequency", [100.0, 200.0])
+def test_figure_11_the_observer_needs_the_foundation(frequency: float) -> None:
+    free = periodic_orbit(scene("fig11-free").evolve(f=frequency), observer=True)
+    founded = periodic_orbit(scene("fig11-founded").evolve(f=frequency), observer=True)
+    assert free.stable and founded.stable
+    assert free.observer_multipliers is not None and founded.observer_multipliers is not None
+    outside = free.observer_multipliers[np.abs(free.observer_multipliers) > 1.0]
+    assert len(outside) == 1 and outside[0].imag == 0.0
+    assert np.abs(founded.observer_multipliers).max() < 1.0
+
+
+def test_a_start_that_leads_to_no_orbit_is_a_failure_with_its_residuals() -> None:
+    with pytest.raises(NumbersFailed, match="residuals were"):
+        periodic_orbit(scene("rig").evolve(f=140.0), period=1)
+
+
+def test_a_period_out_of_range_is_refused() -> None:
+    with pytest.raises(BadInput, match="nearest valid value is 16"):
+        periodic_orbit(scene("sec2"), period=99)
+
+
+def test_the_state_of_an_orbit_comes_back_after_its_period() -> None:
+    orbit = periodic_orbit(scene("sec2").evolve(f=1130.0))
+    strobe = StroboscopicMap(orbit.scene, 3)
+    x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    assert np.abs(strobe(x).end - x).max() < 1e-10 * np.abs(x).max()  # the residual, after conversion to SI and back
