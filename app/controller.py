@@ -18,7 +18,7 @@ from .frames import samples_for
 from .jobs import LatestWins, Stop
 from .live import LivePicture, LiveRun
 from .painter import Painter
-from .promptness import send_at_once
+from .promptness import in_one_go, send_at_once
 from .session import LOOKS, SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
 from .views.knobs import foundation_words, knob_state
@@ -155,10 +155,11 @@ class Controller:
         return None if self.session.picture is None else self.session.picture.run
 
     def _send(self, number: int, picture: Settled | LivePicture) -> None:
-        if isinstance(picture, Settled):
-            show_settled(self.views, number, picture)
-        else:
-            show_live(self.views, number, picture, self.session.playing)
+        with in_one_go(self._document):
+            if isinstance(picture, Settled):
+                show_settled(self.views, number, picture)
+            else:
+                show_live(self.views, number, picture, self.session.playing)
 
     def _idle(self) -> None:
         """The browser has painted everything: in live mode that asks for the next step."""

@@ -6,7 +6,16 @@ const nice = (value) => {
   return (digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power;
 };
 
-const flat = (array) => (array?.array ?? array);
+// The four series of a picture from their one array.
+function unpack(frames) {
+  const values = frames.values.array ?? frames.values;
+  const { rows, beads } = frames;
+  let at = 0;
+  for (const [name, width] of [["displacement", beads], ["force", beads + 1], ["energy", beads], ["drive", 1]]) {
+    frames[name] = values.subarray(at, at + rows * width);
+    at += rows * width;
+  }
+}
 
 class ChainDrawing {
   constructor(canvas, palette) {
@@ -195,7 +204,7 @@ export function render({ model }) {
 
   model.on("msg:custom", (message) => {
     if (message.type === "frames") {
-      for (const name of ["displacement", "force", "energy", "drive"]) message[name] = flat(message[name]);
+      unpack(message);
       document.getElementById("scale-high").textContent = message.energy_label;
       drawing.load(message);
       clock.show(message);

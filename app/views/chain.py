@@ -34,7 +34,6 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live
         "number": number,
         "live": live,
         "rows": 1 if running else frames.rows,
-        "window": frames.rows,
         "beads": frames.beads,
         "samples": frames.samples,
         "radii": [bead.radius for bead in scene.beads],
@@ -42,8 +41,7 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live
         "energy_high": scale,
         "energy_label": f"{scale / factor:g} {letter}J",
         "sent": time.time(),
-        "displacement": np.ascontiguousarray(frames.displacement[rows], dtype=np.float32),
-        "force": np.ascontiguousarray(frames.force[rows], dtype=np.float32),
-        "energy": np.ascontiguousarray(frames.kinetic_energy[rows], dtype=np.float32),
-        "drive": np.ascontiguousarray(frames.drive_displacement[rows], dtype=np.float32),
+        # One array, because every array is two messages on the websocket.
+        "values": np.concatenate([series[rows].ravel() for series in (
+            frames.displacement, frames.force, frames.kinetic_energy, frames.drive_displacement)], dtype=np.float32),
     }
