@@ -15,7 +15,7 @@ from ..kernels.dop853 import ALL_STAGES, Dop853, Work
 from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.motion import place
 from ..kernels.naive import Rk4Naive, VerletNaive, naive_motion
-from ..kernels.peaks import ROWS, forget
+from ..kernels.peaks import ROWS, forget, next_period
 from ..kernels.simd import LANES
 from ..lower import Lowered, lower
 from ..scene import Scene
@@ -240,7 +240,7 @@ class Engine:
         lo, keep, row = self.lowered, self.empty_samples(2), self.lowered.row
         strobes[0] = self.y[:row], self.work.k[0, :row]
         for p in range(len(tops)):
-            self.forget_peaks()
+            next_period(self.peaks)
             status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
                                       self.grid, self.grid, self.grid if watch else 0, keep, self.peaks,
                                       self.counts.array, self.stop)

@@ -48,6 +48,13 @@ def forget(peaks):
 
 
 @kernel
+def next_period(peaks):
+    """Begin a new largest value but keep the last values: a maximum may lie across the end of a period."""
+    for row in range(0, peaks.size, ROWS):
+        peaks[row] = -np.inf
+
+
+@kernel
 def watch_lanes(peaks, row, value):
     """Follow one force in all lanes; its memory starts at row `row` of a (rows, 8) array."""
     d, c = load(peaks, row + 1), load(peaks, row + 2)

@@ -13,7 +13,7 @@ from .effects.preload import overlap
 from .fixed_step import drive_displacement, drive_velocity, step
 from .jit import kernel, term
 from .motion import contact_force, copy, motion, stored_energy
-from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, forget, watch
+from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
 
 #: Outcome of a kernel: 0 done, positive why it stopped.
 DONE, CANCELLED, NOT_FINITE, STEP_TOO_SMALL, CHATTER = 0, 1, 2, 3, 4
@@ -121,7 +121,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts
     m = slots.chain.inverse_mass.size
     keep_strobe(y, stages.k[0], strobes[0])
     for p in range(tops.shape[0]):
-        forget(peaks)
+        next_period(peaks)
         advance(method, slots, drive, 0, n, dtheta, h, y, stages, peaks, counts, stop)
         if stop[0] != 0:
             return CANCELLED, p

@@ -1,0 +1,90 @@
+"""Lanes and SIMD along the chain give what the scalar method gives, scene by scene and law by law."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import Scene, iter_curve, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.engine import new_stop, rest
+from granchain_core.integrate.lane_block import LaneBlock, can_share_lanes, scaled_state
+from granchain_core.lower import lower
+from granchain_core.steady.curve import curve_point
+from granchain_core.steady.lane_curve import lane_results
+
+CHAINS: list[dict[str, object]] = [
+    {}, {"N": 1}, {"N": 2}, {"N": 6}, {"N": 7}, {"N": 14}, {"N": 100}, {"kappa": 0.001}, {"F0": 0.5}, {"F0": 5.0},
+    {"dissipation": "tsuji"}, {"dissipation": "kuwabara-kono", "kappa": 0.001, "wall": "rigid"},
+]
+#: Eight scalar multiplications in another order, some hundred steps long, through contacts that amplify a little.
+ROUNDING = 1e-12
+
+
+@pytest.mark.parametrize("changes", CHAINS)
+def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) -> None:
+    shown = scene("sec2").evolve(**changes)
+    fast, slow = (Engine(shown, Setting("rk4-split"), 8) for _ in range(2))
+    slow.work = slow.work._replace(along=None)
+    assert fast.work.along is not None
+    a, b = fast.record(24), slow.record(24)
+    assert np.abs(a.displacement - b.displacement).max() < ROUNDING
+    assert np.abs(a.force - b.force).max() < ROUNDING
+    assert fast.tops == pytest.approx(slow.tops, rel=1e-11, abs=ROUNDING)
+    assert (fast.counts.array == slow.counts.array).all()
+
+
+@pytest.mark.parametrize("changes", CHAINS)
+def test_every_lane_is_the_scalar_method_on_its_own_scene(changes: dict[str, object]) -> None:
+    frequencies = [200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0]
+    scenes = [scene("sec2").evolve(f=f, **changes) for f in frequencies]
+    block = LaneBlock(scenes[0], new_stop())
+    for lane, one in enumerate(scenes):
+        block.put(lane, lower(one), scaled_state(lower(one), rest(one)), 1, look=3, earliest=3)
+    lane, finite = block.run()  # the fastest drive ends its third period first
+    assert finite and lane == len(scenes) - 1
+    engine = Engine(scenes[lane], Setting("rk4"), 1)
+    strobes, tops = engine.periods(3)
+    assert np.abs(block.strobes(lane)[:, 0] - strobes[:, 0]).max() < ROUNDING
+    assert block.tops(lane, 3) == pytest.approx(tops.max(axis=0), rel=1e-9, abs=ROUNDING)
+
+
+def test_a_curve_by_lanes_is_what_each_frequency_gives_by_itself() -> None:
+    frequencies = np.array([340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0])
+    for point in iter_curve(scene("sec2"), frequencies):
+        alone = curve_point(scene("sec2").evolve(f=point.frequency), None, new_stop())
+        assert point.regime.period == alone.regime.period
+        assert point.error_estimate is not None and alone.error_estimate is not None
+        allowed = point.error_estimate + alone.error_estimate
+        assert point.max_output_force == pytest.approx(alone.max_output_force, rel=allowed)
+        assert allowed < 2e-3  # the coarse lane steps differ from the finer ones by some 1e-4
+
+
+def test_a_lane_that_is_not_finite_does_not_lose_the_others() -> None:
+    # Far more damping than the lane's explicit step can follow is refused by a smaller step, so poison one instead.
+    scenes = [scene("sec2").evolve(f=f) for f in (1000.0, 1130.0)]
+    block = LaneBlock(scenes[0], new_stop())
+    for lane, one in enumerate(scenes):
+        y = scaled_state(lower(one), rest(one))
+        block.put(lane, lower(one), y * (np.nan if lane == 0 else 1.0), 1, look=5, earliest=5)
+    block.state.y[1, 0] = np.nan
+    lane, finite = block.run()
+    assert lane == 0 and not finite
+    assert np.isfinite(block.state.y[:, 1]).all()
+
+
+def test_a_scene_with_a_tension_cut_is_not_given_to_lanes() -> None:
+    cut: Scene = scene("sec2").evolve(tension="cut")
+    assert not can_share_lanes(cut) and can_share_lanes(scene("sec2"))
+    points = list(iter_curve(cut, [340.0, 400.0]))
+    assert sorted(p.frequency for p in points) == [340.0, 400.0]
+    assert all(p.max_output_force > 0.0 for p in points)
+
+
+def test_raising_the_stop_flag_ends_the_lanes() -> None:
+    from granchain_core import Cancelled
+
+    stop = new_stop()
+    stop[0] = 1
+    with pytest.raises(Cancelled):
+        list(lane_results(iter([scene("sec2")]), stop))
