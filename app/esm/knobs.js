@@ -40,7 +40,7 @@ class Knob {
     this.el.append(label);
     this.el.addEventListener("dblclick", (event) => {
       if (event.target.type === "text") return;
-      this.send({ do: "restore", name: spec.name });
+      this.send({ do: "restore", name: spec.name }, true);
     });
     if (spec.choices.length) this.chooser();
     else this.number();
@@ -50,7 +50,7 @@ class Knob {
     const select = document.createElement("select");
     select.setAttribute("aria-label", this.spec.label);
     for (const choice of this.spec.choices) select.add(new Option(choice, choice));
-    select.addEventListener("change", () => this.set(select.value));
+    select.addEventListener("change", () => this.set(select.value, true));
     this.select = select;
     this.el.append(select);
   }
@@ -78,7 +78,7 @@ class Knob {
   typed() {
     const raw = this.field.value.trim();
     const number = Number(raw);
-    this.set(raw !== "" && !Number.isNaN(number) ? Number((number * this.spec.factor).toPrecision(12)) : raw);
+    this.set(raw !== "" && !Number.isNaN(number) ? Number((number * this.spec.factor).toPrecision(12)) : raw, true);
   }
 
   key(event) {
@@ -94,9 +94,9 @@ class Knob {
     this.set(Math.max(spec.low, Math.min(spec.high, next)));
   }
 
-  set(value) {
+  set(value, now = false) {
     this.show(value);
-    this.send({ do: "set", name: this.spec.name, value });
+    this.send({ do: "set", name: this.spec.name, value }, now);
   }
 
   show(value, preset) {
@@ -131,9 +131,9 @@ export function render({ model }) {
     waiting.clear();
     if (!resting) requestAnimationFrame(flush);
   };
-  const send = (message) => {
+  const send = (message, now) => {
     waiting.set(message.name, message);
-    if (resting) flush();
+    if (resting || now) flush();
   };
 
   const build = () => {
