@@ -1,0 +1,99 @@
+"""What README and docs say exists, parses and runs."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from pages import PAGES, ROOT, blocks, commands
+
+from app import cli
+from granchain_core import BadInput, scene, scene_names
+from granchain_core.quantities import QUANTITIES
+
+MODEL = ROOT / "docs" / "model.md"
+_ROWS = re.findall(r"^\| `granchain (run [^`]+)` \| ([\d.]+) \| ([^|]+) \|$", MODEL.read_text("utf-8"), re.MULTILINE)
+_COMMANDS = sorted({command for page in PAGES for command in commands(page)})
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_and_named_files_exist(page: Path):
+    """Every relative link and every path with a folder in backquotes is there (docs/add-an-effect.md makes its own)."""
+    text = page.read_text(encoding="utf-8")
+    made = {block.path for block in blocks(page) if block.is_new_file}
+    for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", text):
+        assert (page.parent / target).exists(), target
+    for name in re.findall(r"`((?:granchain_core|app|assets|tests|docs)/[\w./-]+)`", text):
+        assert name in made or (ROOT / name).exists(), name
+
+
+@pytest.mark.parametrize("command", _COMMANDS)
+def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
+    """The parser takes them, and the scene takes their knobs."""
+    parsed = cli._parser().parse_args(shlex.split(command)[1:])
+    if "scene" in parsed and parsed.scene != "drag":  # docs/add-an-effect.md makes that one, and its test runs it
+        changes = dict(setting.split("=") for setting in parsed.set)
+        if changes.get("f") == "13OO":  # the readme's wrong value
+            with pytest.raises(BadInput):
+                scene(parsed.scene).evolve(**changes)
+        else:
+            scene(parsed.scene).evolve(**changes)
+
+
+@pytest.mark.parametrize(("command", "force", "regime"), _ROWS, ids=[row[0] for row in _ROWS])
+def test_the_numbers_of_the_model_page(command: str, force: str, regime: str, capsys: pytest.CaptureFixture[str]):
+    """Rows of docs/model.md give what they say, to the digits that are printed."""
+    assert cli.main([*shlex.split(command), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    half_a_digit = 0.5 * 10.0 ** -len(force.partition(".")[2])
+    assert told["max_output_force_elastic"] == pytest.approx(float(force), abs=half_a_digit)
+    assert f"period {told['period']}" == regime.strip()
+
+
+def test_the_model_page_has_rows():
+    assert len(_ROWS) >= 8
+
+
+@pytest.mark.parametrize("page", [ROOT / "README.md", MODEL], ids=lambda page: page.name)
+def test_python_examples_run(page: Path, tmp_path: Path):
+    """All Python blocks of a page, one after the other, in an empty folder."""
+    code = "\n".join(block.text for block in blocks(page) if block.language == "python")
+    ast.parse(code)
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr[-2000:]
+    promised = re.findall(r"^print\(.*\)\s+# (.+)$", code, re.MULTILINE)
+    printed = done.stdout.splitlines()
+    assert len(promised) >= 2
+    for text in promised:
+        assert text.split(":")[0] in printed, (text, printed)
+
+
+def test_ci_runs_the_second_command_of_the_readme():
+    """.ci/run takes the second sh block; it must be one line that runs pytest and makes its own environment."""
+    shells = [block.text for block in blocks(ROOT / "README.md") if block.language == "sh"]
+    assert len(shells) == 2
+    assert all(text.count("\n") == 1 and text.startswith("python3 -m venv .venv && ") for text in shells)
+    assert "granchain serve" in shells[0] and "-m pytest" in shells[1]
+
+
+def test_every_scene_is_in_the_readme_and_every_knob_in_the_model():
+    readme, model = (ROOT / "README.md").read_text("utf-8"), MODEL.read_text("utf-8")
+    assert [name for name in scene_names() if f"`{name}`" not in readme] == []
+    assert [name for name in QUANTITIES if f"`{name}`" not in readme] == []
+    assert [q.symbol for q in QUANTITIES.values() if q.symbol and q.symbol != "ε" and q.symbol not in model] == []
+
+
+def test_dockerfile_copies_what_the_ignore_file_lets_through():
+    """What is not let through by .dockerignore cannot be copied."""
+    allowed = {line[1:] for line in (ROOT / ".dockerignore").read_text().splitlines() if line.startswith("!")}
+    docker = (ROOT / "Dockerfile").read_text()
+    copied = {word for line in re.findall(r"^COPY (?!--from)(.+) \S+$", docker, re.MULTILINE) for word in line.split()}
+    assert copied == allowed and all((ROOT / name).exists() for name in copied)
+    arguments = json.loads(re.sub(r"\\\n\s*", "", docker.split("ENTRYPOINT ")[1]))
+    assert cli._parser().parse_args(arguments[1:]).address == "0.0.0.0"
