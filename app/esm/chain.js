@@ -8,11 +8,11 @@ const nice = (value) => {
 
 // The four series of a picture from their one array.
 function unpack(frames) {
-  const values = frames.values.array ?? frames.values;
-  const { rows, beads } = frames;
+  const { rows, beads, values } = frames;
   let at = 0;
   for (const [name, width] of [["displacement", beads], ["force", beads + 1], ["energy", beads], ["drive", 1]]) {
-    frames[name] = values.subarray(at, at + rows * width);
+    // A plain array: Bokeh's own kind makes its parts start at the beginning again.
+    frames[name] = new Float32Array(values.buffer, values.byteOffset + 4 * at, rows * width);
     at += rows * width;
   }
 }

@@ -64,6 +64,8 @@ class Knob {
     this.slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: STEPS, step: 1 });
     this.slider.setAttribute("aria-label", spec.label);
     this.el.append(this.field, unit, this.slider);
+    this.field.addEventListener("input", () => { this.editing = true; });
+    this.field.addEventListener("blur", () => { this.editing = false; });
     this.field.addEventListener("change", () => this.typed());
     this.field.addEventListener("focus", () => this.field.select());
     this.slider.addEventListener("input", () => {
@@ -76,6 +78,7 @@ class Knob {
 
   // What cannot be read as a number goes to the server as it is: it has the sentence for it.
   typed() {
+    this.editing = false;
     const raw = this.field.value.trim();
     const number = Number(raw);
     this.set(raw !== "" && !Number.isNaN(number) ? Number((number * this.spec.factor).toPrecision(12)) : raw, true);
@@ -107,11 +110,12 @@ class Knob {
         this.select.add(new Option(Number(value).toPrecision(4), value));
       this.select.value = String(value);
     } else if (typeof value === "number") {
-      this.field.value = written(value, this.spec.factor);
+      // What somebody is typing is left alone.
+      if (!this.editing) this.field.value = written(value, this.spec.factor);
       this.field.style.width = `${Math.max(3, this.field.value.length) + 1.6}ch`;
       const place = RANGE[this.spec.scale].place(value, this.spec);
       this.slider.value = Math.round(STEPS * Math.max(0, Math.min(1, place)));
-      this.slider.setAttribute("aria-valuetext", `${this.field.value} ${this.spec.unit}`);
+      this.slider.setAttribute("aria-valuetext", `${written(value, this.spec.factor)} ${this.spec.unit}`);
     }
     this.el.classList.toggle("moved", value !== this.preset);
   }

@@ -56,7 +56,7 @@ window.painted = [];
 document.addEventListener("DOMContentLoaded", () => {
   if (window.granchain) granchain.on("painted", (event) => window.painted.push(event));
 });
-window.pixels = (id) => {
+window.canvasIn = (id) => {
   const find = (node) => {
     for (const element of node.querySelectorAll("*")) {
       if (element.tagName === "CANVAS") return element;
@@ -65,7 +65,10 @@ window.pixels = (id) => {
     }
     return null;
   };
-  const canvas = find(document.getElementById(id));
+  return find(document.getElementById(id));
+};
+window.pixels = (id) => {
+  const canvas = canvasIn(id);
   const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
   let sum = 0;
   for (let i = 0; i < data.length; i += 7) sum = (sum * 31 + data[i]) >>> 0;

@@ -58,6 +58,41 @@ def test_pause_stops_the_chain_and_a_dragged_cursor_moves_it(visit: Visit) -> No
     assert page.evaluate("pixels('chain')") != still
 
 
+def test_a_bead_has_the_colour_of_its_column(visit: Visit) -> None:
+    page = visit()
+    settled(page)
+    page.get_by_role("button", name="Play or pause").click()
+    box = page.locator("#map").bounding_box()
+    assert box is not None
+    # 1.1 ms into the picture the pulse is in the last beads and the first are at rest
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 50 + (box["height"] - 102) * 0.095)
+    page.wait_for_timeout(200)
+    beads, columns = page.evaluate(COLOURS)
+    for bead, column in zip(beads, columns, strict=True):
+        assert max(abs(a - b) for a, b in zip(bead, column, strict=True)) < 60
+    assert max(sum(column) for column in columns) > 150 > min(sum(column) for column in columns)
+
+
+# The colour in the lower half of every bead and of its column of the map, at the time of the cursor.
+COLOURS = """() => {
+  const pixel = (id, x, y) => {
+    const canvas = canvasIn(id), box = canvas.getBoundingClientRect();
+    const { data } = canvas.getContext("2d").getImageData(Math.round(x - box.x), Math.round(y - box.y), 1, 1);
+    return [...data].slice(0, 3);
+  };
+  const map = document.getElementById("map").getBoundingClientRect();
+  const chain = document.getElementById("chain").getBoundingClientRect();
+  const line = document.getElementById("cursor").getBoundingClientRect();
+  const pitch = (map.width - 12) / 11, beads = [], columns = [];
+  for (let i = 0; i < 11; i++) {
+    const x = map.x + 6 + (i + 0.5) * pitch;
+    beads.push(pixel("chain", x, chain.y + 0.53 * chain.height + 0.12 * pitch));
+    columns.push(pixel("map", x, line.y + line.height / 2));
+  }
+  return [beads, columns];
+}"""
+
+
 def test_everything_is_in_view_without_scrolling(visit: Visit) -> None:
     page = visit()
     size = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
