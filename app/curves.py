@@ -12,6 +12,7 @@ from granchain_core.experiment import Measured, stated_features
 
 from .compiling import CERTIFIED, COMPILER, LIVE
 from .session import rig_beads, slider_range
+from .show import show_regime
 from .sweep import DIRECTIONS, Progress, Sweep, without_frequency
 from .views.shell import Views
 
@@ -134,6 +135,8 @@ class Curves:
             for progress in buffer:
                 if progress.complete and self._key is not None:
                     self._computed[progress.direction] = self._key
+                    self._views.curve.finished(progress.direction)
+                    show_regime(self._views)
             self._views.curvebar.display(done=self._overall(buffer[-1]))
 
     def _overall(self, progress: Progress) -> float:

@@ -22,12 +22,20 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
         views.trains.left.yaxis.axis_label = f"time ({letter}s)"
         _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s")
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
-        views.badge.display(**settled_entries(picture))
+        views.shown = picture
+        views.badge.display(**settled_entries(picture, views.curve.nature(picture.run.scene.f)))
+
+
+def show_regime(views: Views) -> None:
+    """The badge's words once more, after the curve that names the place has come."""
+    if views.shown is not None:
+        views.badge.display(**settled_entries(views.shown, views.curve.nature(views.shown.run.scene.f)))
 
 
 def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
     """The last periods of the live run; now is at the bottom."""
     frames, run = picture.frames, picture.run
+    views.shown = None
     with unlocked():
         views.trains.left.yaxis.axis_label = "time (drive periods before now)"
         _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)

@@ -19,12 +19,14 @@ _NOT_ASKED = Regime("unsettled", None, None, None, 0)
 class LiveChain:
     """A chain run by the live method, `samples` recorded states a period, with knobs that act on the way.
 
+    It begins at rest, or in the state `start`.
+
     D, k, the laws and the frequency act at the next sample: the drive phase goes on from where it is, so the driver
     never jumps. A new amplitude waits for the driver's next passage through its middle position, where u_0 is
     continuous for every A0.
     """
 
-    def __init__(self, scene: Scene, samples: int = 96) -> None:
+    def __init__(self, scene: Scene, samples: int = 96, start: State | None = None) -> None:
         if samples % 2:
             raise ValueError("samples must be even, so that the driver's middle position is one of them")
         self.samples = samples
@@ -32,7 +34,9 @@ class LiveChain:
         self.time = 0.0
         self._index = 0
         self._waiting: Scene | None = None
-        self._engine = self._new_engine(scene, rest(scene))
+        self._engine = self._new_engine(scene, rest(scene) if start is None else start)
+        if start is not None:
+            self._index = round(start.phase * samples) % samples
 
     def _new_engine(self, scene: Scene, state: State) -> Engine:
         engine = Engine(scene, Setting("rk4-split", refine=2), self.samples)

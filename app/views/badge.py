@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from granchain_core import Run, Settled
+from granchain_core.steady.resonance import pushes
 
 from .component import Component, text
 
@@ -16,21 +17,23 @@ class Badge(Component):
     _stylesheets = [text("controls.css"), text("badge.css")]  # noqa: RUF012
 
 
-def settled_entries(picture: Settled) -> dict[str, Any]:
-    """The badge of a settled picture."""
-    ready = "" if picture.final else "preview, "
+def settled_entries(picture: Settled, nature: str) -> dict[str, Any]:
+    """The badge of a settled picture; `nature` is "resonance", "anti-resonance" or "" for its place on the curve."""
     return {
-        "regime": ready + regime_words(picture),
+        "regime": regime_words(picture, nature),
         "start": f"from {picture.start}",
         **run_entries(picture.run),
     }
 
 
-def regime_words(picture: Settled) -> str:
-    """The regime in words, as the core found it."""
-    regime = picture.regime
-    return regime.sentence if regime.name in regime.sentence or regime.name == "periodic" else (
-        f"{regime.name}, {regime.sentence}")
+def regime_words(picture: Settled, nature: str) -> str:
+    """The regime in words: strong pushes of the driver in how many periods, what the curve has here, the evidence."""
+    ready = "" if picture.final else "preview, "
+    regime, pushed = picture.regime, pushes(picture.run)
+    if pushed is None or (pushed[0] > 1 and nature == "resonance"):
+        return ready + regime.sentence
+    ratio = f"{pushed[0]}:{pushed[1]} {nature or 'motion'}, "
+    return ready + ratio + regime.sentence
 
 
 def _duration(seconds: float) -> str:

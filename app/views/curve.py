@@ -12,6 +12,7 @@ from bokeh.plotting import figure
 
 from granchain_core import CurvePoint
 from granchain_core.experiment import Feature, Measured
+from granchain_core.steady.resonance import nature
 
 from ..frames import prefixed, round_up
 from .figures import OUTPUT, quiet_axis, quiet_figure
@@ -43,6 +44,7 @@ class Curve:
         self._points: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
         self._before: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
         self._scale = (1.0, "")
+        self._whole = False
         self._shown: tuple[float, float | None] = (0.0, None)
         self._place: tuple[object, ...] = ()
         self._now = ColumnDataSource({"frequency": [], "force": []})
@@ -124,6 +126,7 @@ class Curve:
 
     def begin(self, directions: list[str]) -> None:
         """New curves will come: the present ones become the grey ones."""
+        self._whole = self._whole and "rest" not in directions
         for name in _DASHES:
             if name in directions:
                 self._before[name] = self._points[name] or self._before[name]
@@ -140,8 +143,20 @@ class Curve:
         self._rescale()
         self._draw(direction)
 
+    def nature(self, frequency: float) -> str:
+        """What this frequency is on the whole curve from rest: "resonance", "anti-resonance" or ""."""
+        if not self._whole:
+            return ""
+        points = sorted(self._points["rest"], key=lambda point: point.frequency)
+        return nature([p.frequency for p in points], [p.max_output_force for p in points], frequency)
+
+    def finished(self, direction: str) -> None:
+        """All points of a direction are there."""
+        self._whole = self._whole or direction == "rest"
+
     def clear(self) -> None:
         """No curve: another scene was opened."""
+        self._whole = False
         for name in _DASHES:
             self._points[name], self._before[name] = [], []
             self._draw(name)

@@ -9,6 +9,8 @@ from typing import Any
 import panel as pn
 from bokeh.models import Range1d
 
+from granchain_core import Settled
+
 from .badge import Badge
 from .chain import PALETTE, Chain
 from .component import text
@@ -40,6 +42,7 @@ class Views:
         self.corner = Corner(received, sizing_mode="stretch_both", state={"regimes": [
             {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
         self.badge = Badge(received)
+        self.shown: Settled | None = None
 
     def template(self) -> pn.Template:
         """The page; its layout is a CSS grid in page.css."""

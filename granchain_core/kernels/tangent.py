@@ -27,7 +27,6 @@ from .jit import kernel
 from .motion import copy
 from .sampling import CANCELLED, DONE, NOT_FINITE, first_not_finite
 
-
 #: Behind an event tangents go with (t − t_e)^{3/2}, one power less than w: steps begin and end this near to it, and
 #: each step before it leaves this part of the way. Their error is then some 10 · _NEAREST^{3/2} per event.
 _NEAREST, _LEFT = 1e-8, 0.2
