@@ -33,6 +33,7 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
 
 
 def say(*words: object) -> None:
+    """Tell a person something, on stderr: stdout is for results."""
     print(*words, file=sys.stderr, flush=True)
 
 

@@ -1,0 +1,73 @@
+"""The house: who may import whom, files a reader can hold, and a docstring on everything public."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CORE = sorted((ROOT / "granchain_core").rglob("*.py"))
+ALL = [*CORE, *sorted((ROOT / "app").rglob("*.py"))]
+#: Each layer with those it may import, besides itself; what stands higher knows what stands lower, never back.
+LAYERS = {
+    "errors": set(), "quantities": {"errors"}, "kernels": set(), "scene": {"errors", "quantities"},
+    "lower": {"errors", "scene", "kernels"}, "integrate": {"errors", "scene", "kernels", "lower"},
+    "result": {"scene", "kernels", "integrate", "steady.regime"},
+    "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
+    "run": {"errors", "scene", "kernels", "integrate", "result", "steady"},
+    "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "scene", "steady"},
+    "orbits": {"errors", "scene", "kernels", "integrate", "steady"},
+    "accuracy": {"errors", "scene", "kernels", "lower", "integrate"}, "experiment": {"errors", "scene"},
+    "store": {"errors", "quantities", "result", "scene", "steady", ""},
+}
+
+
+def imported(path: Path) -> set[str]:
+    """Dotted names of the modules a file imports, relative ones made absolute."""
+    names: set[str] = set()
+    package = path.relative_to(ROOT).with_suffix("").parts[:-1]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
+            names.add(".".join(p for p in (base, node.module or "") if p))
+    return names
+
+
+@pytest.mark.parametrize("path", CORE, ids=lambda p: str(p.relative_to(ROOT)))
+def test_the_core_knows_no_dashboard_and_no_command_line(path: Path) -> None:
+    roots = {name.split(".")[0] for name in imported(path)}
+    assert not roots & {"panel", "bokeh", "param", "app", "tornado", "argparse", "click", "typer"}
+
+
+@pytest.mark.parametrize("path", [p for p in CORE if p.parent.name != "granchain_core" or p.stem in LAYERS],
+                         ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_layer_imports_only_what_stands_above_it(path: Path) -> None:
+    layer = path.relative_to(ROOT / "granchain_core").with_suffix("").parts[0]
+    for name in imported(path):
+        if name.split(".")[0] != "granchain_core":
+            continue
+        inner = name.removeprefix("granchain_core").lstrip(".")
+        target = inner.split(".")[0]
+        assert target == layer or target in LAYERS[layer] or inner in LAYERS[layer], f"{layer} imports {name}"
+
+
+@pytest.mark.parametrize("path", ALL, ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_file_can_be_held_and_says_what_it_is(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert text.count("\n") <= 300
+    tree = ast.parse(text)
+    assert ast.get_docstring(tree) or not tree.body
+    for node in ast.walk(tree):
+        public = isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_")
+        if public and node in tree.body:
+            assert ast.get_docstring(node), f"{path.name}: {node.name} has no docstring"  # type: ignore[arg-type]
+
+
+def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:
+    from granchain_core.kernels import jit
+
+    assert jit._sources_hash() in jit.CACHE_FOLDER.name

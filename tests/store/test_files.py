@@ -1,0 +1,70 @@
+"""Files: what is written comes back bit by bit, and other programs find labelled axes with units."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+from granchain_core import BadInput, resonance_curve, run, scene
+from granchain_core.store import load, save, save_curve
+
+
+@pytest.fixture(scope="module")
+def result():  # type: ignore[no-untyped-def]
+    return run(scene("sec2").evolve(kappa=0.001), periods=2, record=2, samples=8)
+
+
+def test_a_run_comes_back_bit_by_bit(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
+    again = load(save(result, tmp_path / "a.h5"))
+    for name in ("time", "displacement", "velocity", "force", "drive_displacement", "kinetic_energy", "output_force",
+                 "output_force_elastic"):
+        assert (getattr(again, name) == getattr(result, name)).all(), name
+    for name in ("scene", "regime", "cost", "status", "samples", "error_estimate", "energy_residual",
+                 "max_input_force", "max_output_force", "max_output_force_elastic"):
+        assert getattr(again, name) == getattr(result, name), name
+
+
+def test_xarray_opens_a_run_with_labelled_axes_and_units(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
+    file = save(result, tmp_path / "a.h5")
+    with xarray.open_dataset(file, engine="h5netcdf", group="run") as data:
+        assert data.displacement.dims == ("time", "bead") and data.displacement.attrs["units"] == "m"
+        assert data.force.dims == ("time", "contact") and data.force.attrs["units"] == "N"
+        assert data.kinetic_energy.attrs["units"] == "J" and data.velocity.attrs["units"] == "m/s"
+        assert list(data.bead.values) == list(range(1, 12)) and data.time.attrs["units"] == "s"
+        for name in ("drive_displacement", "input_force", "output_force", "output_force_elastic"):
+            assert data[name].dims == ("time",)
+    with xarray.open_dataset(file, engine="h5netcdf") as root:
+        for name in ("granchain_schema", "scene", "method", "accuracy_asked", "accuracy_reached", "cost", "versions"):
+            assert name in root.attrs
+
+
+def test_xarray_opens_a_curve(tmp_path: Path) -> None:
+    curve = resonance_curve(scene("sec2"), [300.0, 400.0])
+    with xarray.open_dataset(save_curve(curve, tmp_path / "c.h5"), engine="h5netcdf", group="curve") as data:
+        assert (data.max_output_force.sel(frequency=300.0) > 0.5) and data.frequency.attrs["units"] == "Hz"
+        assert set(data.regime.values) == {"periodic"}
+
+
+def test_a_file_that_is_none_of_ours_is_refused(tmp_path: Path) -> None:
+    other = tmp_path / "b.h5"
+    other.write_bytes(b"not HDF5")
+    with pytest.raises(BadInput, match=r"not a run written by granchain"):
+        load(other)
+    with pytest.raises(BadInput):
+        load(tmp_path / "missing.h5")
+
+
+def test_a_failed_write_leaves_no_file_behind(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(BadInput, match="Cannot write"):
+        save(result, tmp_path / "no" / "a.h5")
+    save(result, tmp_path / "a.h5")
+    assert [p.name for p in tmp_path.iterdir()] == ["a.h5"]
+
+
+def test_overlap_follows_from_what_is_stored(result) -> None:  # type: ignore[no-untyped-def]
+    # the elastic wall force is K [δ_N]^{3/2} of the stored overlap: the same numbers by two ways
+    elastic = result.scene.contact_stiffness()[-1] * np.maximum(result.overlap[:, -1], 0.0) ** 1.5
+    assert elastic == pytest.approx(result.output_force_elastic, rel=1e-12)
