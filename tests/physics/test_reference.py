@@ -64,7 +64,7 @@ def test_undamped_chain_is_as_near_as_its_instability_lets_it_be():
 def test_the_command_line_writes_the_same_numbers(tmp_path):
     """`granchain run sec2 --set f=340 --periods 0 --record 20 --samples 8 --accuracy 1e-9 --out a.h5`, as it stands."""
     out = tmp_path / "a.h5"
-    words = "run sec2 --set f=340 --periods 0 --record 20 --samples 8 --accuracy 1e-9 --out".split()
+    words = ["run", "sec2", "--set", "f=340", "--periods", "0", "--record", "20", "--samples", "8", "--accuracy", "1e-9", "--out"]
     assert main([*words, str(out)]) == 0
     true = reference("sec2-340")
     with h5py.File(out) as file:
