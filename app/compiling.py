@@ -18,7 +18,7 @@ from granchain_core.warm import is_warm, structure, warm
 
 from .jobs import BACKGROUND, Stop
 
-LIVE, CERTIFIED = "live", "certified"
+LIVE, CERTIFIED, CURVE = "live", "certified", "curve"
 SENTENCE = ("Compiling the kernels for this set of effects: about 10 s, only the first time on this computer; "
             "the picture follows by itself.")
 _LOOK = 0.05
@@ -76,13 +76,13 @@ class Compiler:
 
     def prepare(self, scene: Scene) -> None:
         """Have this scene's kernels ready in this process before the first visitor asks."""
-        if not self.has(scene, LIVE, CERTIFIED):
-            for piece in (LIVE, CERTIFIED):
+        for piece in (LIVE, CERTIFIED, CURVE):
+            if not self.has(scene, piece):
                 self.ask(scene, piece)
         BACKGROUND.submit(self._load, scene)
 
     def _load(self, scene: Scene) -> None:
-        for piece in (LIVE, CERTIFIED):
+        for piece in (LIVE, CERTIFIED, CURVE):
             if not self.has(scene, piece):
                 self.ask(scene, piece).result()
             warm(scene, (piece,))

@@ -11,7 +11,7 @@ from bokeh.document import Document
 
 from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settling
 
-from .compiling import CERTIFIED, COMPILER, LIVE, SENTENCE
+from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
 from .curves import Curves
 from .exchange import Exchange
 from .frames import samples_for
@@ -122,13 +122,14 @@ class Controller:
         self._await_live_kernels(scene, stop)
         pictures = settling(scene, start=self.session.previous_state(), samples=samples_for(scene), stop=stop)
         yield next(pictures)
-        if COMPILER.await_piece(scene, CERTIFIED, stop):
+        if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
             yield from pictures
 
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
         if not COMPILER.has(scene, LIVE):
-            COMPILER.ask(scene, CERTIFIED)
             self.later(self.note, SENTENCE)
+            for piece in (LIVE, CERTIFIED, CURVE):
+                COMPILER.ask(scene, piece)
             COMPILER.await_piece(scene, LIVE, stop)
 
     def _live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:

@@ -10,7 +10,7 @@ from panel.io import unlocked
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Measured, stated_features
 
-from .compiling import CERTIFIED, COMPILER, LIVE
+from .compiling import CERTIFIED, COMPILER, CURVE, LIVE
 from .session import rig_beads, slider_range
 from .show import show_regime
 from .sweep import DIRECTIONS, Progress, Sweep, without_frequency
@@ -57,7 +57,7 @@ class Curves:
     def _begin_if_last(self, scene: Scene, due: int) -> None:
         if due != self._due:
             return
-        if COMPILER.has(scene, LIVE, CERTIFIED):
+        if COMPILER.has(scene, LIVE, CERTIFIED, CURVE):
             self._begin(scene)
         else:
             self._after(_QUIET, self._begin_if_last, scene, due)

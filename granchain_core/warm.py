@@ -12,12 +12,15 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from .integrate import Engine, Setting
+from .integrate.engine import new_stop, rest
+from .integrate.lane_block import LaneBlock, can_share_lanes, scaled_state
 from .kernels.jit import CACHE_FOLDER
+from .lower import lower
 from .scene import Scene, scene, scene_names
 from .steady.lyapunov import exponents
 
 #: What the pieces of one structure's kernels are for; each can be compiled in its own process.
-PIECES = ("live", "certified", "live account", "certified account")
+PIECES = ("live", "certified", "curve", "live account", "certified account")
 
 
 def structure(shown: Scene) -> str:
@@ -40,13 +43,24 @@ def warm(shown: Scene, pieces: Iterable[str] = PIECES) -> None:
     """Compile and cache the kernels of one scene's structure by running them shortly."""
     short = shown.evolve(f=max(shown.f, 1000.0))
     for piece in pieces:
-        method = "rk4-split" if piece.startswith("live") else "dop853"
-        engine = Engine(short, Setting(method, tolerance=1e-3), 2, balance=piece.endswith("account"))
-        engine.periods(1)
-        engine.record(2)
-        if piece == "live":
-            exponents(engine, 1, 1)
+        if piece == "curve":
+            _warm_curve(short)
+        else:
+            method = "rk4-split" if piece.startswith("live") else "dop853"
+            engine = Engine(short, Setting(method, tolerance=1e-3), 2, balance=piece.endswith("account"))
+            engine.periods(1)
+            engine.record(2)
         _marker(structure(shown), piece).touch()
+
+
+def _warm_curve(short: Scene) -> None:
+    """The kernels of a curve: the shadow that tells irregular motions apart, and lanes where the scene can use them."""
+    exponents(Engine(short, Setting("rk4-split"), 1), 1, 1)
+    if can_share_lanes(short):
+        block = LaneBlock(short, new_stop())
+        lowered = lower(short)
+        block.put(0, lowered, scaled_state(lowered, rest(short)), 1, look=1)
+        block.run()
 
 
 def _warm_piece(job: tuple[Scene, str]) -> str:

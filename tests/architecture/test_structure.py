@@ -17,7 +17,7 @@ LAYERS = {
     "result": {"scene", "kernels", "integrate", "steady.regime"},
     "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
     "run": {"errors", "scene", "kernels", "integrate", "result", "steady"},
-    "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "scene", "steady"},
+    "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "lower", "scene", "steady"},
     "orbits": {"errors", "scene", "kernels", "integrate", "steady"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate"}, "experiment": {"errors", "scene"},
     "store": {"errors", "quantities", "result", "scene", "steady", ""},
