@@ -4,7 +4,8 @@
 * No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`, which let an absent effect's
   neutral elements fold away and sums be vectorised.
 * Numba does not notice edits in *imported* kernels, so the cache folder is named by a hash of all sources in
-  this package: any edit starts an empty cache, an unchanged tree compiles nothing in the second process.
+  this package and of the kind of processor: any edit starts an empty cache, an unchanged tree compiles nothing in
+  the second process.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import os
 import tempfile
 from pathlib import Path
 
+import llvmlite.binding
 import numba
 from numba import types
 from numba.extending import overload
@@ -22,7 +24,7 @@ _FLAGS = {"nsz", "arcp", "contract", "reassoc"}
 
 
 def _sources_hash() -> str:
-    digest = hashlib.sha256(numba.__version__.encode())
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()}".encode())
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(path.name.encode())
         digest.update(path.read_bytes())

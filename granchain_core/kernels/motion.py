@@ -1,6 +1,6 @@
 """The equations of motion in w-variables, assembled from the effects that are present.
 
-    w_i = v_i − (G_{i-1} − G_i)/m_i          the dashpot is an exact derivative (PHYSICS trap 13)
+    w_i = v_i − (G_{i-1} − G_i)/m_i          the dashpot is an exact derivative (docs/model.md)
     u̇_i = w_i + (G_{i-1} − G_i)/m_i
     m_i ẇ_i = F^el_{i-1} − F^el_i − k u_i     continuous: no Heaviside function, no velocity differences
 

@@ -122,7 +122,7 @@ class Scene:
 
     @property
     def knobs(self) -> dict[str, Any]:
-        """Every knob of CONTRACT with its value in SI."""
+        """Every knob with its value in SI, in the order of `QUANTITIES`."""
         return {name: getattr(self, name) for name in QUANTITIES}
 
     def differences(self) -> dict[str, Any]:

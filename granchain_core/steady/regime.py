@@ -1,7 +1,7 @@
 """What kind of motion it is, with the evidence: periodic n, quasi-periodic, chaotic, or unsettled.
 
 A state that hardly changes from one period to the next need not be near the attractor: with the multiplier μ of
-the stroboscopic map its distance is change·|μ|/(1 − |μ|). Only that bound decides (PHYSICS trap 8).
+the stroboscopic map its distance is change·|μ|/(1 − |μ|). Only that bound decides.
 """
 
 from __future__ import annotations
@@ -148,16 +148,15 @@ def _earlier_rate(states: np.ndarray, n: int, rounding: float) -> float | None:
 def irregular(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
 
-    Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within the same
-    bounds, the section comes back near itself as it does on a closed curve, and it is not shrinking. Anything else
-    is on its way.
+    Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
+    errors, the section comes back near itself as it does on a closed curve, and it is not shrinking. Anything else is
+    on its way: neighbours come closer, however slowly.
     """
     mean = float(exponents.mean())
     error = float(exponents.std(ddof=1) / math.sqrt(len(exponents)))
-    bound = max(3.0 * error, 0.01)
-    if mean > bound:
+    if mean > max(3.0 * error, 0.01):
         name = "chaotic"
-    elif abs(mean) <= bound and not slowing(strobes) and returns_near(strobes):
+    elif abs(mean) <= max(3.0 * error, 5e-4) and not slowing(strobes) and returns_near(strobes):
         name = "quasi-periodic"
     else:
         name = "unsettled"
