@@ -171,7 +171,7 @@ def _finer_result(block: LaneBlock, lane: int, job: _Job) -> LaneResult:
 
 
 def _irregular_result(block: LaneBlock, lane: int, job: _Job) -> LaneResult | None:
-    """Chaotic, quasi-periodic or unsettled, by the live method from where the lane is; None if the lane should go on."""
+    """Chaotic, quasi-periodic or unsettled, by the live method from where the lane is; None if it should go on."""
     strobes, run = block.strobes(lane), int(block.state.periods[lane])
     engine = Engine(job.scene, Setting("rk4-split"), 1, stop=block.stop)
     engine.start(state_of(job.lowered, block.state.y[:, lane]))
