@@ -179,6 +179,16 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
 
 
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
+@pytest.mark.parametrize("count", [2, 20])
+def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start, count):
+    """k = 1e10 N/m is valid: every point has a force or a sentence, whatever its neighbours do."""
+    found = resonance_curve(scene("sec2").evolve(k=1e10, N=2), np.linspace(2000.0, 2500.0, count), start)
+    assert len(found.points) == count
+    assert all(p.failure or np.isfinite(p.max_output_force) for p in found.points)
+    assert not any(p.failure for p in found.points), found.points[0].failure
+
+
+@pytest.mark.parametrize("start", ["rest", "up", "down"])
 def test_a_cancelled_curve_keeps_what_it_has(start):
     """Stopped after the third point: those points and soon an end."""
     seen: list[float] = []
