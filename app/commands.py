@@ -105,9 +105,11 @@ def run(arguments: argparse.Namespace) -> None:
     """Run a scene and record it."""
     from granchain_core.run import run as run_scene
     from granchain_core.run import warnings
-    from granchain_core.store import save
+    from granchain_core.store import check_writable, save
 
     chosen = chosen_scene(arguments)
+    if arguments.out:
+        check_writable(arguments.out)
     if arguments.explain:
         _explain(chosen, arguments.method, sys.stderr if arguments.json else sys.stdout)
     progress = _progress if sys.stderr.isatty() else None
@@ -153,9 +155,11 @@ def curve(arguments: argparse.Namespace) -> None:
     import numpy as np
 
     from granchain_core.steady.curve import MOST_POINTS, resonance_curve
-    from granchain_core.store import save_curve
+    from granchain_core.store import check_writable, save_curve
 
     chosen = chosen_scene(arguments)
+    if arguments.out:
+        check_writable(arguments.out)
     if not 1 <= arguments.points <= MOST_POINTS:
         raise BadInput(f"--points {arguments.points} is outside 1 to {MOST_POINTS}; the nearest valid value is "
                        f"{min(max(arguments.points, 1), MOST_POINTS)}.")

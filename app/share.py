@@ -37,13 +37,14 @@ def decode(query: str) -> tuple[Scene, dict[str, str], list[str]]:
     """Scene, view settings, and one sentence for every field that was refused."""
     if len(query) > _LONGEST:
         return scene(scene_names()[0]), {}, [f"The link is longer than {_LONGEST} characters and was not read."]
-    fields = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
     refused: list[str] = []
+    fields = _fields(query, refused)
     if fields.pop("v", VERSION) != VERSION:
         refused.append(f"The link is of another version than {VERSION}; what is understood of it is shown.")
-    base = _scene(fields.pop("scene", scene_names()[0]), refused)
+    shown = _scene(fields.pop("scene", scene_names()[0]), refused)
     extras: dict[str, str] = {}
-    for name, text in fields.items():
+    # kappa last, so that it means the link's own amplitude and replaces a k only if it can be used
+    for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
         if name in EXTRAS:
             if text in EXTRAS[name]:
                 extras[name] = text
@@ -51,14 +52,24 @@ def decode(query: str) -> tuple[Scene, dict[str, str], list[str]]:
                 refused.append(f"{name} = {text[:40]!r} in the link is not one of {', '.join(EXTRAS[name])}.")
             continue
         try:
-            if name == "k" and "kappa" in fields:
-                raise BadInput("k and kappa in the link say the same thing; kappa was used.")
-            base = base.evolve(**{name: text})
+            shown = shown.evolve(**{name: text})
         except BadInput as problem:
             refused.append(f"In the link: {problem}")
-    if "kappa" in fields and "A0" in fields:
-        base = _again(base, fields["kappa"])
-    return base, extras, refused
+            continue
+        if name == "kappa" and "k" in fields:
+            refused.append("k and kappa in the link say the same thing; kappa was used.")
+    return shown, extras, refused
+
+
+def _fields(query: str, refused: list[str]) -> dict[str, str]:
+    """The fields of a query string; of one that comes twice the first counts."""
+    fields: dict[str, str] = {}
+    for name, text in parse_qsl(query.lstrip("?"), keep_blank_values=True):
+        if name in fields:
+            refused.append(f"{name[:40]} stands twice in the link; {fields[name][:40]!r} was used.")
+        else:
+            fields[name] = text
+    return fields
 
 
 def _scene(name: str, refused: list[str]) -> Scene:
@@ -67,14 +78,6 @@ def _scene(name: str, refused: list[str]) -> Scene:
     except BadInput as problem:
         refused.append(f"In the link: {problem}")
         return scene(scene_names()[0])
-
-
-def _again(base: Scene, kappa: str) -> Scene:
-    """kappa once more, now that the scene has its own A0; it was refused before if it is bad."""
-    try:
-        return base.evolve(kappa=kappa)
-    except BadInput:
-        return base
 
 
 if set(EXTRAS) & set(QUANTITIES):

@@ -28,6 +28,8 @@ from .steady.regime import Regime, find_period, irregular
 MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
 #: A motion whose computations differ by more than this has no error estimate worth the name.
 _LOST = 0.3
+#: Periods whose stroboscopic states are kept to decide the regime, however long a run is.
+_KEPT = 420
 #: Fewest periods on which a run is called anything but unsettled.
 _ENOUGH = 40
 
@@ -89,9 +91,9 @@ def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int
     engine = Engine(scene, setting, samples, balance=True, stop=stop)
     engine.start(start)
     strobes = [engine.periods(0)[0]]
-    chunk = max(1, periods // 50)
+    chunk = min(max(1, periods // 50), _KEPT)
     for done in range(0, periods, chunk):
-        strobes.append(engine.periods(min(chunk, periods - done), watch=False)[0][1:])
+        strobes = [*strobes[-_KEPT // chunk - 1 :], engine.periods(min(chunk, periods - done), watch=False)[0][1:]]
         if progress is not None:
             progress(min(done + chunk, periods) / (periods + record))
     engine.forget_peaks()
@@ -100,7 +102,7 @@ def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int
         progress(1.0)
     total.array += engine.counts.array
     strobes.append(np.stack([rows.displacement[samples::samples], rows.velocity[samples::samples]], axis=1))
-    return _Attempt(engine, rows, np.concatenate(strobes))
+    return _Attempt(engine, rows, np.concatenate(strobes)[-_KEPT - 1 :])
 
 
 def _difference(now: _Attempt, before: _Attempt) -> float:

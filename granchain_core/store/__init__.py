@@ -1,5 +1,5 @@
 """Results as HDF5 that other programs open with labelled axes."""
 
-from .files import load, save, save_curve
+from .files import check_writable, load, save, save_curve
 
-__all__ = ["load", "save", "save_curve"]
+__all__ = ["check_writable", "load", "save", "save_curve"]

@@ -41,6 +41,8 @@ _RUN = {  # name: (dimensions, unit, meaning)
     "output_force": (("time",), "N", "force on the wall, elastic and damping"),
     "output_force_elastic": (("time",), "N", "elastic part of the force on the wall, the paper's F_out"),
 }
+#: File systems take 255 bytes; the temporary name needs some of them.
+_LONGEST_NAME = 230
 _MAXIMA = ("max_input_force", "max_output_force", "max_output_force_elastic")
 
 
@@ -91,18 +93,31 @@ def save_curve(curve: Curve, path: str | Path) -> Path:
 def load(path: str | Path) -> Run:
     """The run that `save` wrote. Raises `BadInput` for a file that is not one."""
     try:
-        with h5py.File(path, "r") as file:
-            if int(file.attrs["granchain_schema"]) != SCHEMA:
-                raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
-            group = file["run"]
-            arrays = {n: group[n][()] for n in ("time", "displacement", "velocity", "force", "drive_displacement")}
-            attrs = dict(file.attrs)
-    except (OSError, KeyError) as problem:
+        return _read(path)
+    except BadInput:
+        raise
+    except (OSError, KeyError, TypeError, ValueError, AttributeError) as problem:
         raise BadInput(f"{path} is not a run written by granchain: {problem}.") from None
+
+
+def _read(path: str | Path) -> Run:
+    """The run in a file, or whatever h5py, json and the scene have to say about it."""
+    with h5py.File(path, "r") as file:
+        if int(file.attrs["granchain_schema"]) != SCHEMA:
+            raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
+        group = file["run"]
+        arrays = {n: group[n][()] for n in ("time", "displacement", "velocity", "force", "drive_displacement")}
+        attrs = dict(file.attrs)
     regime = json.loads(attrs["regime"])
     regime["lyapunov"] = tuple(regime["lyapunov"]) if regime["lyapunov"] else None
+    scene = Scene.from_json(json.loads(attrs["scene"]))
+    rows = len(arrays["time"])
+    for name, width in (("displacement", (scene.N,)), ("velocity", (scene.N,)), ("force", (scene.N + 1,)),
+                        ("drive_displacement", ())):
+        if arrays[name].shape != (rows, *width):
+            raise BadInput(f"{path}: {name} has shape {arrays[name].shape}, expected {(rows, *width)}.")
     return Run(
-        scene=Scene.from_json(json.loads(attrs["scene"])), samples=int(attrs["samples_per_period"]),
+        scene=scene, samples=int(attrs["samples_per_period"]),
         status=str(attrs["status"]), regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
         error_estimate=_or_none(attrs["accuracy_reached"]), energy_residual=_or_none(attrs["energy_residual"]),
         max_input_force=float(attrs["max_input_force"]), max_output_force=float(attrs["max_output_force"]),
@@ -147,9 +162,28 @@ def _variable(group: h5py.Group, name: str, values: Any, dimensions: tuple[str, 
     data.attrs["units"], data.attrs["long_name"] = unit, meaning
 
 
+def check_writable(path: str | Path) -> None:
+    """Raise `BadInput` if no file can be written at `path`; nothing is left there. Ask before a long computation."""
+    temporary = _temporary(Path(path))
+    try:
+        temporary.touch(exist_ok=False)
+    except OSError as problem:
+        raise BadInput(f"Cannot write {str(path)[:200]}: {problem.strerror or problem}.") from None
+    temporary.unlink()
+
+
+def _temporary(path: Path) -> Path:
+    """The name a file has while it is written, in the folder it will stand in."""
+    if len(os.fsencode(path.name)) > _LONGEST_NAME:
+        raise BadInput(f"Cannot write {str(path)[:60]}…: the name has more than {_LONGEST_NAME} bytes.")
+    if not path.name or path.name == ".." or path.is_dir():
+        raise BadInput(f"Cannot write {str(path)[:200]}: it is a folder; give a file in it.")
+    return path.with_name(f".{path.name}.{os.getpid()}.tmp")
+
+
 def _write(path: str | Path, write: Callable[[h5py.File], None]) -> Path:
     path = Path(path)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    temporary = _temporary(path)
     try:
         with h5py.File(temporary, "w") as file:
             write(file)
@@ -158,5 +192,5 @@ def _write(path: str | Path, write: Callable[[h5py.File], None]) -> Path:
         os.replace(temporary, path)
     except OSError as problem:
         temporary.unlink(missing_ok=True)
-        raise BadInput(f"Cannot write {path}: {problem.strerror or problem}.") from None
+        raise BadInput(f"Cannot write {str(path)[:200]}: {problem.strerror or problem}.") from None
     return path

@@ -67,10 +67,13 @@ def test_sizes_that_cannot_be_kept_are_refused(words, capsys):
     assert "nearest" in (said := capsys.readouterr().err) or "at most" in said
 
 
-def test_more_periods_than_memory_holds_are_refused_or_kept_no_state_of():
-    """A valid command must not take gigabytes: a million periods of ten thousand beads are 160 GB of strobes."""
-    with pytest.raises(BadInput):  # or run without keeping every strobe: then this test has to learn how that is seen
-        sys.modules["granchain_core.run"]._check_sizes(scene("sec2").evolve(N=10_000), 1_000_000, 1, 1)
+def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
+    """A million periods of ten thousand beads would be 160 GB of strobes."""
+    module = sys.modules["granchain_core.run"]
+    shown = scene("sec2").evolve(N=2, f=3000.0)
+    setting = module.method_for(1e-3)
+    kept = module._attempt(shown, setting, module.rest(shown), (3000, 1, 4), module.new_stop(), None, module.Counts())
+    assert len(kept.strobes) == module._KEPT + 1
 
 
 def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, capsys):
