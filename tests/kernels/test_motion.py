@@ -45,7 +45,7 @@ def random_state(chosen, seed: int):
     """Displacements and velocities with open and closed contacts among them."""
     rng = np.random.default_rng(seed)
     length = 2 * chosen.A0 + float(chosen.static_overlap().max())
-    speed = 2e-3 * np.sqrt(length / 1e-6)
+    speed = 3e-2 * np.sqrt(length / 1e-6)  # fast enough for a dashpot to pull
     return rng.uniform(-1, 1, chosen.N) * length, rng.uniform(-1, 1, chosen.N) * speed
 
 
