@@ -26,6 +26,8 @@ from .scene import Scene
 #: Step of the live method in scaled time where overlaps are about one drive amplitude; RK4 in w is then good to
 #: a few 1e-5 of the displacement with its steps split at contact events, at half the step to a few 1e-6.
 _STEP = 0.2
+#: The same for the oscillation of a bead on its foundation, in radians of it.
+_FOUNDATION_STEP = 0.1
 #: RK4's stability limit on the negative real axis is 2.78; half of it for the fastest dashpot mode 4λ/m.
 _DASHPOT_LIMIT = 1.39
 #: More steps than this in one drive period are refused: one period would take a good part of a minute.
@@ -96,6 +98,8 @@ class Lowered:
             overlap = max(1.0, static)
             strength = slots.dissipation.coefficient * overlap ** _EXPONENT[self.scene.dissipation]
             step = min(step, _DASHPOT_LIMIT / (4.0 * strength * lightest))
+        if slots.foundation is not None:
+            step = min(step, _FOUNDATION_STEP / math.sqrt(slots.foundation.stiffness * lightest))
         steps = max(multiple_of, math.ceil(self.period / step / multiple_of) * multiple_of, 16)
         if steps > MOST_STEPS:
             raise BadInput(

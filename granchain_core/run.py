@@ -70,7 +70,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     regime = _regime(scene, now, periods + record, flag)
     status = "done" if error <= scene.accuracy else "accuracy-not-reached"
     cost = Cost.of(time.perf_counter() - began, total, setting.method)
-    return run_from(now.engine, now.samples, periods * samples, regime, error, cost, status)
+    first = periods * samples + round(begin.phase * samples)
+    return run_from(now.engine, now.samples, first, regime, error, cost, status)
 
 
 def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
@@ -93,7 +94,12 @@ def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int
     strobes = [engine.periods(0)[0]]
     chunk = min(max(1, periods // 50), _KEPT)
     for done in range(0, periods, chunk):
-        strobes = [*strobes[-_KEPT // chunk - 1 :], engine.periods(min(chunk, periods - done), watch=False)[0][1:]]
+        now = min(chunk, periods - done)
+        if start.phase == 0.0:
+            passed, _ = engine.periods(now, watch=False)
+        else:
+            passed = _strobes(engine.record(now * samples), samples)
+        strobes = [*strobes[-_KEPT // chunk - 1 :], passed[1:]]
         if progress is not None:
             progress(min(done + chunk, periods) / (periods + record))
     engine.forget_peaks()
@@ -101,8 +107,13 @@ def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int
     if progress is not None:
         progress(1.0)
     total.array += engine.counts.array
-    strobes.append(np.stack([rows.displacement[samples::samples], rows.velocity[samples::samples]], axis=1))
+    strobes.append(_strobes(rows, samples)[1:])
     return _Attempt(engine, rows, np.concatenate(strobes)[-_KEPT - 1 :])
+
+
+def _strobes(rows: Samples, samples: int) -> np.ndarray:
+    """The states one period apart, (P + 1, 2, N)."""
+    return np.stack([rows.displacement[::samples], rows.velocity[::samples]], axis=1)
 
 
 def _difference(now: _Attempt, before: _Attempt) -> float:
@@ -117,7 +128,7 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> 
     """The regime as far as these periods show it; a long irregular run is told apart by its Lyapunov exponent."""
     tolerance = 10.0 * scene.accuracy
     regime = find_period(attempt.strobes, rounding=min(1e-6, tolerance))
-    if regime.name == "periodic" or periods < _ENOUGH:
+    if regime.name == "periodic" or periods < _ENOUGH or attempt.engine.grid_index != 0:
         return regime
     engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
     engine.start(attempt.engine.state)

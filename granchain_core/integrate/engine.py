@@ -163,6 +163,7 @@ class Engine:
 
     def _begin(self, from_velocity: bool) -> None:
         row = self.lowered.row
+        self.elapsed = 0.0
         self.place(from_velocity)
         if self._adaptive:
             self.work.scale[0] = max(1e-3, float(np.abs(self.y[1 : row - 1]).max()))
@@ -209,6 +210,7 @@ class Engine:
                                                 self.stop)
         self.grid_index = (self.grid_index + count * every) % self.grid
         self.raise_for(status, rows / self.samples)
+        self.elapsed += count / self.samples
         return samples
 
     def forget_peaks(self) -> None:
@@ -234,6 +236,7 @@ class Engine:
             status, done = sampling.run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
                                                 strobes, self.peaks, tops, self.counts.array, self.stop)
             self.raise_for(status, done)
+        self.elapsed += count
         return strobes[:, :, 1:-1], tops
 
     def _certified_periods(self, strobes: np.ndarray, tops: np.ndarray, watch: bool) -> None:
@@ -256,6 +259,7 @@ class Engine:
         if status == sampling.CANCELLED:
             raise Cancelled
         scene, row = self.lowered.scene, self.lowered.row
+        periods += self.elapsed
         when = f"at about {periods * scene.period:.6g} s ({periods:.6g} drive periods)"
         if status == sampling.NOT_FINITE:
             bead = max(1, sampling.first_not_finite(self.y, row))

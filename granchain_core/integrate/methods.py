@@ -10,7 +10,11 @@ from ..lower import Lowered
 
 @dataclass(frozen=True)
 class Method:
-    """One way to integrate. `order` is what it keeps across contact events; `variables` are "uw" or "uv"."""
+    """One way to integrate.
+
+    `order` is what it keeps across contact events, `order_with_cut` what it keeps where tension is cut: the force's
+    kink at F = 0 and its end at δ = 0 are no events that a fixed step is split at. `variables` are "uw" or "uv".
+    """
 
     name: str
     title: str
@@ -21,6 +25,7 @@ class Method:
     restrictions: str
     reference: str
     variables: str = "uw"
+    order_with_cut: float = 1.0
 
 
 @dataclass(frozen=True)

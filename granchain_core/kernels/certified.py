@@ -201,6 +201,8 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
         watch_forces(slots, y, work.k[0], work.forces.e, peaks)
         keep(slots, 0, y, work.k[0], work.forces.e, samples)
     while done < points:
+        if stop[0] != 0:
+            return CANCELLED, row if every > 0 else done
         goal = min(grid, g + points - done)
         limit = period if goal == grid else goal * spacing
         status, h, contact = certified_step(method, slots, beta, t, limit, y, work, clock, counts)
@@ -232,8 +234,6 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
         t = end
         if end == period:
             t, g, events = 0.0, 0, 0
-            if stop[0] != 0:
-                return CANCELLED, row if every > 0 else done
             evaluate(slots, beta, t, y, work.k[0], work.forces)
         else:
             copy(work.k[STAGES], work.k[0])

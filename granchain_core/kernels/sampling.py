@@ -121,6 +121,8 @@ def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts
     m = slots.chain.inverse_mass.size
     keep_strobe(y, stages.k[0], strobes[0])
     for p in range(tops.shape[0]):
+        if first_not_finite(y, m) != 0:  # looked at before a step spreads it, so that the bead can be named
+            return NOT_FINITE, p
         next_period(peaks)
         advance(method, slots, drive, 0, n, dtheta, h, y, stages, peaks, counts, stop)
         if stop[0] != 0:
@@ -145,6 +147,8 @@ def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples,
     watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
     keep(slots, 0, y, stages.k[0], stages.forces.e, samples)
     for row in range(1, samples.displacement.shape[0]):
+        if first_not_finite(y, m) != 0:
+            return NOT_FINITE, row - 1
         advance(method, slots, drive, j, stride, dtheta, h, y, stages, peaks, counts, stop)
         j = 0 if j + stride == n else j + stride
         if stop[0] != 0:
