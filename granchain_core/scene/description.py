@@ -196,9 +196,10 @@ class Scene:
         checked = {name: QUANTITIES[name].check(value) for name, value in changes.items()}
         kappa = checked.pop("kappa", None)
         new = replace(self, **checked)  # type: ignore[arg-type]  # checked above against the table
-        if new.impurities and max(i for i, _ in new.impurities) > new.N:
-            place = max(i for i, _ in new.impurities)
-            raise BadInput(f"number of beads N = {new.N} leaves no bead {place} for the impurity of scene "
+        special = (*new.impurities, *new.start_velocity)
+        if special and max(i for i, _ in special) > new.N:
+            place = max(i for i, _ in special)
+            raise BadInput(f"number of beads N = {new.N} leaves no bead {place}, which is special in scene "
                            f"{self.name!r}; the nearest valid value is {place}.")
         if kappa is not None:
             k = float(kappa) * new.K * math.sqrt(new.A0)
