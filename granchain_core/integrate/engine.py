@@ -12,11 +12,13 @@ from ..kernels import sampling
 from ..kernels.along import Along
 from ..kernels.certified import run_certified
 from ..kernels.dop853 import ALL_STAGES, Dop853, Work
+from ..kernels.events import ENDS
 from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.motion import place
 from ..kernels.naive import Rk4Naive, VerletNaive, naive_motion
 from ..kernels.peaks import ROWS, forget, next_period
 from ..kernels.simd import LANES
+from ..kernels.wide import BLOCK, KEPT, WIDTHS, Wide
 from ..lower import Lowered, lower
 from ..scene import Scene
 from .methods import METHODS, Setting
@@ -110,15 +112,19 @@ class Engine:
         theta = np.pi * np.arange(2 * n + 1 if n <= _LARGEST_TABLE else 0) / n
         driver = lo.slots.driver
         self.drive = np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
-        self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), lo.forces(),
+        self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size),
+                                np.zeros((ENDS, lo.row - 1)), lo.forces(),
                                 self._along())
         self.grid = n
 
-    def _along(self) -> Along | None:
+    def _along(self) -> Along | Wide | None:
         """The workspace of SIMD steps, where there is neither a tension cut nor an energy account in the equations."""
         lo, slots = self.lowered, self.lowered.slots
         if self.setting.method != "rk4-split" or slots.tension is not None or slots.balance is not None:
             return None
+        width = next((lanes for lanes in WIDTHS if lo.row <= lanes), 0)
+        if width:
+            return self._wide(width)
         blocks = -(-lo.row // LANES)
 
         def padded(values: np.ndarray) -> np.ndarray:
@@ -132,6 +138,17 @@ class Engine:
                      now=empty(2 * blocks), before=empty(2 * blocks), acc=empty(2 * blocks), first=empty(2 * blocks),
                      second=empty(2 * blocks), gap=empty(blocks), slope=empty(blocks), elastic=empty(blocks),
                      signs=np.zeros(blocks, dtype=np.int64))
+
+    def _wide(self, width: int) -> Wide:
+        """The workspace of a chain whose bodies fit into one vector."""
+        slots = self.lowered.slots
+
+        def padded(values: np.ndarray) -> np.ndarray:
+            return np.pad(values, (0, width - len(values))).reshape(1, width)
+
+        preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
+        return Wide(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
+                    np.zeros((2 * KEPT, width)), np.zeros((ENDS, width)), np.zeros((3, BLOCK)))
 
     def _prepare_adaptive(self) -> None:
         lo = self.lowered

@@ -42,14 +42,9 @@ class Along(NamedTuple):
     signs: np.ndarray
 
 
-@term
+@kernel
 def smooth_steps(along, slots, drive, j, count, dtheta, h, y, peaks):
-    """Take up to `count` steps from half-step index 2j of the drive; how many were taken. Absent: none."""
-    return 0
-
-
-@smooth_steps.of(Along)
-def _(along, slots, drive, j, count, dtheta, h, y, peaks):
+    """Take up to `count` steps from half-step index 2j of the drive; how many were taken."""
     now, before, blocks = along.now, along.before, along.inverse_mass.shape[0]
     m = slots.chain.inverse_mass.size
     unpack(y, m, now, blocks)

@@ -12,8 +12,20 @@ import numpy as np
 
 from .effects.driver import driver_displacement, driver_velocity
 from .effects.preload import overlap
+from .events import (
+    GAP,
+    GAP_END,
+    IMPULSE,
+    MOST_SPLITS,
+    PATH,
+    RATE,
+    RATE_END,
+    begin_split,
+    first_event,
+    note_event,
+)
 from .jit import kernel, term
-from .motion import motion
+from .motion import copy, motion
 
 
 class Rk4(NamedTuple):
@@ -31,20 +43,20 @@ class Rk4Split(NamedTuple):
 class Stages(NamedTuple):
     """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays.
 
+    `ends` (6, N+1) are overlaps and rates at the ends of a step that is split (events.py).
     `along` is the workspace of steps with SIMD along the chain (along.py), None where the scene or method cannot.
     """
 
     k: np.ndarray
     stage: np.ndarray
     end: np.ndarray
+    ends: np.ndarray
     forces: Any
     along: Any
 
 
-#: More contacts than this many changing in one step: the rest of the step is taken whole.
-_MOST_SPLITS = 64
-#: Events nearer to the step's ends than this fraction are not worth a split.
-_NEAR_END = 1e-6
+#: Steps after which the stop flag is asked at the latest.
+PATIENCE = 4096
 
 
 @kernel
@@ -77,52 +89,35 @@ def rk4(slots, ua, va, ub, vb, h, y, stages):
 
 
 @kernel
-def hermite_root(d0, s0, d1, s1):
-    """Root in [0, 1] of the cubic with values d0, d1 of opposite sign and slopes s0, s1 at the ends."""
-    low, high = 0.0, 1.0
-    a = 2.0 * (d0 - d1) + s0 + s1
-    b = 3.0 * (d1 - d0) - 2.0 * s0 - s1
-    x = d0 / (d0 - d1)
-    for _ in range(30):
-        value = d0 + x * (s0 + x * (b + x * a))
-        if (value > 0.0) == (d0 > 0.0):
-            low = x
-        else:
-            high = x
-        slope = s0 + x * (2.0 * b + 3.0 * a * x)
-        nearer = x - value / slope if slope != 0.0 else low
-        if not (low < nearer < high):
-            nearer = 0.5 * (low + high)
-        if abs(nearer - x) < 1e-12:
-            return nearer
-        x = nearer
-    return x
+def may_change(slots, y, slope, end, end_slope):
+    """Whether a contact may open or close within the step: its overlap has another sign at the end, or turned.
 
-
-@kernel
-def any_change(slots, y, end):
-    """Whether a contact is open at one end of the step and closed at the other."""
+    An overlap that moves towards zero at first and away from it at last may have been beyond in between.
+    """
     changed = 0
     for c in range(slots.chain.stiffness.size):
-        before = overlap(slots.preload, y, c) > 0.0
-        after = overlap(slots.preload, end, c) > 0.0
-        changed += before != after
+        before, after = overlap(slots.preload, y, c) > 0.0, overlap(slots.preload, end, c) > 0.0
+        rising, risen = slope[c] - slope[c + 1] > 0.0, end_slope[c] - end_slope[c + 1] > 0.0
+        changed += (before != after) or (rising != before and risen == before)
     return changed > 0
 
 
 @kernel
-def first_change(slots, h, y, slope, end, end_slope):
-    """Fraction of the step at which the first contact opens or closes; 2 if none does inside."""
-    first = 2.0
+def keep_ends(slots, y, slope, ends, overlaps, rates):
+    """Overlaps and their rates at one end of a step."""
     for c in range(slots.chain.stiffness.size):
-        d0 = overlap(slots.preload, y, c)
-        d1 = overlap(slots.preload, end, c)
-        if (d0 > 0.0) == (d1 > 0.0) or d0 == 0.0:
-            continue
-        root = hermite_root(d0, h * (slope[c] - slope[c + 1]), d1, h * (end_slope[c] - end_slope[c + 1]))
-        if _NEAR_END < root < 1.0 - _NEAR_END and root < first:
-            first = root
-    return first
+        ends[overlaps, c] = overlap(slots.preload, y, c)
+        ends[rates, c] = slope[c] - slope[c + 1]
+
+
+@kernel
+def give_back(slots, ends, y):
+    """Take from y what Simpson's rule gave too much beside contact events."""
+    inverse_mass = slots.chain.inverse_mass
+    m = inverse_mass.size
+    for i in range(1, m - 1):
+        y[i] += inverse_mass[i] * (ends[PATH, i] - ends[PATH, i - 1])
+        y[m + i] += inverse_mass[i] * (ends[IMPULSE, i] - ends[IMPULSE, i - 1])
 
 
 @term
@@ -153,43 +148,42 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
 @step.of(Rk4Split)
 def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
     ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
+    k, end = stages.k, stages.end
+    motion(slots, ub, vb, end, k[3], stages.forces)
     counts[0] += 1
     counts[1] += 4
-    if any_change(slots, y, stages.end):
-        split_rest(slots, theta, dtheta, ub, vb, h, y, stages, counts)
-    else:
-        for i in range(y.size):
-            y[i] = stages.end[i]
-        motion(slots, ub, vb, y, stages.k[0], stages.forces)
+    if may_change(slots, y, k[0], end, k[3]):
+        split(slots, theta, dtheta, ub, vb, h, y, stages, counts)
+    for i in range(y.size):
+        y[i], k[0, i] = end[i], k[3, i]
 
 
 @kernel
-def split_rest(slots, theta, dtheta, u_end, v_end, h, y, stages, counts):
-    """Finish a step in which contacts change: step to the first change, start again there, to the step's end."""
+def split(slots, theta, dtheta, u_end, v_end, h, y, stages, counts):
+    """Repeat a step in which contacts change from event to event; leaves its end in stages.end."""
+    ends, end, k = stages.ends, stages.end, stages.k
+    begin_split(ends)
+    keep_ends(slots, y, k[0], ends, GAP, RATE)
     done = 0.0
-    for _ in range(_MOST_SPLITS):
-        rest = 1.0 - done
-        motion(slots, u_end, v_end, stages.end, stages.k[3], stages.forces)
-        counts[1] += 1
-        first = first_change(slots, h * rest, y, stages.k[0], stages.end, stages.k[3])
+    for _ in range(MOST_SPLITS):
+        keep_ends(slots, end, k[3], ends, GAP_END, RATE_END)
+        first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
         if first > 1.0:
-            break
-        part = first * rest
-        middle = theta + dtheta * (done + 0.5 * part)
-        there = theta + dtheta * (done + part)
+            return
+        part = first * (1.0 - done)
+        middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
         u, v = driver_displacement(slots.driver, there), driver_velocity(slots.driver, there)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
             u, v, h * part, y, stages)
-        for i in range(y.size):
-            y[i] = stages.end[i]
-        motion(slots, u, v, y, stages.k[0], stages.forces)
+        copy(end, y)
+        motion(slots, u, v, y, k[0], stages.forces)
         done += part
+        keep_ends(slots, y, k[0], ends, GAP, RATE)
+        note_event(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
             u_end, v_end, h * (1.0 - done), y, stages)
+        give_back(slots, ends, end)
+        motion(slots, u_end, v_end, end, k[3], stages.forces)
         counts[1] += 8
         counts[2] += 1
-    for i in range(y.size):
-        y[i] = stages.end[i]
-        stages.k[0, i] = stages.k[3, i]
-    motion(slots, u_end, v_end, y, stages.k[0], stages.forces)

@@ -49,6 +49,11 @@ def cache_folder() -> Path:
 CACHE_FOLDER = cache_folder()
 
 
+def inlined(function):
+    """Decorator for what belongs into its caller's code: values that stay in registers."""
+    return numba.njit(nogil=True, fastmath=_FLAGS, error_model="numpy", forceinline=True)(function)
+
+
 def kernel(function):
     """Decorator for compiled, cached kernels on floats and arrays."""
     before = numba.config.CACHE_DIR

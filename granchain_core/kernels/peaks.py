@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from .jit import kernel
-from .simd import choose_peak, larger, load, store
+from .simd import load, store
+from .simd_math import choose_peak, larger
 
 #: Rows of what is remembered of one force: the largest so far, then the last four values, newest first.
 ROWS = 5

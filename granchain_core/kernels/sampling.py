@@ -6,21 +6,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .along import smooth_steps
+from .along import Along, smooth_steps
 from .effects.balance import Balance, account_ends
 from .effects.contact import elastic_force, positive_part
 from .effects.preload import overlap
-from .fixed_step import drive_displacement, drive_velocity, step
+from .fixed_step import PATIENCE, drive_displacement, drive_velocity, step
 from .jit import kernel, term
 from .motion import contact_force, copy, motion, stored_energy
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
+from .wide import Wide, wide_steps
 
 #: Outcome of a kernel: 0 done, positive why it stopped.
 DONE, CANCELLED, NOT_FINITE, STEP_TOO_SMALL, CHATTER = 0, 1, 2, 3, 4
-
-
-#: Steps after which the stop flag is asked at the latest.
-_PATIENCE = 4096
 
 
 class Samples(NamedTuple):
@@ -87,15 +84,29 @@ def keep_strobe(y, dy, strobe):
         strobe[1, i] = dy[i]
 
 
-@kernel
-def advance(method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts, stop):
-    """Take `count` steps from step index j of the period: along the chain while no contact changes, else one by one.
+@term
+def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts, stop):
+    """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
 
     The stop flag is asked often enough to end within milliseconds; the steps are then incomplete.
     """
+    for i in range(j, j + count):
+        step(method, slots, drive, i, i * dtheta, dtheta, h, y, stages, counts)
+        watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+        if i % PATIENCE == 0 and stop[0] != 0:
+            break
+
+
+@advance.of(Wide)
+def _(along, method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts, stop):
+    wide_steps(along, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, peaks, counts, stop)
+
+
+@advance.of(Along)
+def _(along, method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts, stop):
     done = 0
     while done < count and stop[0] == 0:
-        smooth = smooth_steps(stages.along, slots, drive, j + done, min(count - done, _PATIENCE), dtheta, h, y, peaks)
+        smooth = smooth_steps(along, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y, peaks)
         if smooth > 0:
             done += smooth
             counts[0] += smooth
@@ -124,7 +135,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts
         if first_not_finite(y, m) != 0:  # looked at before a step spreads it, so that the bead can be named
             return NOT_FINITE, p
         next_period(peaks)
-        advance(method, slots, drive, 0, n, dtheta, h, y, stages, peaks, counts, stop)
+        advance(stages.along, method, slots, drive, 0, n, dtheta, h, y, stages, peaks, counts, stop)
         if stop[0] != 0:
             return CANCELLED, p
         if first_not_finite(y, m) != 0:
@@ -149,7 +160,7 @@ def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples,
     for row in range(1, samples.displacement.shape[0]):
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, row - 1
-        advance(method, slots, drive, j, stride, dtheta, h, y, stages, peaks, counts, stop)
+        advance(stages.along, method, slots, drive, j, stride, dtheta, h, y, stages, peaks, counts, stop)
         j = 0 if j + stride == n else j + stride
         if stop[0] != 0:
             return CANCELLED, row

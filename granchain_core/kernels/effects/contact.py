@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import kernel
-from ..simd import gate, root
+from ..simd_math import gate, root
 
 
 class Chain(NamedTuple):

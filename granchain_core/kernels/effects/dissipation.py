@@ -13,7 +13,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..jit import term
-from ..simd import gate, load, root
+from ..simd import load
+from ..simd_math import gate, root
 
 
 class LinearDashpot(NamedTuple):

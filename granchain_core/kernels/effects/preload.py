@@ -40,3 +40,25 @@ def lane_overlap(preload, left, right, c):
 @lane_overlap.of(Preload)
 def _(preload, left, right, c):
     return left - right + load(preload.static, c)
+
+
+@term
+def row_values(preload, read, width):
+    """The slot with its values as one vector, read by `read(width, array, 0)`."""
+    return None
+
+
+@row_values.of(Preload)
+def _(preload, read, width):
+    return Preload(read(width, preload.static, 0))
+
+
+@term
+def row_overlap(preload, left, right):
+    """δ of all contacts from the displacements on their two sides."""
+    return left - right
+
+
+@row_overlap.of(Preload)
+def _(preload, left, right):
+    return left - right + preload.static

@@ -1,0 +1,292 @@
+"""A short chain in one vector: all bodies in the lanes of a register pair, RK4 split at contact events.
+
+Body i is lane i of the displacements and of w, contact c lane c of the overlaps; bodies beyond the wall have no
+mass to move and contacts beyond it no stiffness. A step is three new slopes and the slope at its end, which is the
+next step's first: nothing is evaluated twice, and nothing goes through memory but the forces at the two ends.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .effects.contact import elastic_force, positive_part
+from .effects.dissipation import LAWS, damping, primitive
+from .effects.driver import driver_displacement, driver_velocity
+from .effects.foundation import pull_back
+from .effects.preload import row_overlap, row_values
+from .events import GAP, IMPULSE, MOST_SPLITS, PATH, RATE, begin_split, first_event, note_event
+from .fixed_step import drive_displacement, drive_velocity
+from .jit import inlined, kernel, term
+from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
+from .simd import at, blank, from_left, from_right, load, load16, load32, positive_mask, store, with_first
+from .simd_math import larger
+
+
+class Width8(NamedTuple):
+    """Up to 8 bodies."""
+
+    lanes: int = 8
+
+
+class Width16(NamedTuple):
+    """Up to 16 bodies."""
+
+    lanes: int = 16
+
+
+class Width32(NamedTuple):
+    """Up to 32 bodies."""
+
+    lanes: int = 32
+
+
+#: The widths there are, by their number of bodies.
+WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
+
+#: A step's beginning and its end in the workspace, and what is kept of each, one row a vector.
+BEGIN, END = 0, 1
+U, W, DU, DW, ELASTIC, KEPT = range(6)
+#: Steps whose forces are looked through together.
+BLOCK = 32
+#: The top of the quartic through a maximum's neighbours is at most so much above the maximum itself.
+_TOP = 1.25
+
+
+class Wide(NamedTuple):
+    """Workspace of a chain of up to `width` bodies: values padded with zeros (1, width), `rows` (10, width) of states.
+
+    `ends` (6, width) are overlaps and rates at the ends of a step that is split (events.py), `forces` (3, 32) input
+    force, output force and its elastic part of the last steps.
+    """
+
+    width: Any
+    inverse_mass: np.ndarray
+    stiffness: np.ndarray
+    preload: Any
+    rows: np.ndarray
+    ends: np.ndarray
+    forces: np.ndarray
+
+
+class Row(NamedTuple):
+    """The chain's values as vectors, and its slots."""
+
+    inverse_mass: Any
+    stiffness: Any
+    dissipation: Any
+    foundation: Any
+    preload: Any
+
+
+class At(NamedTuple):
+    """The chain at one instant: state, slope, overlaps, their rates, elastic forces."""
+
+    u: Any
+    w: Any
+    du: Any
+    dw: Any
+    gap: Any
+    rate: Any
+    elastic: Any
+
+
+@term
+def load_row(width, array, row):
+    """One row of a (rows, width) array."""
+    raise NotImplementedError
+
+
+@load_row.of(Width8)
+def _(width, array, row):
+    return load(array, row)
+
+
+@load_row.of(Width16)
+def _(width, array, row):
+    return load16(array, row)
+
+
+@load_row.of(Width32)
+def _(width, array, row):
+    return load32(array, row)
+
+
+@term
+def row_velocity(law, w, inverse_mass, G):
+    """v = w + (G_{i-1} − G_i)/m of all beads."""
+    return w
+
+
+for _law in LAWS:
+
+    @row_velocity.of(_law)
+    def _(law, w, inverse_mass, G):
+        return w + inverse_mass * (from_left(blank(G), G) - G)
+
+
+@inlined
+def row_of(wide, slots):
+    """The chain's values in registers."""
+    width = wide.width
+    return Row(load_row(width, wide.inverse_mass, 0), load_row(width, wide.stiffness, 0), slots.dissipation,
+               slots.foundation, row_values(wide.preload, load_row, width))
+
+
+@inlined
+def row_slope(row, u0, u, w):
+    """Overlaps, elastic forces and slopes of displacements and w; the driver's own slope is left at zero."""
+    here = with_first(u, u0)
+    gap = row_overlap(row.preload, here, from_right(here, blank(here)))
+    d = positive_part(gap)
+    e = elastic_force(row.stiffness, d)
+    du = row_velocity(row.dissipation, w, row.inverse_mass, primitive(row.dissipation, d))
+    dw = row.inverse_mass * pull_back(row.foundation, from_left(blank(e), e) - e, here)
+    return gap, e, du, dw
+
+
+@inlined
+def row_at(row, u0, v0, u, w):
+    """The chain in state (u, w) with the driver at u0, moving at v0."""
+    gap, e, du, dw = row_slope(row, u0, u, w)
+    moving = with_first(du, v0)
+    return At(u, w, du, dw, gap, moving - from_right(moving, blank(moving)), e)
+
+
+@inlined
+def row_step(row, ua, ub, vb, h, x, path, impulse):
+    """One RK4 step from x; the driver at ua at mid-step, at ub, moving at vb, at the end.
+
+    `path` and `impulse` are what is added to displacements and w at the end.
+    """
+    half, sixth = 0.5 * h, h / 6.0
+    _, _, du2, dw2 = row_slope(row, ua, x.u + half * x.du, x.w + half * x.dw)
+    _, _, du3, dw3 = row_slope(row, ua, x.u + half * du2, x.w + half * dw2)
+    _, _, du4, dw4 = row_slope(row, ub, x.u + h * du3, x.w + h * dw3)
+    return row_at(row, ub, vb, x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + path,
+                  x.w + sixth * (x.dw + dw4 + 2.0 * (dw2 + dw3)) + impulse)
+
+
+@inlined
+def store_at(wide, end, x):
+    """Write the chain at a step's beginning or end into the workspace."""
+    first = KEPT * end
+    store(wide.rows, first + U, x.u)
+    store(wide.rows, first + W, x.w)
+    store(wide.rows, first + DU, x.du)
+    store(wide.rows, first + DW, x.dw)
+    store(wide.rows, first + ELASTIC, x.elastic)
+    store(wide.ends, 2 * end + GAP, x.gap)
+    store(wide.ends, 2 * end + RATE, x.rate)
+
+
+@inlined
+def load_at(wide, end):
+    """The chain at a step's beginning or end from the workspace."""
+    width, rows, first = wide.width, wide.rows, KEPT * end
+    return At(load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
+              load_row(width, rows, first + DW), load_row(width, wide.ends, 2 * end + GAP),
+              load_row(width, wide.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
+
+
+@inlined
+def given_back(row, excess):
+    """What the beads' displacements or w have too little of, from what Simpson's rule gives too much."""
+    return row.inverse_mass * (excess - from_left(blank(excess), excess))
+
+
+@kernel
+def split_row(wide, slots, theta, dtheta, u_end, v_end, h, counts):
+    """Repeat the step in the workspace from contact event to contact event; its end is written there anew."""
+    ends, row, driver, done = wide.ends, row_of(wide, slots), slots.driver, 0.0
+    begin_split(ends)
+    for _ in range(MOST_SPLITS):
+        first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
+        if first > 1.0:
+            return
+        part = first * (1.0 - done)
+        middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
+        start = load_at(wide, BEGIN)
+        event = row_step(row, driver_displacement(driver, middle), driver_displacement(driver, there),
+                         driver_velocity(driver, there), h * part, start, blank(start.u), blank(start.w))
+        store_at(wide, BEGIN, event)
+        done += part
+        note_event(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
+        middle = theta + dtheta * 0.5 * (1.0 + done)
+        end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
+                       given_back(row, load_row(wide.width, ends, PATH)),
+                       given_back(row, load_row(wide.width, ends, IMPULSE)))
+        store_at(wide, END, end)
+        counts[1] += 8
+        counts[2] += 1
+
+
+@inlined
+def keep_forces(wide, row, last, k, x):
+    """Write input force, output force and its elastic part at step k of a block; returns them."""
+    store(wide.ends, GAP, x.gap)
+    store(wide.ends, RATE, x.rate)
+    store(wide.rows, ELASTIC, x.elastic)
+    gap, rate, elastic = wide.ends[GAP, last], wide.ends[RATE, last], wide.rows[ELASTIC, last]
+    pushed = at(x.elastic, 0) + damping(row.dissipation, positive_part(at(x.gap, 0))) * at(x.rate, 0)
+    passed = elastic + damping(row.dissipation, positive_part(gap)) * rate
+    wide.forces[0, k], wide.forces[1, k], wide.forces[2, k] = pushed, passed, elastic
+    return pushed, passed, elastic
+
+
+@kernel
+def watch_block(values, count, largest, peaks, first):
+    """Follow one force through the steps of a block; step by step only where a largest value may be among them."""
+    skipped = 0 if _TOP * largest > peaks[first] else max(0, count - 4)
+    for k in range(skipped, count):
+        watch(peaks, first, values[k])
+
+
+@kernel
+def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, peaks, counts, stop):
+    """Take `count` steps from step index j of the period, slope dy and forces e at the end included.
+
+    The stop flag leaves them incomplete.
+    """
+    rows, row = wide.rows, row_of(wide, slots)
+    m = slots.chain.inverse_mass.size
+    for i in range(m):
+        rows[U, i], rows[W, i] = y[i], y[m + i]
+    x = row_at(row, drive_displacement(slots, drive, 2 * j, dtheta), drive_velocity(slots, drive, 2 * j, dtheta),
+               load_row(wide.width, rows, U), load_row(wide.width, rows, W))
+    closed, rising, nothing = positive_mask(x.gap), positive_mask(x.rate), blank(x.w)
+    for first in range(j, j + count, BLOCK):
+        block = min(BLOCK, j + count - first)
+        top_in, top_out, top_elastic = -np.inf, -np.inf, -np.inf
+        for k in range(block):
+            i = 2 * (first + k)
+            ua, ub = drive_displacement(slots, drive, i + 1, dtheta), drive_displacement(slots, drive, i + 2, dtheta)
+            vb = drive_velocity(slots, drive, i + 2, dtheta)
+            end = row_step(row, ua, ub, vb, h, x, nothing, nothing)
+            closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
+            # another sign, or moved towards zero at first and away from it at last
+            if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
+                store_at(wide, BEGIN, x)
+                store_at(wide, END, end)
+                split_row(wide, slots, (first + k) * dtheta, dtheta, ub, vb, h, counts)
+                end = load_at(wide, END)
+                closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
+            x, closed, rising = end, closed_after, rising_after
+            pushed, passed, elastic = keep_forces(wide, row, m - 2, k, x)
+            top_in, top_out = larger(top_in, pushed), larger(top_out, passed)
+            top_elastic = larger(top_elastic, elastic)
+        watch_block(wide.forces[0], block, top_in, peaks, INPUT)
+        watch_block(wide.forces[1], block, top_out, peaks, OUTPUT)
+        watch_block(wide.forces[2], block, top_elastic, peaks, OUTPUT_ELASTIC)
+        if stop[0] != 0:
+            break
+    counts[0] += count
+    counts[1] += 4 * count
+    store_at(wide, BEGIN, x)
+    for i in range(1, m - 1):
+        y[i], y[m + i], dy[i], dy[m + i] = rows[U, i], rows[W, i], rows[DU, i], rows[DW, i]
+        e[i] = rows[ELASTIC, i]
+    e[0] = rows[ELASTIC, 0]
+    y[0] = drive_displacement(slots, drive, 2 * (j + count), dtheta)
+    dy[0] = drive_velocity(slots, drive, 2 * (j + count), dtheta)
