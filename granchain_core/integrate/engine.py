@@ -17,7 +17,7 @@ from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.motion import place
 from ..kernels.naive import Rk4Naive, VerletNaive, naive_motion
 from ..kernels.peaks import ROWS, forget, next_period
-from ..kernels.simd import LANES
+from ..kernels.simd import LANES, aligned
 from ..kernels.wide import BLOCK, KEPT, WIDTHS, Wide
 from ..lower import Lowered, lower
 from ..scene import Scene
@@ -144,11 +144,13 @@ class Engine:
         slots = self.lowered.slots
 
         def padded(values: np.ndarray) -> np.ndarray:
-            return np.pad(values, (0, width - len(values))).reshape(1, width)
+            row = aligned(1, width)
+            row[0, : len(values)] = values
+            return row
 
         preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
         return Wide(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
-                    np.zeros((2 * KEPT, width)), np.zeros((ENDS, width)), np.zeros((3, BLOCK)))
+                    aligned(2 * KEPT, width), aligned(ENDS, width), np.zeros((3, BLOCK)))
 
     def _prepare_adaptive(self) -> None:
         lo = self.lowered

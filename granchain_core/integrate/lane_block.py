@@ -12,6 +12,7 @@ from ..kernels.lanes import LANES, REMEMBERED
 from ..kernels.motion import place
 from ..kernels.peaks import ROWS
 from ..kernels.sampling import CANCELLED
+from ..kernels.simd import aligned
 from ..lower import Lowered, lower
 from ..scene import Scene
 from .engine import State
@@ -32,20 +33,18 @@ class LaneBlock:
         lowered = lower(example)
         self.stop = stop
         n, slots = example.N, lowered.slots
-        one = (1, LANES)
         dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
         self.lanes = kernels.Lanes(
-            inverse_mass=np.zeros((n + 2, LANES)), stiffness=np.zeros((n + 1, LANES)),
-            dissipation=None if dissipation is None else type(dissipation)(np.zeros(one)),
-            foundation=None if foundation is None else type(foundation)(np.zeros(one)),
-            preload=None if preload is None else type(preload)(np.zeros((n + 1, LANES))),
-            turn=np.zeros((2, LANES)), beta=np.zeros(one), h=np.zeros(one),
+            inverse_mass=aligned(n + 2), stiffness=aligned(n + 1),
+            dissipation=None if dissipation is None else type(dissipation)(aligned(1)),
+            foundation=None if foundation is None else type(foundation)(aligned(1)),
+            preload=None if preload is None else type(preload)(aligned(n + 1)),
+            turn=aligned(2), beta=aligned(1), h=aligned(1),
         )
         rows = 2 * (n + 2)
         whole = [np.zeros(LANES, dtype=np.int64) for _ in range(5)]
         self.state = kernels.LaneState(
-            y=np.zeros((rows, LANES)), acc=np.zeros((rows, LANES)), first=np.zeros((rows, LANES)),
-            second=np.zeros((rows, LANES)), phase=np.zeros((2, LANES)), peaks=np.zeros((3 * ROWS, LANES)),
+            y=aligned(rows), phase=aligned(2), peaks=aligned(3 * ROWS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4],
             strobes=np.zeros((LANES, REMEMBERED, rows)), tops=np.zeros((LANES, REMEMBERED, 3)),
         )

@@ -11,14 +11,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .effects.contact import elastic_force, positive_part
+from .effects.contact import divided_elastic_force, elastic_force, positive_part
 from .effects.dissipation import damping, lane_values, lane_velocity, primitive
 from .effects.foundation import lane_foundation, pull_back
 from .effects.preload import lane_overlap
-from .jit import kernel
+from .jit import inlined, kernel
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, watch_lanes
 from .sampling import CANCELLED, DONE, NOT_FINITE
-from .simd import LANES, load, store
+from .simd import LANES, blank, load, store
 
 #: Strobes remembered of each lane.
 REMEMBERED = 432
@@ -45,16 +45,13 @@ class Lanes(NamedTuple):
 
 
 class LaneState(NamedTuple):
-    """Where the lanes are: state and workspaces (2(N+2), 8), sin and cos of the phase (2, 8), peaks (15, 8).
+    """Where the lanes are: state (2(N+2), 8), sin and cos of the phase (2, 8), peaks (15, 8).
 
     Per lane: steps in a period and steps left, periods run, the period to stop at in any case, the earliest period to
     stop at when it may have settled, strobes (8, R, 2(N+2)) and largest forces (8, R, 3) as rings.
     """
 
     y: np.ndarray
-    acc: np.ndarray
-    first: np.ndarray
-    second: np.ndarray
     phase: np.ndarray
     peaks: np.ndarray
     steps: np.ndarray
@@ -66,31 +63,90 @@ class LaneState(NamedTuple):
     tops: np.ndarray
 
 
-@kernel
-def stage(lanes, law, foundation, u0, y, state, out, h, forward, weight):
-    """One Runge–Kutta stage: slope at y with the driver at u0; out = state + forward·h·slope, acc += weight·h·slope."""
+class Bead(NamedTuple):
+    """One bead of one Runge–Kutta stage in all lanes: state, elastic force and G of the contact on its left."""
+
+    u: Any
+    w: Any
+    e: Any
+    G: Any
+
+
+@inlined
+def first_bead(lanes, law, u0, u, w):
+    """Bead 1 of a stage with the driver at u0."""
+    d = positive_part(lane_overlap(lanes.preload, u0, u, 0))
+    return Bead(u, w, elastic_force(load(lanes.stiffness, 0), d), primitive(law, d))
+
+
+@inlined
+def bead_slope(lanes, law, foundation, force, bead, i, right, right_w):
+    """Slope of bead i, which is `bead`, between its neighbours; and the next bead with the contact between them.
+
+    `force` is the elastic force's function.
+    """
+    d = positive_part(lane_overlap(lanes.preload, bead.u, right, i))
+    e = force(load(lanes.stiffness, i), d)
+    G = primitive(law, d)
+    inverse = load(lanes.inverse_mass, i)
+    du = lane_velocity(law, bead.w, inverse, bead.G, G)
+    dw = inverse * pull_back(foundation, bead.e - e, bead.u)
+    return du, dw, Bead(right, right_w, e, G)
+
+
+@inlined
+def lane_step(lanes, law, foundation, y, h, u0, middle, end):
+    """One RK4 step in place, the driver at u0, at `middle` and at `end`.
+
+    The four stages run along the chain one bead behind another, so that a step goes through memory once. The stages'
+    states y1, y2, y3 are all there is to remember: y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
+    """
     m = lanes.inverse_mass.shape[0]
-    here = load(y, 1)
-    d = positive_part(lane_overlap(lanes.preload, u0, here, 0))
-    e_left = elastic_force(load(lanes.stiffness, 0), d)
-    G_left = primitive(law, d)
-    ahead, share = h * forward, h * weight
-    for i in range(1, m - 1):
-        right = load(y, i + 1)
-        d = positive_part(lane_overlap(lanes.preload, here, right, i))
-        e = elastic_force(load(lanes.stiffness, i), d)
-        G = primitive(law, d)
-        inverse = load(lanes.inverse_mass, i)
-        du = lane_velocity(law, load(y, m + i), inverse, G_left, G)
-        dw = inverse * pull_back(foundation, e_left - e, here)
-        store(out, i, load(state.y, i) + ahead * du)
-        store(out, m + i, load(state.y, m + i) + ahead * dw)
-        store(state.acc, i, load(state.acc, i) + share * du)
-        store(state.acc, m + i, load(state.acc, m + i) + share * dw)
-        here, e_left, G_left = right, e, G
+    n = m - 2
+    half, sixth, third = 0.5 * h, (1.0 / 6.0) * h, 1.0 / 3.0
+    zero = blank(h)
+    nothing = Bead(zero, zero, zero, primitive(law, zero))
+    one, two, three, four = first_bead(lanes, law, u0, load(y, 1), load(y, m + 1)), nothing, nothing, nothing
+    sum_u, sum_w, whole_u, whole_w = zero, zero, zero, zero
+    for i in range(1, n + 4):
+        u1, w1, u2, w2, u3, w3 = zero, zero, zero, zero, zero, zero
+        if i <= n:
+            u, w = one.u, one.w
+            du, dw, one = bead_slope(lanes, law, foundation, elastic_force, one, i, load(y, i + 1), load(y, m + i + 1))
+            u1, w1 = u + half * du, w + half * dw
+        if i == 1:
+            two = first_bead(lanes, law, middle, u1, w1)
+            continue
+        if i <= n + 1:
+            before = two
+            du, dw, two = bead_slope(lanes, law, foundation, divided_elastic_force, two, i - 1, u1, w1)
+            u2, w2 = load(y, i - 1) + half * du, load(y, m + i - 1) + half * dw
+            new_u, new_w = before.u + 2.0 * u2, before.w + 2.0 * w2
+        else:
+            new_u, new_w = zero, zero
+        if i == 2:
+            three = first_bead(lanes, law, middle, u2, w2)
+            sum_u, sum_w = new_u, new_w
+            continue
+        if i <= n + 2:
+            du, dw, three = bead_slope(lanes, law, foundation, elastic_force, three, i - 2, u2, w2)
+            u, w = load(y, i - 2), load(y, m + i - 2)
+            u3, w3 = u + h * du, w + h * dw
+            newer_u, newer_w = sum_u + (u3 - u), sum_w + (w3 - w)
+        else:
+            newer_u, newer_w = zero, zero
+        sum_u, sum_w = new_u, new_w
+        if i == 3:
+            four = first_bead(lanes, law, end, u3, w3)
+            whole_u, whole_w = newer_u, newer_w
+            continue
+        du, dw, four = bead_slope(lanes, law, foundation, divided_elastic_force, four, i - 3, u3, w3)
+        store(y, i - 3, third * whole_u + sixth * du)
+        store(y, m + i - 3, third * whole_w + sixth * dw)
+        whole_u, whole_w = newer_u, newer_w
 
 
-@kernel
+@inlined
 def watch_lane_forces(lanes, law, u0, v0, state):
     """Follow input force, output force and its elastic part in all lanes."""
     m, y = lanes.inverse_mass.shape[0], state.y
@@ -118,18 +174,11 @@ def lane_steps(lanes, state, count):
     h, beta = load(lanes.h, 0), load(lanes.beta, 0)
     c, s = load(lanes.turn, 0), load(lanes.turn, 1)
     sine, cosine = load(state.phase, 0), load(state.phase, 1)
-    y, rows = state.y, state.y.shape[0]
     for _ in range(count):
-        for i in range(rows):
-            store(state.acc, i, load(y, i))
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
-        stage(lanes, law, foundation, sine, y, state, state.first, h, 0.5, 1.0 / 6.0)
-        stage(lanes, law, foundation, middle, state.first, state, state.second, h, 0.5, 1.0 / 3.0)
-        stage(lanes, law, foundation, middle, state.second, state, state.first, h, 1.0, 1.0 / 3.0)
-        sine, cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
-        stage(lanes, law, foundation, sine, state.first, state, state.second, h, 0.0, 1.0 / 6.0)
-        for i in range(rows):
-            store(y, i, load(state.acc, i))
+        end, cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
+        lane_step(lanes, law, foundation, state.y, h, sine, middle, end)
+        sine = end
         watch_lane_forces(lanes, law, sine, beta * cosine, state)
     store(state.phase, 0, sine)
     store(state.phase, 1, cosine)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from .jit import kernel
-from .simd import load, store
+from .jit import inlined, kernel
+from .simd import load, positive_mask, store
 from .simd_math import choose_peak, larger
 
 #: Rows of what is remembered of one force: the largest so far, then the last four values, newest first.
 ROWS = 5
+
+#: The top of the quartic is at most so many times the largest of its values: its neighbours are near (choose_peak).
+HIGHEST = 1.25
 
 #: Where the memories of the three forces start in an array of peaks.
 INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
@@ -55,13 +58,15 @@ def next_period(peaks):
         peaks[row] = -np.inf
 
 
-@kernel
+@inlined
 def watch_lanes(peaks, row, value):
     """Follow one force in all lanes; its memory starts at row `row` of a (rows, 8) array."""
     d, c = load(peaks, row + 1), load(peaks, row + 2)
     b, a = load(peaks, row + 3), load(peaks, row + 4)
-    top = choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value))
-    store(peaks, row, larger(larger(load(peaks, row), value), top))
+    largest = larger(load(peaks, row), value)
+    if positive_mask(HIGHEST * c - largest) & positive_mask(c - b) & ~positive_mask(d - c) != 0:
+        largest = larger(largest, choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value)))
+    store(peaks, row, largest)
     store(peaks, row + 4, b)
     store(peaks, row + 3, c)
     store(peaks, row + 2, d)

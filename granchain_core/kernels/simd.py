@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import operator
 
+import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
@@ -75,6 +76,14 @@ def _binary(operation, instruction) -> None:
 for _operation, _instruction in ((operator.add, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul"),
                                  (operator.truediv, "fdiv")):
     _binary(_operation, _instruction)
+
+
+def aligned(rows: int, lanes: int = LANES) -> np.ndarray:
+    """Zeros (rows, lanes) that begin on a cache line: a vector across two of them costs two accesses."""
+    spare = 8
+    whole = np.zeros(rows * lanes + spare)
+    first = -(whole.ctypes.data // 8) % spare
+    return whole[first : first + rows * lanes].reshape(rows, lanes)
 
 
 @intrinsic

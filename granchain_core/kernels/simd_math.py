@@ -64,6 +64,16 @@ def _vector_root(typingctx, value):
 
 
 @intrinsic
+def divided_root(typingctx, value):
+    """√ of every lane by the divider, whatever else there is: what waits for it leaves the other units free."""
+
+    def codegen(context, builder, sig, args):
+        return _llvm_root(builder, sig.args[0].ir, args[0])
+
+    return value(value), codegen
+
+
+@intrinsic
 def _vector_gate(typingctx, value, chosen):
     def codegen(context, builder, sig, args):
         kind = sig.args[0].ir
@@ -122,6 +132,27 @@ def root(value):
 @overload(root)
 def _root(value):
     return (lambda value: _vector_root(value)) if isinstance(value, VectorType) else (lambda value: math.sqrt(value))
+
+
+@intrinsic
+def _vector_clip(typingctx, value):
+    def codegen(context, builder, sig, args):
+        zero = ir.Constant(args[0].type, [0.0] * args[0].type.count)
+        return builder.select(builder.fcmp_ordered("<", args[0], zero), zero, args[0])
+
+    return value(value), codegen
+
+
+def clip(overlap):
+    """0 where `overlap` < 0, else itself: a NaN stays one. For vectors a single instruction."""
+    return 0.0 if overlap < 0.0 else overlap
+
+
+@overload(clip)
+def _clip(overlap):
+    if isinstance(overlap, VectorType):
+        return lambda overlap: _vector_clip(overlap)
+    return lambda overlap: 0.0 if overlap < 0.0 else overlap
 
 
 def gate(overlap, value):

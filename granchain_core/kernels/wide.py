@@ -19,7 +19,7 @@ from .effects.preload import row_overlap, row_values
 from .events import GAP, IMPULSE, MOST_SPLITS, PATH, RATE, begin_split, first_event, note_event
 from .fixed_step import drive_displacement, drive_velocity
 from .jit import inlined, kernel, term
-from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
+from .peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from .simd import at, blank, from_left, from_right, load, load16, load32, positive_mask, store, with_first
 from .simd_math import larger
 
@@ -50,8 +50,6 @@ BEGIN, END = 0, 1
 U, W, DU, DW, ELASTIC, KEPT = range(6)
 #: Steps whose forces are looked through together.
 BLOCK = 32
-#: The top of the quartic through a maximum's neighbours is at most so much above the maximum itself.
-_TOP = 1.25
 
 
 class Wide(NamedTuple):
@@ -238,7 +236,7 @@ def keep_forces(wide, row, last, k, x):
 @kernel
 def watch_block(values, count, largest, peaks, first):
     """Follow one force through the steps of a block; step by step only where a largest value may be among them."""
-    skipped = 0 if _TOP * largest > peaks[first] else max(0, count - 4)
+    skipped = 0 if HIGHEST * largest > peaks[first] else max(0, count - 4)
     for k in range(skipped, count):
         watch(peaks, first, values[k])
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import kernel
-from ..simd_math import gate, root
+from ..simd_math import clip, divided_root, root
 
 
 class Chain(NamedTuple):
@@ -25,13 +25,19 @@ class Chain(NamedTuple):
 @kernel
 def positive_part(overlap):
     """[δ]_+, written so that a NaN overlap stays NaN instead of cutting the chain there."""
-    return gate(overlap, overlap)
+    return clip(overlap)
 
 
 @kernel
 def elastic_force(stiffness, d):
     """K d^{3/2} for an overlap d that is already non-negative."""
     return stiffness * d * root(d)
+
+
+@kernel
+def divided_elastic_force(stiffness, d):
+    """The same of vectors with the root from the divider: used for every other one it keeps all units busy."""
+    return stiffness * d * divided_root(d)
 
 
 @kernel
