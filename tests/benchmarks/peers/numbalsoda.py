@@ -1,0 +1,43 @@
+"""numbalsoda: LSODA in C++ and DOP853 in Fortran, called from Python with a compiled right-hand side."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import numpy as np
+
+from .. import problem
+from ..case import Case, Solve, case_of, rest, rungs
+from ..problem import Solved
+
+_STEPS = 100_000_000
+
+
+def missing() -> str:
+    """Why it cannot run, or nothing."""
+    return "" if importlib.util.find_spec("numbalsoda") else "numbalsoda is not installed"
+
+
+def solver(method: str, address: int, tolerance: float) -> Solve:
+    """`lsoda` or `dop853` of numbalsoda with rtol = atol = tolerance."""
+    import numbalsoda
+
+    call = getattr(numbalsoda, method)
+
+    def solve(beta: float, times: np.ndarray) -> Solved:
+        data = np.array([problem.BEADS, beta, 0.0])
+        states, success = call(address, rest(), times, data, tolerance, tolerance, _STEPS)
+        return Solved(states if success else np.full_like(states, np.nan), int(data[2]))
+
+    return solve
+
+
+def cases() -> list[Case]:
+    """LSODA and DOP853 in both forms."""
+    found = []
+    for form in problem.FORMS:
+        address = problem.callback(form, "t y dy p").address
+        for method in ("lsoda", "dop853"):
+            found.append(case_of(f"numbalsoda {method}", form, lambda t, m=method, a=address: solver(m, a, t),
+                                 rungs(1e-3, 1e-13), rungs(1e-4, 1e-8, 2), 1))
+    return found
