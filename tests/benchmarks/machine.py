@@ -87,6 +87,17 @@ def versions() -> dict[str, str]:
     return found
 
 
+def peak_megabytes() -> float:
+    """Largest resident memory of this process so far; not `ru_maxrss`, which a child inherits from its parent."""
+    try:
+        for line in Path("/proc/self/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / 1024
+    except OSError:
+        pass
+    return float("nan")
+
+
 def load() -> str:
     """How busy the machine is: numbers taken beside other work are upper bounds."""
     return f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"

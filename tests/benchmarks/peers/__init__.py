@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from types import ModuleType
 
-from . import c_program, cyrk, diffrax, granchain, heyoka, numbalsoda, scipy
+#: In the order of the tables; a peer is imported only when it is asked for.
+PEERS = ("granchain", "c_program", "numbalsoda", "cyrk", "heyoka", "scipy", "diffrax")
 
-PEERS: dict[str, ModuleType] = {
-    "granchain": granchain, "c": c_program, "numbalsoda": numbalsoda, "cyrk": cyrk, "heyoka": heyoka,
-    "scipy": scipy, "diffrax": diffrax,
-}
+
+def peer(name: str) -> ModuleType:
+    """The module of a peer."""
+    return import_module(f".{name}", __name__)

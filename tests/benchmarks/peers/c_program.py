@@ -23,7 +23,7 @@ _FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=fa
 #: Step in scaled time at `refine` 1, the same as granchain's live method; settings of the ladder are steps.
 STEP = 0.2
 #: Registers of scenes side by side and contacts that use the square-root unit, tried in this order.
-SHAPES = ((1, 3), (1, 4), (1, 2), (1, 0), (1, 12), (2, 3))
+SHAPES = ((1, 4), (1, 3), (1, 5), (1, 2), (1, 6), (2, 4))
 
 
 def missing() -> str:
@@ -100,7 +100,7 @@ def best_shape() -> tuple[int, int]:
 def cases() -> list[Case]:
     """The trajectory along the chain and the sweep across scenes."""
     ladder = [problem.SAMPLES * k for k in (11, 15, 21, 30, 42, 60, 120, 240, 480, 960, 1920, 3840, 7680, 15360)]
-    steps = (0.4, 0.3, 0.25, 0.2, 0.15, 0.1, 0.07, 0.05)
+    steps = (0.2, 0.15, 0.1, 0.085, 0.07, 0.06, 0.05, 0.04, 0.03)
     return [
         Case("C, AVX-512, rsqrt14", "w", ladder, lambda n: _trajectory(n, False), unit="steps a period"),
         Case("C, AVX-512, sqrt", "w", ladder, lambda n: _trajectory(n, True), unit="steps a period"),

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import problem
+from .. import compiled, problem
 from ..case import Case, Solve, case_of, rest, rungs
 from ..problem import Solved
 
@@ -38,8 +38,8 @@ def cases() -> list[Case]:
     """Three methods in both forms."""
     found = []
     for form in problem.FORMS:
-        called = problem.callback(form, "dy t y p")
+        called = compiled.callback(form, "dy t y p")
         for method in METHODS:
             found.append(case_of(f"CyRK {method}", form, lambda t, m=method, c=called: solver(m, c, t),
-                                 rungs(1e-3, 1e-13), rungs(1e-4, 1e-7, 1), 10))
+                                 rungs(1e-3, 1e-13), rungs(1e-6, 1e-10), 10))
     return found

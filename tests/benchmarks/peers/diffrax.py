@@ -73,5 +73,5 @@ def solver(form: str, method: str, tolerance: float) -> Solve:
 def cases() -> list[Case]:
     """Two methods in both forms; a curve's point is run once before it is timed, so that no compiler is."""
     return [case_of(f"diffrax {method}", form, lambda t, f=form, m=method: solver(f, m, t), rungs(1e-3, 1e-12, 1),
-                    rungs(1e-4, 1e-6, 1), 60, warm=1)
+                    rungs(1e-7, 1e-9, 1), 60, warm=1)
             for form in problem.FORMS for method in METHODS]

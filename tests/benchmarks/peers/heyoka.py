@@ -8,6 +8,7 @@ overlap ε, below which the elastic force is left out. What that changes falls a
 from __future__ import annotations
 
 import importlib.util
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,7 @@ def _integrator(tolerance: float) -> Any:
     u = hy.make_vars(*[f"u{i}" for i in range(n)])
     w = hy.make_vars(*[f"w{i}" for i in range(n)])
     line = [hy.sin(hy.par[0] * hy.time), *u, hy.expression(0.0)]
-    d = [a - b for a, b in zip(line[:-1], line[1:], strict=True)]
+    d = [a - b for a, b in pairwise(line)]
     dashpot = [problem.LAMBDA * hy.par[1 + c] * d[c] for c in range(_CONTACTS)]
     elastic = []
     for c in range(_CONTACTS):
@@ -65,7 +66,7 @@ def _integrator(tolerance: float) -> Any:
 
 def _begun(beta: float) -> np.ndarray:
     """The state at `_BEGIN` from rest, by SciPy: events cannot be told from the start, where all overlaps are 0."""
-    found = solve_ivp(problem.slope_w, (0.0, _BEGIN), rest(), "DOP853", args=(beta,), rtol=1e-13, atol=1e-22)
+    found = solve_ivp(problem.slope_w_numpy, (0.0, _BEGIN), rest(), "DOP853", args=(beta,), rtol=1e-13, atol=1e-22)
     return found.y[:, -1]
 
 

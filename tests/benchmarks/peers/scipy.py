@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.integrate import odeint, solve_ivp
 
-from .. import problem
+from .. import compiled, problem
 from ..case import Case, Solve, case_of, rest, rungs
 from ..problem import Solved
 
-_COMPILED = {"uv": problem.slope_uv, "w": problem.slope_w}
+_COMPILED = {"uv": compiled.slope_uv, "w": compiled.slope_w}
 _NUMPY = {"uv": problem.slope_uv_numpy, "w": problem.slope_w_numpy}
 #: Tolerances below this are refused by solve_ivp.
 _LEAST_RTOL = 3e-14
@@ -52,10 +52,10 @@ def cases() -> list[Case]:
     for form in problem.FORMS:
         slope = _COMPILED[form]
         found.append(case_of("scipy odeint, compiled", form, lambda t, s=slope: ode(s, t), rungs(1e-3, 1e-13),
-                             rungs(1e-4, 1e-8, 1), 10))
+                             rungs(1e-6, 1e-9), 20))
         for method in ("RK45", "DOP853", "LSODA"):
             found.append(case_of(f"scipy {method}, compiled", form, lambda t, s=slope, m=method: ivp(m, s, t),
-                                 rungs(1e-3, 1e-13), rungs(1e-4, 1e-7, 1), 60))
+                                 rungs(1e-3, 1e-13), rungs(1e-7, 1e-9, 1), 60))
         found.append(case_of("scipy LSODA, NumPy", form, lambda t, s=_NUMPY[form]: ivp("LSODA", s, t),
-                             rungs(1e-3, 1e-13), rungs(1e-4, 1e-7, 1), 60))
+                             rungs(1e-3, 1e-13), rungs(1e-7, 1e-9, 1), 60))
     return found
