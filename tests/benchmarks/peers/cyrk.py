@@ -41,5 +41,5 @@ def cases() -> list[Case]:
         called = compiled.callback(form, "dy t y p")
         for method in METHODS:
             found.append(case_of(f"CyRK {method}", form, lambda t, m=method, c=called: solver(m, c, t),
-                                 rungs(1e-3, 1e-13), rungs(1e-6, 1e-10), 10))
+                                 rungs(1e-3, 1e-13, 4), rungs(1e-6, 1e-10), 10))
     return found

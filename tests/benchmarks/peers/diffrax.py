@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
 from typing import Any
 
@@ -45,8 +46,9 @@ def slope(form: str) -> Any:
     return {"uv": in_uv, "w": in_w}[form]
 
 
-def solver(form: str, method: str, tolerance: float) -> Solve:
-    """diffeqsolve, jitted; compiled anew for every number of times asked for."""
+@functools.cache
+def _compiled(form: str, method: str) -> Any:
+    """diffeqsolve, jitted; compiled anew for every number of times asked for, not for a tolerance."""
     import diffrax
     import jax
     import jax.numpy as jnp
@@ -61,10 +63,15 @@ def solver(form: str, method: str, tolerance: float) -> Solve:
             saveat=diffrax.SaveAt(ts=times), stepsize_controller=diffrax.PIDController(tolerance, tolerance))
         return found.ys, found.stats["num_steps"]
 
-    stages = {"Tsit5": 6, "Dopri8": 13}[method]
+    return run
+
+
+def solver(form: str, method: str, tolerance: float) -> Solve:
+    """diffeqsolve with rtol = atol = tolerance; evaluations are its steps, taken or not, times the stages."""
+    run, stages = _compiled(form, method), {"Tsit5": 6, "Dopri8": 13}[method]
 
     def solve(beta: float, times: np.ndarray) -> Solved:
-        states, steps = run(beta, jnp.asarray(times), tolerance)
+        states, steps = run(beta, times, tolerance)
         return Solved(np.asarray(states), stages * int(steps))
 
     return solve

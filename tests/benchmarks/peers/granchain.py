@@ -22,7 +22,7 @@ from ..problem import Solved
 
 #: Its fixed-step methods and the multiples of the live method's steps that are tried.
 FIXED = ("rk4-split", "rk4")
-REFINES = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64, 128, 256)
+REFINES = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 96, 128, 256)
 #: The reference: the certified method at its finest; for the curve, where 300 points are needed, coarser.
 FINEST, CURVE_TOLERANCE = 3e-15, 1e-9
 
@@ -116,7 +116,7 @@ def cases() -> list[Case]:
     """Every method of the engine that is worth it, and the lanes."""
     found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(Setting(m, refine=int(r))), unit="refine")
              for m in FIXED]
-    found.append(Case("granchain dop853", "w", rungs(1e-4, 1e-13),
+    found.append(Case("granchain dop853", "w", rungs(1e-4, 1e-13, 4),
                       lambda t: _recording(Setting("dop853", tolerance=t))))
     found.append(Case("granchain lanes", "w", peaks=lane_peaks, curve_ladder=(1, 2, 3, 4, 5, 6), unit="refine"))
     return found

@@ -101,4 +101,4 @@ def solver(tolerance: float) -> Solve:
 
 def cases() -> list[Case]:
     """One row; its evaluations are Taylor steps. In (u, v) the dashpot's jumps are events as well, at the same cost."""
-    return [case_of("heyoka, events", "w", solver, rungs(1e-4, 1e-15), rungs(1e-5, 1e-8, 1), 60)]
+    return [case_of("heyoka, events", "w", solver, rungs(1e-4, 1e-15, 3), rungs(1e-5, 1e-8, 1), 60)]

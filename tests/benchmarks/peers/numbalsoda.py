@@ -51,5 +51,5 @@ def cases() -> list[Case]:
         here = address(form)
         for method in ("lsoda", "dop853"):
             found.append(case_of(f"numbalsoda {method}", form, lambda t, m=method, a=here: solver(m, a, t),
-                                 rungs(1e-3, 1e-13), rungs(1e-6, 1e-10), 5))
+                                 rungs(1e-3, 1e-13, 4), rungs(1e-6, 1e-10), 5))
     return found
