@@ -35,10 +35,10 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__)
     parser.add_argument("parts", nargs="*", metavar="part", help=f"{', '.join(PARTS)} (startup shows memory too)")
-    parser.add_argument("--quick", action="store_true", help="under a minute, with fewer points and repeats")
+    parser.add_argument("--quick", action="store_true", help="about a minute: fewer points and repeats; trajectory and curve if no part is named")
     parser.add_argument("--only", nargs="+", choices=list(PEERS), default=list(PEERS), help="these peers only")
     options = parser.parse_args()
-    parts = ["startup" if part == "memory" else part for part in options.parts] or list(PARTS)
+    parts = ["startup" if part == "memory" else part for part in options.parts] or list(PARTS[:2] if options.quick else PARTS)
     if wrong := [part for part in parts if part not in PARTS]:
         parser.error(f"there is no part {wrong[0]}; there are {', '.join(PARTS)} and memory")
     began, core = time.perf_counter(), machine.pin()

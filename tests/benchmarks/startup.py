@@ -27,8 +27,12 @@ def child(command: list[str], cache: str) -> dict[str, Any]:
     return {**json.loads(answer.stdout.strip().splitlines()[-1]), "whole": time.perf_counter() - began}
 
 
+def _whole(one: dict[str, Any]) -> float:
+    return float(one["whole"])
+
+
 def report(names: list[str], quick: bool, tell: Callable[[str], None]) -> str:
-    """The table: cold is an empty cache of compiled code, warm the median of further processes."""
+    """The table: cold is an empty cache of compiled code, warm the median of three further processes."""
     rows = []
     with tempfile.TemporaryDirectory() as cache:
         bare = child(["-c", _BARE], cache)
@@ -38,11 +42,13 @@ def report(names: list[str], quick: bool, tell: Callable[[str], None]) -> str:
         with tempfile.TemporaryDirectory() as cache:
             command = ["-m", "tests.benchmarks.child", name]
             cold = child(command, cache)
-            warm = sorted((child(command, cache) for _ in range(1 if quick else 3)), key=lambda one: one["whole"])
+            warm = [cold] if quick else sorted((child(command, cache) for _ in range(3)), key=_whole)
             middle = warm[len(warm) // 2]
         rows.append([middle["label"], "w", seconds(cold["whole"]), seconds(middle["whole"]),
                      seconds(middle["import"] + middle["first"]), seconds(middle["again"]), f"{middle['peak_mb']:.0f}"])
+    if quick:
+        rows = [[*row[:3], "–", *row[4:]] for row in rows]
     return table("Start-up and memory: a new process, one trajectory twice",
-                 ["peer", "form", "cold, whole", "warm, whole", "warm, to first answer", "second answer", "peak MB"], rows,
-                 ["Cold: compiled code is nowhere on disk. C compiles at every start. CyRK and "
-                  "numbalsoda bring wrappers that Numba compiles in every process. Peak: resident set of the warm one."])
+                 ["peer", "form", "cold, whole", "warm, whole", "to first answer", "second answer", "peak MB"], rows,
+                 ["Cold: compiled code is nowhere on disk; the columns to the right are of a warm process (of the cold one with --quick). C compiles at every start. CyRK and "
+                  "numbalsoda bring wrappers that Numba compiles in every process. Peak: largest resident set."])

@@ -99,7 +99,7 @@ def best_shape() -> tuple[int, int]:
 
 def cases() -> list[Case]:
     """The trajectory along the chain and the sweep across scenes."""
-    ladder = [problem.SAMPLES * round(8.0 * 1.2**k) for k in range(44)]
+    ladder = [problem.SAMPLES * round(8.0 * 1.1**k) for k in range(88)]
     steps = (0.2, 0.15, 0.1, 0.085, 0.07, 0.06, 0.05, 0.04, 0.03)
     return [
         Case("C, AVX-512, rsqrt14", "w", ladder, lambda n: _trajectory(n, False), unit="steps a period"),
