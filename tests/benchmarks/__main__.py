@@ -1,0 +1,67 @@
+"""All benchmarks by one command: `python -m tests.benchmarks [part …] [--quick] [--only PEER …]`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+
+from . import curve, growth, machine, startup, trajectory
+from .case import Case
+from .peers import PEERS, peer
+
+PARTS = ("trajectory", "curve", "growth", "startup")
+
+
+def tell(word: str) -> None:
+    """Say on the error stream what is being measured."""
+    print(f"\r\033[K… {word}", end="", file=sys.stderr, flush=True)
+
+
+def present(names: list[str]) -> tuple[list[str], list[str]]:
+    """The peers that can run here, and a sentence for each that cannot."""
+    absent = {name: peer(name).missing() for name in names}
+    return [n for n in names if not absent[n]], [f"{n} skipped: {why}." for n, why in absent.items() if why]
+
+
+def heading(core: int | None) -> str:
+    """Processor, versions, core and how busy the machine is."""
+    known = ", ".join(f"{name} {version}" for name, version in machine.versions().items())
+    pinned = "not pinned" if core is None else f"pinned to core {core}"
+    return f"{machine.processor()}, {pinned}, load {machine.load()}\n{known}"
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__)
+    parser.add_argument("parts", nargs="*", metavar="part", help=f"{', '.join(PARTS)} (startup shows memory too)")
+    parser.add_argument("--quick", action="store_true", help="about a minute: fewer points and repeats; trajectory and curve if no part is named")
+    parser.add_argument("--only", nargs="+", choices=list(PEERS), default=list(PEERS), help="these peers only")
+    options = parser.parse_args()
+    parts = ["startup" if part == "memory" else part for part in options.parts] or list(PARTS[:2] if options.quick else PARTS)
+    if wrong := [part for part in parts if part not in PARTS]:
+        parser.error(f"there is no part {wrong[0]}; there are {', '.join(PARTS)} and memory")
+    began, core = time.perf_counter(), machine.pin()
+    names, skipped = present(options.only)
+    print("\n".join([heading(core), *skipped]), flush=True)
+    cases: list[Case] = []
+    if {"trajectory", "curve"} & set(parts):
+        cases = [case for name in names for case in peer(name).cases()]
+    for part in PARTS:
+        if part in parts:
+            text = _report(part, cases, names, options.quick)
+            tell("")
+            print(text, flush=True)
+    print(f"\nTaken in {time.perf_counter() - began:.0f} s, load at the end {machine.load()}.")
+
+
+def _report(part: str, cases: list[Case], names: list[str], quick: bool) -> str:
+    if part == "trajectory":
+        return trajectory.report(cases, quick, tell)
+    if part == "curve":
+        return curve.report(cases, quick, tell)
+    return growth.report(quick, tell) if part == "growth" else startup.report(names, quick, tell)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,95 @@
+"""Growth with N: contact evaluations per second of a chain of 10 to 10 000 beads."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from granchain_core import scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.engine import new_stop
+from granchain_core.integrate.lane_block import LaneBlock
+from granchain_core.kernels.lanes import LANES, lane_steps
+
+from . import problem
+from .machine import timed
+from .peers import c_program, numbalsoda
+from .tables import table
+
+BEADS = (10, 30, 100, 300, 1000, 3000, 10_000)
+#: Contact evaluations that one timing takes at least, roughly.
+_EVALUATIONS = 4e6
+#: The C program keeps its chain in registers and is unrolled over the beads: longer ones are not what it is for.
+_LONGEST_C = 100
+
+
+def lanes(beads: int, evaluations: float) -> float:
+    """Contact evaluations a second of eight chains in lanes, from a chain already in motion."""
+    block = LaneBlock(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), new_stop())
+    steps = max(4, round(evaluations / (4 * LANES * (beads + 1))))
+    stirred(block.state.y, beads)
+    lane_steps(block.lanes, block.state, 2)
+    spent = timed(lambda: lane_steps(block.lanes, block.state, steps), 0.1, 7)
+    return 4 * LANES * (beads + 1) * steps / spent.median
+
+
+def stirred(y: np.ndarray, beads: int) -> None:
+    """Displace all beads a little, so that no contact is cheaper for being at rest."""
+    y[1 : beads + 1] = 0.5 * np.random.default_rng(1).standard_normal((beads, 1))
+
+
+def along(beads: int, evaluations: float) -> float:
+    """Contact evaluations a second of one chain by the live method."""
+    engine = Engine(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Setting("rk4-split"), 16)
+    engine.record(1)
+    rows = max(1, round(evaluations / (4 * (beads + 1) * engine.grid / 16)))
+    began, before = time.perf_counter(), engine.counts.rhs
+    engine.record(rows)
+    return (engine.counts.rhs - before) * (beads + 1) / (time.perf_counter() - began)
+
+
+def in_c(beads: int, evaluations: float) -> float:
+    """The same of the C program, on eight equal scenes."""
+    period = problem.period_of(problem.FREQUENCY) / c_program.STEP
+    periods = max(1, round(evaluations / (4 * LANES * (beads + 1) * period)))
+    shape = (1, max(1, (beads + 1) // 3))
+    same = np.full(LANES, problem.FREQUENCY)
+    c_program.sweep_peaks(same, c_program.STEP, shape, beads, (1, 1))
+    peaks = [c_program.sweep_peaks(same, c_program.STEP, shape, beads, (periods, 1)) for _ in range(3)]
+    return float(np.median([(p.evaluations or 0) * (beads + 1) / p.seconds for p in peaks]))
+
+
+def lsoda(beads: int, evaluations: float) -> float:
+    """The same of numbalsoda's LSODA in w at 1e-6."""
+    import numbalsoda as package
+
+    address, beta = numbalsoda.address("w"), problem.beta_of(problem.FREQUENCY)
+    time_of = 2.0 * min(50.0, evaluations / (beads + 1) / 20)
+    data = np.array([beads, beta, 0.0])
+    began = time.perf_counter()
+    package.lsoda(address, np.zeros(2 * beads), np.array([0.0, time_of]), data, 1e-6, 1e-6, 100_000)
+    return data[2] * (beads + 1) / (time.perf_counter() - began)
+
+
+def report(quick: bool, tell: Callable[[str], None]) -> str:
+    """The table."""
+    evaluations = _EVALUATIONS / (4 if quick else 1)
+    rows = []
+    for beads in BEADS:
+        tell(f"N = {beads}")
+        row = [f"{beads}", "", _millions(lanes(beads, evaluations)), _millions(along(beads, evaluations))]
+        has_c = not c_program.missing() and beads <= _LONGEST_C
+        row.append(_millions(in_c(beads, evaluations)) if has_c else "–")
+        has_lsoda = not numbalsoda.missing() and beads <= 1000
+        row.append(_millions(lsoda(beads, evaluations / 4)) if has_lsoda else "–")
+        rows.append(row)
+    return table("Growth with N: millions of contact evaluations a second, one core",
+                 ["N", "", "granchain lanes", "granchain, one chain", "C lanes", "numbalsoda lsoda w"], rows,
+                 [f"C is unrolled over the beads and measured up to N = {_LONGEST_C}; LSODA, which may build a Jacobian "
+                  "of (2N)² entries, up to N = 1000. One chain: the time of event splits is in it."])
+
+
+def _millions(rate: float) -> str:
+    return f"{rate / 1e6:.0f}" if rate >= 1e7 else f"{rate / 1e6:.2f}"

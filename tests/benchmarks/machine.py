@@ -1,0 +1,103 @@
+"""The machine: which processor and versions, pinning to one core, and times that survive a busy neighbour."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import os
+import platform
+import statistics
+import subprocess
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+PACKAGES = ("numpy", "numba", "scipy", "numbalsoda", "CyRK", "heyoka", "jax", "diffrax")
+
+
+@dataclass(frozen=True)
+class Timed:
+    """Seconds of repeated runs: median, least, how many."""
+
+    median: float
+    least: float
+    repeats: int
+
+
+def timed(work: Callable[[], Any], seconds: float = 0.3, most: int = 15) -> Timed:
+    """Time `work` until `seconds` are spent, at least three times unless one run alone takes that long."""
+    times: list[float] = []
+    while len(times) < most and (sum(times) < seconds or len(times) < 3) and sum(times) < 3.0 * seconds:
+        began = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - began)
+    return Timed(statistics.median(times), min(times), len(times))
+
+
+def pin(core: int | None = None) -> int | None:
+    """Keep this process on one core, the last one if none is named; None where the system cannot."""
+    if not hasattr(os, "sched_setaffinity"):
+        return None
+    core = max(os.sched_getaffinity(0)) if core is None else core
+    os.sched_setaffinity(0, {core})
+    return core
+
+
+def unpin() -> int:
+    """Give the process all cores back; how many there are."""
+    count = os.cpu_count() or 1
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, set(range(count)))
+    return count
+
+
+def processor() -> str:
+    """The processor's name."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def has_flag(flag: str) -> bool:
+    """Whether the processor says it has this instruction set."""
+    try:
+        return f" {flag} " in Path("/proc/cpuinfo").read_text().replace("\n", " ")
+    except OSError:
+        return False
+
+
+def versions() -> dict[str, str]:
+    """Versions of everything that is timed; absent packages are named as such."""
+    found = {"python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            found[package] = "absent"
+    try:
+        answer = subprocess.run(["gcc", "-dumpfullversion"], capture_output=True, text=True, check=True)
+        found["gcc"] = answer.stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        found["gcc"] = "absent"
+    return found
+
+
+def peak_megabytes() -> float:
+    """Largest resident memory of this process so far; not `ru_maxrss`, which a child inherits from its parent."""
+    try:
+        for line in Path("/proc/self/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / 1024
+    except OSError:
+        pass
+    return float("nan")
+
+
+def load() -> str:
+    """How busy the machine is: numbers taken beside other work are upper bounds."""
+    return f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"

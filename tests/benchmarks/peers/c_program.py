@@ -1,0 +1,109 @@
+"""Hand-written C with AVX-512, compiled on the spot: the limit of what a fixed step in w can do on this processor."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from .. import machine, problem
+from ..case import Case, Peaks
+from ..problem import Solved
+
+_SOURCES = Path(__file__).resolve().parents[1] / "c"
+_FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=fast", "-fno-math-errno",
+          "-fno-trapping-math", "-shared", "-fPIC")
+#: Step in scaled time at `refine` 1, the same as granchain's live method; settings of the ladder are steps.
+STEP = 0.2
+#: Registers of scenes side by side and contacts that use the square-root unit, tried in this order.
+SHAPES = ((1, 4), (1, 3), (1, 5), (1, 2), (1, 6), (2, 4))
+
+
+def missing() -> str:
+    """Why it cannot run, or nothing."""
+    if shutil.which("gcc") is None:
+        return "no compiler called gcc"
+    return "" if machine.has_flag("avx512f") else "the processor has no AVX-512"
+
+
+@functools.cache
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory()
+
+
+@functools.cache
+def library(name: str, **macros: int) -> ctypes.CDLL:
+    """One source compiled with these macros, and loaded."""
+    label = "-".join([name, *[f"{k}{v}" for k, v in macros.items()]])
+    target = Path(_folder().name) / f"{label}.so"
+    defined = [f"-D{k}={v}" for k, v in macros.items()]
+    subprocess.run(["gcc", *_FLAGS, *defined, "-o", str(target), str(_SOURCES / f"{name}.c"), "-lm"], check=True)
+    return ctypes.CDLL(str(target))
+
+
+def _pointer(array: np.ndarray) -> ctypes.c_void_p:
+    return array.ctypes.data_as(ctypes.c_void_p)
+
+
+def sweep_peaks(frequencies: np.ndarray, step: float, shape: tuple[int, int] = SHAPES[0],
+                beads: int = problem.BEADS, periods: tuple[int, int] = (problem.PASSED, problem.WATCHED)) -> Peaks:
+    """Peaks of the curve with steps of at most `step`, by the program of this shape."""
+    call = library("sweep", N=beads, BLOCKS=shape[0], HARD=shape[1]).sweep
+    call.restype = ctypes.c_long
+    call.argtypes = [ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, ctypes.c_int, ctypes.c_double,
+                     ctypes.c_void_p]
+    order = np.argsort(frequencies)
+    beta = 2.0 * np.pi * np.asarray(frequencies, dtype=float)[order] / problem.RATE
+    steps = np.ceil(2.0 * np.pi / beta / step).astype(np.int64)
+    found = np.zeros(beta.size)
+    began = time.perf_counter()
+    call(beta.size, _pointer(beta), _pointer(steps), *periods, problem.LAMBDA, _pointer(found))
+    seconds = time.perf_counter() - began
+    peaks = np.empty_like(found)
+    peaks[order] = found
+    return Peaks(peaks, seconds, 4 * sum(periods) * int(steps.sum()))
+
+
+def _trajectory(steps: float, exact: bool) -> Callable[[], Solved]:
+    """RK4 with `steps` steps a period, a multiple of the samples."""
+    call = library("trajectory", **({"EXACT": 1} if exact else {})).trajectory
+    call.restype = None
+    call.argtypes = [ctypes.c_double, ctypes.c_double, *[ctypes.c_long] * 3, ctypes.c_void_p, ctypes.c_void_p]
+    n, samples = int(steps), problem.SAMPLES * problem.PERIODS
+    table = np.sin(np.pi * np.arange(2 * n + 1) / n)
+    out = np.zeros((samples + 1, problem.BEADS))
+
+    def run() -> Solved:
+        call(problem.beta_of(problem.FREQUENCY), problem.LAMBDA, n, n // problem.SAMPLES, samples, _pointer(table),
+             _pointer(out))
+        return Solved(out, 4 * n * problem.PERIODS)
+
+    return run
+
+
+@functools.cache
+def best_shape() -> tuple[int, int]:
+    """The fastest of the shapes here, on a few frequencies."""
+    few = problem.curve_frequencies()[100::5]
+    for shape in SHAPES:
+        sweep_peaks(few[:8], STEP, shape)
+    return min(SHAPES, key=lambda shape: min(sweep_peaks(few, STEP, shape).seconds for _ in range(5)))
+
+
+def cases() -> list[Case]:
+    """The trajectory along the chain and the sweep across scenes."""
+    ladder = [problem.SAMPLES * round(8.0 * 1.1**k) for k in range(88)]
+    steps = (0.2, 0.15, 0.1, 0.085, 0.07, 0.06, 0.05, 0.04, 0.03)
+    return [
+        Case("C, AVX-512, rsqrt14", "w", ladder, lambda n: _trajectory(n, False), unit="steps a period"),
+        Case("C, AVX-512, sqrt", "w", ladder, lambda n: _trajectory(n, True), unit="steps a period"),
+        Case("C, AVX-512, lanes", "w", peaks=lambda f, h: sweep_peaks(f, h, best_shape()), curve_ladder=steps,
+             unit="step"),
+    ]

@@ -1,0 +1,122 @@
+"""granchain itself, through its engine for a trajectory and its lanes for a curve."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from granchain_core import Scene, scene
+from granchain_core.errors import NumbersFailed
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.engine import new_stop
+from granchain_core.integrate.lane_block import NEVER, LaneBlock
+from granchain_core.kernels.lanes import LANES
+from granchain_core.lower import lower
+
+from .. import problem
+from ..case import Case, Peaks, rungs
+from ..problem import Solved
+
+#: Its fixed-step methods and the multiples of the live method's steps that are tried.
+FIXED = ("rk4-split", "rk4")
+REFINES = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 96, 128, 256)
+#: The reference: the certified method at its finest; for the curve, where 300 points are needed, coarser.
+FINEST, CURVE_TOLERANCE = 3e-15, 1e-9
+
+
+def missing() -> str:
+    """It is always there."""
+    return ""
+
+
+def _scene(frequency: float = problem.FREQUENCY) -> Scene:
+    return scene("sec2").evolve(f=float(frequency))
+
+
+def reference() -> Solved:
+    """The trajectory by the certified method at its finest; states are displacements and velocities."""
+    samples = Engine(_scene(), Setting("dop853", tolerance=FINEST), problem.SAMPLES).record(
+        problem.PERIODS * problem.SAMPLES)
+    return Solved(np.hstack([samples.displacement, samples.velocity]), None)
+
+
+def _recording(setting: Setting) -> Callable[[], Solved]:
+    """One engine is set up outside the clock and started from rest again for every run."""
+    engine = Engine(_scene(), setting, problem.SAMPLES)
+    start = engine.state
+
+    def record() -> Solved:
+        engine.start(start)
+        engine.counts.array[:] = 0
+        try:
+            samples = engine.record(problem.PERIODS * problem.SAMPLES)
+        except NumbersFailed:
+            return Solved(np.full((problem.PERIODS * problem.SAMPLES + 1, 2 * problem.BEADS), np.nan), None)
+        return Solved(np.hstack([samples.displacement, samples.velocity]), engine.counts.rhs)
+
+    return record
+
+
+def certified_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE) -> tuple[np.ndarray, np.ndarray]:
+    """Peaks of all points and whether each is periodic, by the certified method on all cores."""
+
+    def point(frequency: float) -> tuple[float, bool]:
+        engine = Engine(_scene(frequency), Setting("dop853", tolerance=tolerance), 1)
+        engine.periods(problem.PASSED, watch=False)
+        engine.forget_peaks()
+        strobes, tops = engine.periods(problem.WATCHED)
+        return float(tops[:, 2].max()), _returns(strobes)
+
+    with ThreadPoolExecutor() as pool:
+        found = list(pool.map(point, frequencies))
+    return np.array([f[0] for f in found]), np.array([f[1] for f in found])
+
+
+def _returns(strobes: np.ndarray, near: float = 1e-6) -> bool:
+    """Whether the last state came back, after 1 to 16 periods, to within `near` of its size."""
+    last = strobes[-1]
+    changes = [np.abs(last - strobes[-1 - n]).max() for n in range(1, 17)]
+    return bool(min(changes) <= near * np.abs(last).max())
+
+
+def lane_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
+    """Exactly 100 + 20 periods of every point in lanes on this thread: longest first, places filled as they end."""
+    lowered = [lower(_scene(f)) for f in sorted(frequencies)]
+    refine, total = int(refine), problem.PASSED + problem.WATCHED
+    values, rest = np.zeros(len(lowered)), np.zeros(2 * lowered[0].row)
+    began = time.perf_counter()
+    block = LaneBlock(lowered[0].scene, new_stop())
+    waiting, place = iter(range(len(lowered))), {}
+
+    def fill(lane: int) -> None:
+        number = next(waiting, None)
+        if number is None:
+            place.pop(lane, None)
+            block.put(lane, lowered[-1], rest, refine, NEVER, NEVER)
+        else:
+            place[lane] = number
+            block.put(lane, lowered[number], rest, refine, total, NEVER)
+
+    for lane in range(LANES):
+        fill(lane)
+    while place:
+        lane, _ = block.run()
+        values[place[lane]] = block.tops(lane, problem.WATCHED)[2]
+        fill(lane)
+    seconds = time.perf_counter() - began
+    evaluations = 4 * total * refine * sum(one.steps_per_period() for one in lowered)
+    order = np.argsort(np.argsort(frequencies))
+    return Peaks(values[order], seconds, evaluations)
+
+
+def cases() -> list[Case]:
+    """Every method of the engine that is worth it, and the lanes."""
+    found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(Setting(m, refine=int(r))), unit="refine")
+             for m in FIXED]
+    found.append(Case("granchain dop853", "w", rungs(1e-4, 1e-13, 4),
+                      lambda t: _recording(Setting("dop853", tolerance=t))))
+    found.append(Case("granchain lanes", "w", peaks=lane_peaks, curve_ladder=(1, 2, 3, 4, 5, 6), unit="refine"))
+    return found

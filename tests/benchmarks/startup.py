@@ -1,0 +1,54 @@
+"""Start-up cold and warm and memory: every peer in a process of its own, with an empty and with a filled cache."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from .tables import seconds, table
+
+_ROOT = Path(__file__).resolve().parents[2]
+_BARE = "import json, tests.benchmarks.machine as m; print(json.dumps({'peak_mb': m.peak_megabytes()}))"
+
+
+def child(command: list[str], cache: str) -> dict[str, Any]:
+    """What a child process printed, with the seconds from its start to its end."""
+    places = {"GRANCHAIN_CACHE": cache, "NUMBA_CACHE_DIR": cache, "JAX_COMPILATION_CACHE_DIR": f"{cache}/jax"}
+    began = time.perf_counter()
+    answer = subprocess.run([sys.executable, *command], cwd=_ROOT, env={**os.environ, **places}, capture_output=True,
+                            text=True, check=True)
+    return {**json.loads(answer.stdout.strip().splitlines()[-1]), "whole": time.perf_counter() - began}
+
+
+def _whole(one: dict[str, Any]) -> float:
+    return float(one["whole"])
+
+
+def report(names: list[str], quick: bool, tell: Callable[[str], None]) -> str:
+    """The table: cold is an empty cache of compiled code, warm the median of three further processes."""
+    rows = []
+    with tempfile.TemporaryDirectory() as cache:
+        bare = child(["-c", _BARE], cache)
+        rows.append(["python alone", "", "–", seconds(bare["whole"]), "–", "–", f"{bare['peak_mb']:.0f}"])
+    for name in names:
+        tell(name)
+        with tempfile.TemporaryDirectory() as cache:
+            command = ["-m", "tests.benchmarks.child", name]
+            cold = child(command, cache)
+            warm = [cold] if quick else sorted((child(command, cache) for _ in range(3)), key=_whole)
+            middle = warm[len(warm) // 2]
+        rows.append([middle["label"], "w", seconds(cold["whole"]), seconds(middle["whole"]),
+                     seconds(middle["import"] + middle["first"]), seconds(middle["again"]), f"{middle['peak_mb']:.0f}"])
+    if quick:
+        rows = [[*row[:3], "–", *row[4:]] for row in rows]
+    return table("Start-up and memory: a new process, one trajectory twice",
+                 ["peer", "form", "cold, whole", "warm, whole", "to first answer", "second answer", "peak MB"], rows,
+                 ["Cold: compiled code is nowhere on disk; the columns to the right are of a warm process (of the cold one with --quick). C compiles at every start. CyRK and "
+                  "numbalsoda bring wrappers that Numba compiles in every process. Peak: largest resident set."])

@@ -1,0 +1,86 @@
+"""Untimed checks of the benchmarks: all rows solve the same problem."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from benchmarks import compiled, problem
+from benchmarks.peers import c_program, granchain, peer, scipy
+from benchmarks.trajectory import error_of
+
+#: Frequencies whose motion is periodic after 120 periods, so that rounding does not grow.
+PERIODIC = np.array([340.0, 470.0, 1130.0, 1600.0])
+
+
+@pytest.fixture(scope="module")
+def reference() -> np.ndarray:
+    """The trajectory by granchain's certified method."""
+    return granchain.reference().states
+
+
+@pytest.mark.parametrize("form", problem.FORMS)
+def test_the_compiled_equations_are_those_in_numpy(form: str) -> None:
+    in_numpy = {"uv": problem.slope_uv_numpy, "w": problem.slope_w_numpy}[form]
+    in_numba = {"uv": compiled.slope_uv, "w": compiled.slope_w}[form]
+    rng = np.random.default_rng(0)
+    for t in rng.uniform(0.0, 100.0, 20):
+        y = rng.standard_normal(2 * problem.BEADS)
+        # rounding of sums of a few numbers of size 1 to 10
+        assert np.allclose(in_numba(t, y, 0.3), in_numpy(t, y, 0.3), rtol=0.0, atol=1e-13)
+
+
+def test_both_forms_are_one_motion() -> None:
+    """The velocity is the slope of u in the w form, and its slope the force of the (u, v) form while no contact changes."""
+    beta, t, step, n = 0.3, 5.0, 1e-5, problem.BEADS
+    w = np.random.default_rng(1).standard_normal(2 * n)
+    before, now, after = (w + s * problem.slope_w_numpy(t, w, beta) for s in (-step, 0.0, step))
+    v = [problem.slope_w_numpy(t + s, y, beta)[:n] for s, y in ((-step, before), (0.0, now), (step, after))]
+    uv = problem.slope_uv_numpy(t, np.concatenate([now[:n], v[1]]), beta)
+    # central difference: step² times a third derivative of size 10
+    assert np.allclose((v[2] - v[0]) / (2.0 * step), uv[n:], rtol=0.0, atol=1e-7)
+
+
+@pytest.mark.parametrize("form", problem.FORMS)
+def test_scipy_and_granchain_find_the_same_motion(form: str, reference: np.ndarray) -> None:
+    slope = {"uv": compiled.slope_uv, "w": compiled.slope_w}[form]
+    solved = scipy.ode(slope, 1e-10)(problem.beta_of(problem.FREQUENCY), problem.trajectory_times())
+    assert error_of(solved.states, reference) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["numbalsoda", "heyoka", "diffrax"])
+def test_a_peer_finds_the_same_motion(name: str, reference: np.ndarray) -> None:
+    if why := peer(name).missing():
+        pytest.skip(why)
+    case = next(c for c in peer(name).cases() if c.form == "w")
+    assert case.prepare is not None
+    assert error_of(case.prepare(1e-9)().states, reference) < 1e-6
+
+
+@pytest.mark.skipif(bool(c_program.missing()), reason=c_program.missing())
+class TestC:
+    """The C program, where it can be compiled."""
+
+    @pytest.mark.parametrize("case", c_program.cases()[:2], ids=lambda case: case.label)
+    def test_the_trajectory(self, case, reference: np.ndarray) -> None:
+        # order 2 at contact changes: measured 7.5e-7 at 1920 steps a period
+        assert error_of(case.prepare(1920)().states, reference) < 1e-6
+
+    @pytest.mark.parametrize("shape", [c_program.SHAPES[0], (2, 3), (1, 12)])
+    def test_the_peaks_are_those_of_the_lanes(self, shape: tuple[int, int]) -> None:
+        """The same steps in both: they differ by rounding and the reciprocal root's 4e-9."""
+        lanes = granchain.lane_peaks(PERIODIC, 1).values
+        ours = c_program.sweep_peaks(PERIODIC, c_program.STEP, shape).values
+        assert np.allclose(ours, lanes, rtol=1e-6, atol=0.0)
+
+
+def test_peaks_are_equal_to_the_certified_ones() -> None:
+    certified, periodic = granchain.certified_peaks(PERIODIC)
+    assert periodic.all()
+    # order 2 at contact changes; the curve calls answers equal at 1e-4
+    assert np.allclose(granchain.lane_peaks(PERIODIC, 3).values, certified, rtol=1e-4, atol=0.0)
