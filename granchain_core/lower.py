@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -87,8 +88,9 @@ class Lowered:
         contacts = self.scene.N + 1
         return Forces(np.zeros(contacts), np.zeros(contacts) if self.slots.dissipation is not None else None)
 
-    def steps_per_period(self, multiple_of: int = 1) -> int:
-        """Steps of the live method in one period, a multiple of `multiple_of`."""
+    @cached_property
+    def step(self) -> float:
+        """The live method's step in scaled time."""
         slots = self.slots
         lightest = float(slots.chain.inverse_mass.max())
         stiffest = float(slots.chain.stiffness.max())
@@ -100,7 +102,11 @@ class Lowered:
             step = min(step, _DASHPOT_LIMIT / (4.0 * strength * lightest))
         if slots.foundation is not None:
             step = min(step, _FOUNDATION_STEP / math.sqrt(slots.foundation.stiffness * lightest))
-        steps = max(multiple_of, math.ceil(self.period / step / multiple_of) * multiple_of, 16)
+        return step
+
+    def steps_per_period(self, multiple_of: int = 1) -> int:
+        """Steps of the live method in one period, a multiple of `multiple_of`."""
+        steps = max(multiple_of, math.ceil(self.period / self.step / multiple_of) * multiple_of, 16)
         if steps > MOST_STEPS:
             raise BadInput(
                 f"drive frequency f = {self.scene.f:g} Hz is so far below the chain's own rate that one period takes "

@@ -8,10 +8,12 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..kernels import lanes as kernels
+from ..kernels.effects.unequal import Unequal
 from ..kernels.lanes import LANES, REMEMBERED
 from ..kernels.motion import place
 from ..kernels.peaks import ROWS
 from ..kernels.sampling import CANCELLED
+from ..kernels.section import LONGEST_PERIOD
 from ..kernels.simd import aligned
 from ..lower import Lowered, lower
 from ..scene import Scene
@@ -26,6 +28,12 @@ def can_share_lanes(scene: Scene) -> bool:
     return not (scene.has_dissipation and scene.tension == "cut")
 
 
+def alike(lowered: Lowered) -> bool:
+    """Whether all beads, and all contacts but the wall's, are alike."""
+    chain = lowered.slots.chain
+    return bool((chain.inverse_mass[1:-1] == 1.0).all() and (chain.stiffness[:-1] == 1.0).all())
+
+
 class LaneBlock:
     """Eight places for scenes of one structure and one N, run by one thread."""
 
@@ -35,18 +43,20 @@ class LaneBlock:
         n, slots = example.N, lowered.slots
         dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
         self.lanes = kernels.Lanes(
-            inverse_mass=aligned(n + 2), stiffness=aligned(n + 1),
+            wall=aligned(1), unequal=None if alike(lowered) else Unequal(aligned(n + 2), aligned(n + 1)),
             dissipation=None if dissipation is None else type(dissipation)(aligned(1)),
             foundation=None if foundation is None else type(foundation)(aligned(1)),
             preload=None if preload is None else type(preload)(aligned(n + 1)),
             turn=aligned(2), beta=aligned(1), h=aligned(1),
         )
         rows = 2 * (n + 2)
-        whole = [np.zeros(LANES, dtype=np.int64) for _ in range(5)]
+        whole = [np.zeros(LANES, dtype=np.int64) for _ in range(7)]
         self.state = kernels.LaneState(
             y=aligned(rows), phase=aligned(2), peaks=aligned(3 * ROWS),
-            steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4],
-            strobes=np.zeros((LANES, REMEMBERED, rows)), tops=np.zeros((LANES, REMEMBERED, 3)),
+            steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
+            slowest=np.zeros(LANES), kept=whole[6], strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
+            tops=np.zeros((LANES, REMEMBERED, 3)), seen=np.zeros((LANES, 6)), scale=np.zeros(2),
+            change=np.zeros(3 * LONGEST_PERIOD),
         )
         for lane in range(LANES):  # an empty lane runs the example, at rest, and is never looked at
             self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
@@ -58,7 +68,10 @@ class LaneBlock:
         """
         slots, lanes, state = lowered.slots, self.lanes, self.state
         steps = refine * lowered.steps_per_period()
-        lanes.inverse_mass[:, lane], lanes.stiffness[:, lane] = slots.chain.inverse_mass, slots.chain.stiffness
+        lanes.wall[0, lane] = slots.chain.stiffness[-1]
+        if lanes.unequal is not None:
+            lanes.unequal.inverse_mass[:, lane] = slots.chain.inverse_mass
+            lanes.unequal.stiffness[:, lane] = slots.chain.stiffness
         for mine, its in ((lanes.dissipation, slots.dissipation), (lanes.foundation, slots.foundation),
                           (lanes.preload, slots.preload)):
             if mine is not None:
@@ -66,12 +79,11 @@ class LaneBlock:
         half = np.pi / steps
         lanes.turn[:, lane] = np.cos(half), np.sin(half)
         lanes.beta[0, lane], lanes.h[0, lane] = lowered.beta, lowered.period / steps
-        state.y[:, lane] = y
         state.phase[:, lane] = 0.0, 1.0
         state.peaks[:, lane] = 0.0
         state.steps[lane] = state.left[lane] = steps
-        state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
-        state.strobes[lane, 0] = y
+        state.ready[lane], state.slowest[lane] = 0, 0.0
+        self.go_on(lane, y, look, earliest)
 
     def run(self) -> tuple[int, bool]:
         """Run until a lane should be looked at; its number, and whether it is finite."""
@@ -80,12 +92,25 @@ class LaneBlock:
             raise Cancelled
         return int(lane), status == 0
 
-    def strobes(self, lane: int) -> np.ndarray:
-        """The remembered strobes of a lane in order, (P, 2, N), displacement and w in scaled units."""
-        run = int(self.state.periods[lane])
-        places = np.arange(max(0, run - REMEMBERED + 1), run + 1) % REMEMBERED
-        n = self.lanes.inverse_mass.shape[0]
-        return self.state.strobes[lane, places].reshape(len(places), 2, n)[:, :, 1:-1]
+    def go_on(self, lane: int, y: np.ndarray, look: int, earliest: int) -> None:
+        """Put a lane into another state of its scene at phase 0; its record begins there."""
+        state = self.state
+        state.y[:, lane] = y
+        state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
+        state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
+
+    def run_pairs(self, start: float, periods: int) -> np.ndarray:
+        """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (4, periods)."""
+        growth = np.zeros((LANES // 2, periods))
+        status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop)
+        if status == CANCELLED:
+            raise Cancelled
+        return growth if status == 0 else np.full_like(growth, np.nan)
+
+    def strobes(self, lane: int, most: int = REMEMBERED) -> np.ndarray:
+        """The last `most` remembered strobes of a lane in order, (P, 2, N), displacement and w in scaled units."""
+        kept = int(self.state.kept[lane])
+        return self.state.strobes[lane, max(0, kept - most) : kept, :, 1:-1]
 
     def tops(self, lane: int, periods: int) -> np.ndarray:
         """Largest input, output and elastic output force of the last `periods` periods, in scaled units."""

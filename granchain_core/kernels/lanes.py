@@ -7,35 +7,40 @@ stops the kernel so that its place can be filled with the next scene.
 
 from __future__ import annotations
 
+from math import log, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .effects.contact import divided_elastic_force, elastic_force, positive_part
-from .effects.dissipation import damping, lane_values, lane_velocity, primitive
+from .effects.contact import force_by_divider, force_by_series, positive_part
+from .effects.dissipation import LAWS, damping, lane_values, shape
 from .effects.foundation import lane_foundation, pull_back
 from .effects.preload import lane_overlap
-from .jit import inlined, kernel
+from .effects.unequal import over_mass, times_stiffness
+from .jit import inlined, kernel, term
+from .motion import copy
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, watch_lanes
 from .sampling import CANCELLED, DONE, NOT_FINITE
-from .simd import LANES, blank, load, store
+from .section import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE, find
+from .simd import LANES, blank, flush_subnormals, load, restore_subnormals, store
+from .simd_math import above_zero
 
-#: Strobes remembered of each lane.
-REMEMBERED = 432
+#: Strobes of each lane that are always remembered, and those its regime is decided by.
+REMEMBERED, SEEN = 432, 4 * LONGEST_PERIOD + 1
 #: Steps after which the stop flag is asked at the latest.
 _PATIENCE = 4096
-#: Longest period looked for when a lane is screened, and the relative change that makes it worth a look.
-SCREENED, SMALL_CHANGE = 16, 1e-6
+#: Orbits that are needed to see where an approach leads, and how many still to come make it worth that.
+ORBITS, _TOO_LONG = 8, 4.0
 
 
 class Lanes(NamedTuple):
-    """Values of eight scenes: chain arrays (rows, 8), effect slots with (1, 8) arrays or None, step data (rows, 8).
+    """Values of eight scenes: the wall's stiffness, effect slots with (1, 8) or (rows, 8) arrays or None, step data.
 
     `turn` is cos and sin of half a step's phase, `beta` the scaled drive rate, `h` the step.
     """
 
-    inverse_mass: np.ndarray
-    stiffness: np.ndarray
+    wall: np.ndarray
+    unequal: Any
     dissipation: Any
     foundation: Any
     preload: Any
@@ -47,8 +52,10 @@ class Lanes(NamedTuple):
 class LaneState(NamedTuple):
     """Where the lanes are: state (2(N+2), 8), sin and cos of the phase (2, 8), peaks (15, 8).
 
-    Per lane: steps in a period and steps left, periods run, the period to stop at in any case, the earliest period to
-    stop at when it may have settled, strobes (8, R, 2(N+2)) and largest forces (8, R, 3) as rings.
+    Per lane: steps in a period and steps left, periods run, the period to stop at in any case, the next period at which
+    it is seen whether it has settled, the period from which an approach may be followed, the slowest decay known,
+    strobes (8, 2R, 2, N+2) of which `kept` are there, largest forces (8, R, 3) as a ring. `seen` (8, 6) is what
+    section.find saw last; `scale` and `change` are its workspaces.
     """
 
     y: np.ndarray
@@ -59,12 +66,29 @@ class LaneState(NamedTuple):
     periods: np.ndarray
     look: np.ndarray
     earliest: np.ndarray
+    ready: np.ndarray
+    slowest: np.ndarray
+    kept: np.ndarray
     strobes: np.ndarray
     tops: np.ndarray
+    seen: np.ndarray
+    scale: np.ndarray
+    change: np.ndarray
+
+
+class Values(NamedTuple):
+    """What the lanes' scenes are made of, in registers where it is one number a scene."""
+
+    wall: Any
+    law: Any
+    foundation: Any
+    preload: Any
+    unequal: Any
+    last: Any
 
 
 class Bead(NamedTuple):
-    """One bead of one Runge–Kutta stage in all lanes: state, elastic force and G of the contact on its left."""
+    """One bead of one Runge–Kutta stage in all lanes: state, elastic force and shape of the contact on its left."""
 
     u: Any
     w: Any
@@ -73,63 +97,89 @@ class Bead(NamedTuple):
 
 
 @inlined
-def first_bead(lanes, law, u0, u, w):
-    """Bead 1 of a stage with the driver at u0."""
-    d = positive_part(lane_overlap(lanes.preload, u0, u, 0))
-    return Bead(u, w, elastic_force(load(lanes.stiffness, 0), d), primitive(law, d))
+def contact(values, force, left, right, c):
+    """Elastic force and shape of G of contact c; `force` takes the root its own way."""
+    d = above_zero(lane_overlap(values.preload, left, right, c))
+    elastic = force(d)
+    return times_stiffness(values.unequal, values.wall, c, values.last, elastic), shape(values.law, d, elastic)
 
 
 @inlined
-def bead_slope(lanes, law, foundation, force, bead, i, right, right_w):
-    """Slope of bead i, which is `bead`, between its neighbours; and the next bead with the contact between them.
+def first_bead(values, force, u0, u, w):
+    """Bead 1 of a stage with the driver at u0."""
+    e, G = contact(values, force, u0, u, 0)
+    return Bead(u, w, e, G)
 
-    `force` is the elastic force's function.
-    """
-    d = positive_part(lane_overlap(lanes.preload, bead.u, right, i))
-    e = force(load(lanes.stiffness, i), d)
-    G = primitive(law, d)
-    inverse = load(lanes.inverse_mass, i)
-    du = lane_velocity(law, bead.w, inverse, bead.G, G)
-    dw = inverse * pull_back(foundation, bead.e - e, bead.u)
+
+@inlined
+def bead_slope(values, force, bead, i, right, right_w):
+    """Slope of bead i, which is `bead`, between its neighbours; and the next bead with the contact between them."""
+    e, G = contact(values, force, bead.u, right, i)
+    du = lane_velocity(values.law, values.unequal, i, bead.w, bead.G - G)
+    dw = over_mass(values.unequal, i, pull_back(values.foundation, bead.e - e, bead.u))
     return du, dw, Bead(right, right_w, e, G)
 
 
+@term
+def lane_velocity(law, unequal, i, w, difference):
+    """v = w + (G_{i-1} − G_i)/m of bead i in all lanes, from the difference of shapes."""
+    return w
+
+
+for _law in LAWS:
+
+    @lane_velocity.of(_law)
+    def _(law, unequal, i, w, difference):
+        return w + over_mass(unequal, i, law.coefficient * difference)
+
+
+class Ends(NamedTuple):
+    """What is known of the chain's two ends where a step begins: elastic forces and the beads' velocities."""
+
+    pushed: Any
+    v_first: Any
+    passed: Any
+    v_last: Any
+
+
 @inlined
-def lane_step(lanes, law, foundation, y, h, u0, middle, end):
-    """One RK4 step in place, the driver at u0, at `middle` and at `end`.
+def lane_step(values, y, h, u0, middle, end):
+    """One RK4 step in place, the driver at u0, at `middle` and at `end`; returns the `Ends` where it began.
 
     The four stages run along the chain one bead behind another, so that a step goes through memory once. The stages'
     states y1, y2, y3 are all there is to remember: y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
     """
-    m = lanes.inverse_mass.shape[0]
-    n = m - 2
+    m, n = values.last + 2, values.last
     half, sixth, third = 0.5 * h, (1.0 / 6.0) * h, 1.0 / 3.0
     zero = blank(h)
-    nothing = Bead(zero, zero, zero, primitive(law, zero))
-    one, two, three, four = first_bead(lanes, law, u0, load(y, 1), load(y, m + 1)), nothing, nothing, nothing
+    nothing = Bead(zero, zero, zero, shape(values.law, zero, zero))
+    two, three, four = nothing, nothing, nothing
+    one = first_bead(values, force_by_series, u0, load(y, 1), load(y, m + 1))
+    pushed, v_first, v_last = one.e, zero, zero
     sum_u, sum_w, whole_u, whole_w = zero, zero, zero, zero
     for i in range(1, n + 4):
         u1, w1, u2, w2, u3, w3 = zero, zero, zero, zero, zero, zero
         if i <= n:
             u, w = one.u, one.w
-            du, dw, one = bead_slope(lanes, law, foundation, elastic_force, one, i, load(y, i + 1), load(y, m + i + 1))
-            u1, w1 = u + half * du, w + half * dw
+            v_last, dw, one = bead_slope(values, force_by_series, one, i, load(y, i + 1), load(y, m + i + 1))
+            u1, w1 = u + half * v_last, w + half * dw
         if i == 1:
-            two = first_bead(lanes, law, middle, u1, w1)
+            v_first = v_last
+            two = first_bead(values, force_by_divider, middle, u1, w1)
             continue
         if i <= n + 1:
             before = two
-            du, dw, two = bead_slope(lanes, law, foundation, divided_elastic_force, two, i - 1, u1, w1)
+            du, dw, two = bead_slope(values, force_by_divider, two, i - 1, u1, w1)
             u2, w2 = load(y, i - 1) + half * du, load(y, m + i - 1) + half * dw
             new_u, new_w = before.u + 2.0 * u2, before.w + 2.0 * w2
         else:
             new_u, new_w = zero, zero
         if i == 2:
-            three = first_bead(lanes, law, middle, u2, w2)
+            three = first_bead(values, force_by_series, middle, u2, w2)
             sum_u, sum_w = new_u, new_w
             continue
         if i <= n + 2:
-            du, dw, three = bead_slope(lanes, law, foundation, elastic_force, three, i - 2, u2, w2)
+            du, dw, three = bead_slope(values, force_by_series, three, i - 2, u2, w2)
             u, w = load(y, i - 2), load(y, m + i - 2)
             u3, w3 = u + h * du, w + h * dw
             newer_u, newer_w = sum_u + (u3 - u), sum_w + (w3 - w)
@@ -137,88 +187,100 @@ def lane_step(lanes, law, foundation, y, h, u0, middle, end):
             newer_u, newer_w = zero, zero
         sum_u, sum_w = new_u, new_w
         if i == 3:
-            four = first_bead(lanes, law, end, u3, w3)
+            four = first_bead(values, force_by_divider, end, u3, w3)
             whole_u, whole_w = newer_u, newer_w
             continue
-        du, dw, four = bead_slope(lanes, law, foundation, divided_elastic_force, four, i - 3, u3, w3)
+        du, dw, four = bead_slope(values, force_by_divider, four, i - 3, u3, w3)
         store(y, i - 3, third * whole_u + sixth * du)
         store(y, m + i - 3, third * whole_w + sixth * dw)
         whole_u, whole_w = newer_u, newer_w
+    return Ends(pushed, v_first, one.e, v_last)
 
 
 @inlined
-def watch_lane_forces(lanes, law, u0, v0, state):
-    """Follow input force, output force and its elastic part in all lanes."""
-    m, y = lanes.inverse_mass.shape[0], state.y
-    first, second, last, before = load(y, 1), load(y, 2), load(y, m - 2), load(y, m - 3)
-    wall = load(y, m - 1)
-    if m == 3:
-        before = u0
-    d0 = positive_part(lane_overlap(lanes.preload, u0, first, 0))
-    d1 = positive_part(lane_overlap(lanes.preload, first, second, 1))
-    v1 = lane_velocity(law, load(y, m + 1), load(lanes.inverse_mass, 1), primitive(law, d0), primitive(law, d1))
-    d_before = positive_part(lane_overlap(lanes.preload, before, last, m - 3))
-    d_last = positive_part(lane_overlap(lanes.preload, last, wall, m - 2))
-    v_last = lane_velocity(law, load(y, 2 * m - 2), load(lanes.inverse_mass, m - 2), primitive(law, d_before),
-                           primitive(law, d_last))
-    elastic = elastic_force(load(lanes.stiffness, m - 2), d_last)
-    watch_lanes(state.peaks, INPUT, elastic_force(load(lanes.stiffness, 0), d0) + damping(law, d0) * (v0 - v1))
-    watch_lanes(state.peaks, OUTPUT, elastic + damping(law, d_last) * v_last)
-    watch_lanes(state.peaks, OUTPUT_ELASTIC, elastic)
+def watch_ends(values, gap_first, gap_last, v0, ends, peaks):
+    """Follow input force, output force and its elastic part in all lanes, where a step began."""
+    first = damping(values.law, positive_part(gap_first)) * (v0 - ends.v_first)
+    last = damping(values.law, positive_part(gap_last)) * ends.v_last
+    watch_lanes(peaks, INPUT, ends.pushed + first)
+    watch_lanes(peaks, OUTPUT, ends.passed + last)
+    watch_lanes(peaks, OUTPUT_ELASTIC, ends.passed)
 
 
 @kernel
 def lane_steps(lanes, state, count):
     """Take `count` steps in all lanes."""
-    law, foundation = lane_values(lanes.dissipation), lane_foundation(lanes.foundation)
+    y, before = state.y, flush_subnormals()
+    last = y.shape[0] // 2 - 2
+    values = Values(load(lanes.wall, 0), lane_values(lanes.dissipation), lane_foundation(lanes.foundation),
+                    lanes.preload, lanes.unequal, last)
     h, beta = load(lanes.h, 0), load(lanes.beta, 0)
     c, s = load(lanes.turn, 0), load(lanes.turn, 1)
     sine, cosine = load(state.phase, 0), load(state.phase, 1)
     for _ in range(count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
-        end, cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
-        lane_step(lanes, law, foundation, state.y, h, sine, middle, end)
-        sine = end
-        watch_lane_forces(lanes, law, sine, beta * cosine, state)
+        end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
+        gap_first = lane_overlap(values.preload, sine, load(y, 1), 0)
+        gap_last = lane_overlap(values.preload, load(y, last), load(y, last + 1), last)
+        ends = lane_step(values, y, h, sine, middle, end)
+        watch_ends(values, gap_first, gap_last, beta * cosine, ends, state.peaks)
+        sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
     store(state.phase, 1, cosine)
+    restore_subnormals(before)
 
 
 @kernel
-def may_have_settled(state, lane):
-    """Whether some change of the lane's strobe over 1 to 16 periods is small against the strobe itself."""
-    periods, strobes = state.periods[lane], state.strobes
-    now = periods % REMEMBERED
-    largest = 0.0
-    for i in range(strobes.shape[2]):
-        largest = max(largest, abs(strobes[lane, now, i]))
-    for n in range(1, SCREENED + 1):
-        then, change = (periods - n) % REMEMBERED, 0.0
-        for i in range(strobes.shape[2]):
-            change = max(change, abs(strobes[lane, now, i] - strobes[lane, then, i]))
-        if change <= SMALL_CHANGE * largest:
-            return True
-    return False
+def keep_lane_strobe(state, lane):
+    """Note where a lane is at the end of a period, behind its earlier strobes; the oldest half goes when it is full."""
+    strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
+    if state.kept[lane] == strobes.shape[1]:
+        half = strobes.shape[1] // 2
+        for p in range(half):
+            copy(strobes[lane, half + p, 0], strobes[lane, p, 0])
+            copy(strobes[lane, half + p, 1], strobes[lane, p, 1])
+        state.kept[lane] = half
+    finite, place = True, state.kept[lane]
+    for i in range(m):
+        strobes[lane, place, 0, i], strobes[lane, place, 1, i] = y[i, lane], y[m + i, lane]
+        finite = finite and np.isfinite(y[i, lane]) and np.isfinite(y[m + i, lane])
+    state.kept[lane] += 1
+    return finite
+
+
+@kernel
+def look_at(state, lane):
+    """See what a lane's last strobes show; whether it is periodic or approaches an orbit by too long a way."""
+    kept, periods = state.kept[lane], state.periods[lane]
+    record = state.strobes[lane, max(0, kept - SEEN) : kept]
+    period, rate, distance, approached, its_rate, its_change = find(
+        record, LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE, state.slowest[lane], state.scale, state.change)
+    seen = state.seen[lane]
+    seen[0], seen[1], seen[2] = period, rate, distance
+    seen[3], seen[4], seen[5] = approached, its_rate, its_change
+    if period > 0:
+        return True
+    if approached == 0 or periods < max(state.ready[lane], ORBITS * approached):
+        return False
+    left = its_change * its_rate / (1.0 - its_rate)
+    return left > SETTLED_DISTANCE and log(SETTLED_DISTANCE / left) < _TOO_LONG * log(its_rate)
 
 
 @kernel
 def end_period(state, lane):
     """Note strobe and largest forces of a lane, restart its phase exactly; whether it should be looked at."""
-    rows = state.y.shape[0]
     state.periods[lane] += 1
-    place = state.periods[lane] % REMEMBERED
-    finite = True
-    for i in range(rows):
-        state.strobes[lane, place, i] = state.y[i, lane]
-        finite = finite and np.isfinite(state.y[i, lane])
+    finite = keep_lane_strobe(state, lane)
     for q in range(3):
-        state.tops[lane, place, q] = state.peaks[ROWS * q, lane]
+        state.tops[lane, state.periods[lane] % REMEMBERED, q] = state.peaks[ROWS * q, lane]
         state.peaks[ROWS * q, lane] = 0.0
     state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0
     state.left[lane] = state.steps[lane]
-    if not finite or state.periods[lane] >= state.look[lane]:
-        return True
-    return state.periods[lane] >= max(SCREENED, state.earliest[lane]) and may_have_settled(state, lane)
+    forced = not finite or state.periods[lane] >= state.look[lane]
+    if state.periods[lane] < state.earliest[lane]:
+        return forced
+    state.earliest[lane] = state.periods[lane] + max(2, state.periods[lane] // 8)
+    return look_at(state, lane) or forced
 
 
 @kernel
@@ -238,3 +300,44 @@ def run_lanes(lanes, state, stop):
             return CANCELLED, found
         if found >= 0:
             return (DONE if np.isfinite(state.y[1, found]) else NOT_FINITE), found
+
+
+@kernel
+def part_again(state, m, start, growth, lane):
+    """Note by how much a pair of lanes has parted in a period and pull the second back to the distance `start`."""
+    y, total = state.y, 0.0
+    for i in range(2 * m):
+        total += (y[i, lane + 1] - y[i, lane]) ** 2
+    now = max(sqrt(total), 1e-300)
+    growth[lane // 2, state.periods[lane] - 1] = log(now / start)
+    for i in range(2 * m):
+        y[i, lane + 1] = y[i, lane] + (y[i, lane + 1] - y[i, lane]) * (start / now)
+
+
+@kernel
+def run_pairs(lanes, state, start, growth, stop):
+    """Run lanes in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
+
+    growth (4, P) holds the logarithm of each period's growth; pairs that are never to be looked at are left out.
+    """
+    m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
+    while busy:
+        count = _PATIENCE
+        for lane in range(LANES):
+            count = min(count, state.left[lane])
+        lane_steps(lanes, state, count)
+        busy = False
+        for lane in range(0, LANES, 2):
+            counted = state.periods[lane] < periods and state.look[lane] == periods
+            for one in range(lane, lane + 2):
+                state.left[one] -= count
+                if state.left[one] == 0:
+                    end_period(state, one)
+            if counted and state.left[lane] == state.steps[lane]:
+                if not (np.isfinite(state.y[1, lane]) and np.isfinite(state.y[1, lane + 1])):
+                    return NOT_FINITE
+                part_again(state, m, start, growth, lane)
+            busy = busy or (counted and state.periods[lane] < periods)
+        if stop[0] != 0:
+            return CANCELLED
+    return DONE

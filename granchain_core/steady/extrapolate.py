@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..kernels.lanes import ORBITS
+
 #: Successive changes used; as many slow modes less one are removed.
-ORDER = 8
+ORDER = ORBITS
 #: A jump longer than this times change/(1 − rate) is not where the decay was leading.
 _LONGEST_JUMP = 3.0
 

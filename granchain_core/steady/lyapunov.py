@@ -5,10 +5,32 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine
+from ..integrate.lane_block import NEVER, LaneBlock
 from ..kernels.shadow import run_shadowed
+from ..lower import Lowered
 
 #: Distance of the shadow, relative to the motion: far above rounding, far below the kinks of the contacts.
 _DISTANCE = 1e-8
+
+
+def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, block: int,
+                       stop: np.ndarray) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """`exponents` of up to four scenes side by side in lanes, each from its scaled state (2(N+2),) at phase 0.
+
+    Of each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, and its last scaled state; exponents
+    are NaN where the motion did not stay finite.
+    """
+    pairs, periods = LaneBlock(scenes[0][0].scene, stop), (blocks + 1) * block
+    size = max(1e-6, max(float(np.abs(y[: lowered.row]).max()) for lowered, y in scenes))
+    for i, (lowered, y) in enumerate(scenes):
+        row = lowered.row
+        offset = np.random.default_rng(0).standard_normal(2 * row)
+        offset[[0, row - 1, row, 2 * row - 1]] = 0.0
+        pairs.put(2 * i, lowered, y, 1, periods, NEVER)
+        pairs.put(2 * i + 1, lowered, y + offset * (_DISTANCE * size / np.linalg.norm(offset)), 1, periods, NEVER)
+    growth = pairs.run_pairs(_DISTANCE * size, periods)
+    return [(growth[i, block:].reshape(blocks, block).mean(axis=1), pairs.strobes(2 * i, periods).copy(),
+             pairs.state.y[:, 2 * i].copy()) for i in range(len(scenes))]
 
 
 def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.ndarray]:

@@ -7,26 +7,19 @@ the stroboscopic map its distance is change·|μ|/(1 − |μ|). Only that bound 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-#: Longest period looked for, in drive periods.
-LONGEST_PERIOD = 16
-#: A state is on its orbit when its distance bound, relative to the largest displacement and velocity, is below this.
-SETTLED_DISTANCE = 1e-6
-#: Changes below this are rounding of the fixed-step map.
-_ROUNDING = 1e-12
-#: A change larger than this cannot have a distance bound that small: nothing decays a thousandfold in one period.
-_FAR = 1e-3
-#: A change this much smaller than the distance asked for is believed without an even rate: what slow mode there
-#: might be under it would have to decay a hundred times slower than anything seen.
-_DEEP = 1e-2
-#: A change over q periods that decays faster than this, per q periods, is going to zero and not to a longer orbit's.
-_APPROACHING = 0.97
+from ..kernels import section
+from ..kernels.section import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
+
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
 _SLOW_WINDOW, _SHRINKS = 100, 0.98
+#: Strobes that it takes to see that.
+SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
 
 @dataclass(frozen=True)
@@ -57,92 +50,46 @@ class Regime:
         return f"{self.name}, Lyapunov exponent {self.lyapunov[0]:+.3f} ± {self.lyapunov[1]:.3f} per period"
 
 
-def normalised(strobes: np.ndarray) -> np.ndarray:
-    """Stroboscopic states (P, 2, N) as rows (P, 2N), displacements and velocities each over their largest."""
-    largest = np.abs(strobes).max(axis=(0, 2), keepdims=True)
-    largest[largest == 0.0] = 1.0
-    return (strobes / largest).reshape(len(strobes), -1)
+@dataclass(frozen=True)
+class Approach:
+    """A motion on its way to an orbit: its period, the decay per orbit and the present change over it."""
+
+    period: int
+    rate: float
+    change: float
 
 
-def _window(period: int) -> int:
-    """Number of changes looked at for the rate."""
-    return max(8, 3 * period)
+def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
+    """The last `count` relative changes of the state over `period` drive periods; strobes (P + 1, 2, N)."""
+    out = np.zeros(count)
+    section.record_changes(np.ascontiguousarray(strobes), period, np.zeros(2), out)
+    return out
 
 
-def changes(states: np.ndarray, period: int) -> np.ndarray:
-    """Largest change of the state over `period` drive periods, for every later strobe."""
-    return np.abs(states[period:] - states[:-period]).max(axis=1)
+def look(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING,
+         slowest: float = 0.0) -> tuple[Regime, Approach | None]:
+    """Periodic with the smallest n whose distance bound holds, else unsettled and what is approached, if anything.
 
-
-def decay(change: np.ndarray, period: int) -> tuple[float, bool]:
-    """Rate of decay per `period` drive periods, and whether both halves of the window show the same.
-
-    Largest changes over one period at the window's start, middle and end are compared, so that turning complex
-    multipliers do not look like decay or growth; the slower half counts.
+    Strobes (P + 1, 2, N). Changes below `rounding` are the method's own and count as none; `slowest` is a
+    rate of decay per drive period that is known to be there.
     """
-    ends = [change[:period].max(), change[(len(change) - period) // 2 :][:period].max(), change[-period:].max()]
-    if min(ends) <= 0.0:
-        return 0.0, True
-    blocks = (len(change) - period) / (2 * period)
-    first = (ends[1] / ends[0]) ** (1 / blocks)
-    second = (ends[2] / ends[1]) ** (1 / blocks)
-    rate = max(first, second)
-    return rate, abs(first - second) < 0.2 * rate
+    seen = section.find(np.ascontiguousarray(strobes), longest, rounding, SETTLED_DISTANCE, slowest, np.zeros(2),
+                        np.zeros(max(section.LEAST_WINDOW, 3 * longest)))
+    return in_words(seen, len(strobes) - 1)
 
 
-def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = _ROUNDING) -> Regime:
-    """Periodic with the smallest n whose distance bound holds, else unsettled; strobes (P + 1, 2, N).
-
-    Changes below `rounding` are the method's own and count as none.
-    """
-    states, run = normalised(strobes), len(strobes) - 1
-    approaching: list[int] = []
-    for n in range(1, longest + 1):
-        window = _window(n)
-        if run < window + n:
-            break
-        if np.abs(states[-1] - states[-1 - n]).max() > _FAR:
-            continue
-        change = changes(states[-(window + n) :], n)
-        rate, even = decay(change, n)
-        recent = change[-n:].max()
-        if change.max() <= rounding:
-            return Regime("periodic", n, _earlier_rate(states, n, rounding), rounding, run)
-        if rate >= 1.0:
-            continue
-        if any(n % q == 0 for q in approaching):
-            continue  # a shorter period is still being approached: this one's small change is that approach
-        if rate < _APPROACHING:
-            approaching.append(n)
-        distance = recent * rate / (1.0 - rate)
-        if distance <= SETTLED_DISTANCE and (even or recent <= _DEEP * SETTLED_DISTANCE):
-            return _shortest(states, Regime("periodic", n, float(rate), float(distance), run))
-    return Regime("unsettled", None, None, None, run)
+def in_words(seen: Sequence[float] | np.ndarray, run: int) -> tuple[Regime, Approach | None]:
+    """The six numbers of section.find after `run` periods as a regime and what is approached."""
+    period, rate, distance, approached, its_rate, its_change = seen
+    if period > 0:
+        return Regime("periodic", int(period), None if rate < 0.0 else float(rate), float(distance), run), None
+    approach = Approach(int(approached), float(its_rate), float(its_change)) if approached else None
+    return Regime("unsettled", None, None, None, run), approach
 
 
-def _shortest(states: np.ndarray, found: Regime) -> Regime:
-    """The same regime with the shortest period that these states do not contradict.
-
-    The state is within `distance` of the orbit, so a change over q periods that is a few times as small is none.
-    """
-    n, distance = found.period, found.distance
-    assert n is not None and distance is not None
-    for q in range(1, n):
-        if n % q == 0 and changes(states[-(n + q) :], q).max() <= 10.0 * distance:
-            multiplier = found.multiplier ** (q / n) if found.multiplier else found.multiplier
-            return replace(found, period=q, multiplier=multiplier)
-    return found
-
-
-def _earlier_rate(states: np.ndarray, n: int, rounding: float) -> float | None:
-    """The decay rate from the part of the record that is still above rounding."""
-    change = changes(states, n)
-    above = np.flatnonzero(change > 1e3 * rounding)
-    if len(above) < _window(n):
-        return None
-    tail = change[above[-1] + 1 - _window(n) : above[-1] + 1]
-    rate, _ = decay(tail, n)
-    return float(rate) if 0.0 < rate < 1.0 else None
+def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING) -> Regime:
+    """The regime that `look` sees."""
+    return look(strobes, longest, rounding)[0]
 
 
 def irregular(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
@@ -168,11 +115,10 @@ def slowing(strobes: np.ndarray) -> bool:
 
     On a closed curve or a strange attractor their largest value stays what it is.
     """
-    if len(strobes) < 3 * _SLOW_WINDOW + LONGEST_PERIOD:
+    if len(strobes) < SLOW_RECORD:
         return False
-    states = normalised(strobes[-(3 * _SLOW_WINDOW + LONGEST_PERIOD) :])
     for n in range(1, LONGEST_PERIOD + 1):
-        first, second, third = changes(states, n)[-3 * _SLOW_WINDOW :].reshape(3, -1).max(axis=1)
+        first, second, third = changes(strobes, n, 3 * _SLOW_WINDOW).reshape(3, -1).max(axis=1)
         if second < _SHRINKS * first and third < _SHRINKS * second:
             return True
     return False
@@ -184,7 +130,7 @@ def returns_near(strobes: np.ndarray) -> bool:
     On a curve filled evenly by P points neighbours lie about 2π/P apart; a section that drifts or spreads does not
     come back so near. Five times that is asked for.
     """
-    states = normalised(strobes)
-    half = len(states) // 2
-    nearest = [np.abs(states[:half] - late).max(axis=1).min() for late in states[half:]]
+    half = len(strobes) // 2
+    nearest = np.zeros(len(strobes) - half)
+    section.nearest_neighbours(np.ascontiguousarray(strobes), np.zeros(2), nearest)
     return bool(np.median(nearest) < 5.0 * 2.0 * np.pi / half)

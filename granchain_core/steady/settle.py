@@ -19,7 +19,7 @@ from ..result import Cost, Run, run_from
 from ..scene import Scene
 from .extrapolate import ORDER, reduced_rank, within_reach
 from .lyapunov import exponents
-from .regime import Regime, find_period, irregular, normalised, slowing
+from .regime import Regime, changes, find_period, irregular, slowing
 
 #: Periods after which a chain that has not settled is called that.
 MOST_PERIODS = 400
@@ -223,7 +223,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
         for _ in range(ORDER):
             moved, _ = engine.periods(n, watch=False)
             states = np.concatenate([states, moved[-1:]])
-            change = float(np.abs(normalised(states)[-1] - normalised(states)[-2]).max())
+            change = float(changes(states, 1, 1)[0])
             bound = change * rate / (1.0 - rate)
             if bound <= 0.3 * accuracy:
                 return engine, bound

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import kernel
-from ..simd_math import clip, divided_root, root
+from ..jit import inlined, kernel
+from ..simd_math import clip, root, root_by_series
 
 
 class Chain(NamedTuple):
@@ -34,10 +34,16 @@ def elastic_force(stiffness, d):
     return stiffness * d * root(d)
 
 
-@kernel
-def divided_elastic_force(stiffness, d):
-    """The same of vectors with the root from the divider: used for every other one it keeps all units busy."""
-    return stiffness * d * divided_root(d)
+@inlined
+def force_by_divider(d):
+    """d^{3/2} of vectors with the divider's root."""
+    return d * root(d)
+
+
+@inlined
+def force_by_series(d):
+    """d^{3/2} of vectors above zero with the multipliers' root."""
+    return d * root_by_series(d)
 
 
 @kernel

@@ -99,7 +99,7 @@ def shifted(law, inverse_mass, v, G, i):
 
 @term
 def lane_values(law):
-    """The law with the values of all lanes, read from its (1, 8) arrays."""
+    """The law with the values of all lanes, read from its (1, 8) arrays; what multiplies `shape` in the first."""
     return None
 
 
@@ -119,16 +119,27 @@ def _(law):
 
 
 @term
-def lane_velocity(law, w, inverse_mass, left, right):
-    """v = w + (G_left − G_right)/m of one bead in all lanes."""
-    return w
+def shape(law, d, elastic):
+    """G over its coefficient, from d and d^{3/2}."""
+    return 0.0
+
+
+@shape.of(LinearDashpot)
+def _(law, d, elastic):
+    return d
+
+
+@shape.of(Tsuji)
+def _(law, d, elastic):
+    return 0.8 * d * root(root(d))
+
+
+@shape.of(KuwabaraKono)
+def _(law, d, elastic):
+    return 2.0 / 3.0 * elastic
 
 
 for _law in LAWS:
-
-    @lane_velocity.of(_law)
-    def _(law, w, inverse_mass, left, right):
-        return w + inverse_mass * (left - right)
 
     @keep_primitive.of(_law)
     def _(law, G, c, d):

@@ -1,0 +1,44 @@
+"""Beads or contacts that differ from the first bead: dimers, impurities, soft beads.
+
+Equation   m_i and K_c in units of the first bead's
+Values     inverse_mass (N+2, 8) and stiffness (N+1, 8) in all lanes
+Absent     all beads are alike: there is no factor in lanes but the wall's
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..jit import term
+from ..simd import load
+
+
+class Unequal(NamedTuple):
+    """Slot of chains whose beads are not all alike."""
+
+    inverse_mass: np.ndarray
+    stiffness: np.ndarray
+
+
+@term
+def over_mass(unequal, i, force):
+    """A force on bead i over its mass. Absent: the force itself."""
+    return force
+
+
+@over_mass.of(Unequal)
+def _(unequal, i, force):
+    return load(unequal.inverse_mass, i) * force
+
+
+@term
+def times_stiffness(unequal, wall, i, last, elastic):
+    """The elastic force of contact i from d^{3/2}; `wall` is the last one's stiffness. Absent: it alone differs."""
+    return wall * elastic if i == last else elastic
+
+
+@times_stiffness.of(Unequal)
+def _(unequal, wall, i, last, elastic):
+    return load(unequal.stiffness, i) * elastic
