@@ -52,7 +52,7 @@ class LaneBlock:
         rows = 2 * (n + 2)
         whole = [np.zeros(LANES, dtype=np.int64) for _ in range(7)]
         self.state = kernels.LaneState(
-            y=aligned(rows), phase=aligned(2), peaks=aligned(3 * ROWS),
+            y=aligned(rows), gaps=aligned(n + 1), phase=aligned(2), peaks=aligned(3 * ROWS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
             slowest=np.zeros(LANES), kept=whole[6], strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
             tops=np.zeros((LANES, REMEMBERED, 3)), seen=np.zeros((LANES, 6)), scale=np.zeros(2),
@@ -95,7 +95,7 @@ class LaneBlock:
     def go_on(self, lane: int, y: np.ndarray, look: int, earliest: int) -> None:
         """Put a lane into another state of its scene at phase 0; its record begins there."""
         state = self.state
-        state.y[:, lane] = y
+        state.y[:, lane], state.gaps[:, lane] = y, 0.0
         state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
         state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
 

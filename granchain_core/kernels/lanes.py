@@ -18,6 +18,7 @@ from .effects.foundation import lane_foundation, pull_back
 from .effects.preload import lane_overlap
 from .effects.unequal import over_mass, times_stiffness
 from .jit import inlined, kernel, term
+from .lane_events import correct_contacts
 from .motion import copy
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, watch_lanes
 from .sampling import CANCELLED, DONE, NOT_FINITE
@@ -50,7 +51,7 @@ class Lanes(NamedTuple):
 
 
 class LaneState(NamedTuple):
-    """Where the lanes are: state (2(N+2), 8), sin and cos of the phase (2, 8), peaks (15, 8).
+    """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), sin and cos of the phase (2, 8), peaks (15, 8).
 
     Per lane: steps in a period and steps left, periods run, the period to stop at in any case, the next period at which
     it is seen whether it has settled, the period from which an approach may be followed, the slowest decay known,
@@ -59,6 +60,7 @@ class LaneState(NamedTuple):
     """
 
     y: np.ndarray
+    gaps: np.ndarray
     phase: np.ndarray
     peaks: np.ndarray
     steps: np.ndarray
@@ -220,6 +222,7 @@ def lane_steps(lanes, state, count):
     for _ in range(count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
         end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
+        correct_contacts(values, y, state.gaps, h, sine)
         gap_first = lane_overlap(values.preload, sine, load(y, 1), 0)
         gap_last = lane_overlap(values.preload, load(y, last), load(y, last + 1), last)
         ends = lane_step(values, y, h, sine, middle, end)
