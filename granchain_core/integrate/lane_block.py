@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -61,13 +62,13 @@ class LaneBlock:
         for lane in range(LANES):  # an empty lane runs the example, at rest, and is never looked at
             self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
 
-    def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: int, look: int, earliest: int = 0) -> None:
+    def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, look: int, earliest: int = 0) -> None:
         """Start a scene in a lane from the scaled state y at phase 0, with `refine` times the live method's steps.
 
         It is looked at after `look` periods, or from `earliest` on when it may have settled.
         """
         slots, lanes, state = lowered.slots, self.lanes, self.state
-        steps = refine * lowered.steps_per_period()
+        steps = math.ceil(refine * lowered.steps_per_period())
         lanes.wall[0, lane] = slots.chain.stiffness[-1]
         if lanes.unequal is not None:
             lanes.unequal.inverse_mass[:, lane] = slots.chain.inverse_mass

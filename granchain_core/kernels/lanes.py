@@ -51,7 +51,8 @@ class Lanes(NamedTuple):
 
 
 class LaneState(NamedTuple):
-    """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), sin and cos of the phase (2, 8), peaks (15, 8).
+    """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), sin and cos of the phase (2, 8),
+    peaks (15, 8).
 
     Per lane: steps in a period and steps left, periods run, the period to stop at in any case, the next period at which
     it is seen whether it has settled, the period from which an approach may be followed, the slowest decay known,

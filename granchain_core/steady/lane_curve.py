@@ -27,6 +27,7 @@ from .settle import SLOW_PERIODS
 #: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
 #: which is what is claimed.
 _FINER = 3
+_COARSE = 1.0
 #: Blocks and periods a block for the Lyapunov exponent.
 _BLOCKS, _BLOCK = 10, 20
 #: Periods over which the largest force of an irregular motion is taken.
@@ -56,7 +57,7 @@ class _Lanes:
     def _start(self, lane: int, job: Job) -> None:
         """The coarse run is looked at when it may have settled, the finer one when it has forgotten the coarse one."""
         if job.coarse is None:
-            self.block.put(lane, job.lowered, job.y, 1, first_look(job))
+            self.block.put(lane, job.lowered, job.y, _COARSE, first_look(job))
         else:
             self.block.put(lane, job.lowered, job.y, _FINER, fine_look(job), NEVER)
 
