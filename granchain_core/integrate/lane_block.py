@@ -9,8 +9,10 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..kernels import lanes as kernels
+from ..kernels.approach import ORBITS
 from ..kernels.effects.unequal import Unequal
-from ..kernels.lanes import LANES, REMEMBERED
+from ..kernels.lane_looks import FINE, FORCES, FORGET, REMEMBERED
+from ..kernels.lanes import LANES
 from ..kernels.motion import place
 from ..kernels.peaks import ROWS
 from ..kernels.sampling import CANCELLED
@@ -22,6 +24,8 @@ from .engine import State
 
 #: A period that no lane reaches.
 NEVER = int(np.iinfo(np.int64).max)
+#: Periods until the first extrapolation after a vain one, and fewest orbits of a finer run.
+_WAIT, _FEWEST = 16, 2
 
 
 def can_share_lanes(scene: Scene) -> bool:
@@ -51,13 +55,16 @@ class LaneBlock:
             turn=aligned(2), beta=aligned(1), h=aligned(1),
         )
         rows = 2 * (n + 2)
-        whole = [np.zeros(LANES, dtype=np.int64) for _ in range(7)]
+        whole = [np.zeros(LANES, dtype=np.int64) for _ in range(9)]
+        parts = [np.zeros(LANES) for _ in range(2)]
         self.state = kernels.LaneState(
             y=aligned(rows), gaps=aligned(n + 1), phase=aligned(2), peaks=aligned(3 * ROWS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
-            slowest=np.zeros(LANES), kept=whole[6], strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
-            tops=np.zeros((LANES, REMEMBERED, 3)), seen=np.zeros((LANES, 6)), scale=np.zeros(2),
-            change=np.zeros(3 * LONGEST_PERIOD),
+            wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], jumped=parts[1], before=np.zeros((LANES, 2, n + 2)),
+            fine=np.zeros((LANES, FINE)), strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
+            tops=np.zeros((LANES, REMEMBERED, 3)), seen=np.zeros((LANES, 3)), scale=np.zeros(2),
+            change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
+            triangle=np.zeros((ORBITS, ORBITS)),
         )
         for lane in range(LANES):  # an empty lane runs the example, at rest, and is never looked at
             self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
@@ -83,8 +90,21 @@ class LaneBlock:
         state.phase[:, lane] = 0.0, 1.0
         state.peaks[:, lane] = 0.0
         state.steps[lane] = state.left[lane] = steps
-        state.ready[lane], state.slowest[lane] = 0, 0.0
-        self.go_on(lane, y, look, earliest)
+        state.y[:, lane], state.gaps[:, lane] = y, 0.0
+        state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
+        state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
+        state.ready[lane], state.wait[lane], state.slowest[lane], state.jumped[lane] = 0, _WAIT, 0.0, 0.0
+        state.fine[lane], state.testing[lane] = 0.0, 0
+
+    def put_fine(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, period: int, rate: float,
+                 tops: np.ndarray) -> None:
+        """Start a scene on the orbit y of a coarser run, of `period` and decay `rate` per orbit, with its forces.
+
+        It is looked at when it has forgotten that orbit for its own.
+        """
+        orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(FORGET) / math.log(rate))))
+        self.put(lane, lowered, y, refine, NEVER, orbits * period)
+        self.state.fine[lane] = period, rate, *tops, orbits, 0.0
 
     def run(self) -> tuple[int, bool]:
         """Run until a lane should be looked at; its number, and whether it is finite."""
@@ -92,13 +112,6 @@ class LaneBlock:
         if status == CANCELLED:
             raise Cancelled
         return int(lane), status == 0
-
-    def go_on(self, lane: int, y: np.ndarray, look: int, earliest: int) -> None:
-        """Put a lane into another state of its scene at phase 0; its record begins there."""
-        state = self.state
-        state.y[:, lane], state.gaps[:, lane] = y, 0.0
-        state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
-        state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
 
     def run_pairs(self, start: float, periods: int) -> np.ndarray:
         """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (4, periods)."""
@@ -112,6 +125,11 @@ class LaneBlock:
         """The last `most` remembered strobes of a lane in order, (P, 2, N), displacement and w in scaled units."""
         kept = int(self.state.kept[lane])
         return self.state.strobes[lane, max(0, kept - most) : kept, :, 1:-1]
+
+    def settled_tops(self, lane: int, period: int) -> np.ndarray:
+        """Largest forces on the orbit a coarse lane has settled on: from before it was disturbed, if it was."""
+        disturbed = self.state.slowest[lane] > 0.0
+        return self.state.fine[lane, FORCES : FORCES + 3].copy() if disturbed else self.tops(lane, period)
 
     def tops(self, lane: int, periods: int) -> np.ndarray:
         """Largest input, output and elastic output force of the last `periods` periods, in scaled units."""

@@ -19,19 +19,14 @@ from .effects.preload import lane_overlap
 from .effects.unequal import over_mass, times_stiffness
 from .jit import inlined, kernel, term
 from .lane_events import correct_contacts
-from .motion import copy
-from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, watch_lanes
+from .lane_looks import end_period
+from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch_lanes
 from .sampling import CANCELLED, DONE, NOT_FINITE
-from .section import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE, find
 from .simd import LANES, blank, flush_subnormals, load, restore_subnormals, store
 from .simd_math import above_zero
 
-#: Strobes of each lane that are always remembered, and those its regime is decided by.
-REMEMBERED, SEEN = 432, 4 * LONGEST_PERIOD + 1
 #: Steps after which the stop flag is asked at the latest.
 _PATIENCE = 4096
-#: Orbits that are needed to see where an approach leads, and how many still to come make it worth that.
-ORBITS, _TOO_LONG = 8, 4.0
 
 
 class Lanes(NamedTuple):
@@ -54,10 +49,11 @@ class LaneState(NamedTuple):
     """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), sin and cos of the phase (2, 8),
     peaks (15, 8).
 
-    Per lane: steps in a period and steps left, periods run, the period to stop at in any case, the next period at which
-    it is seen whether it has settled, the period from which an approach may be followed, the slowest decay known,
-    strobes (8, 2R, 2, N+2) of which `kept` are there, largest forces (8, R, 3) as a ring. `seen` (8, 6) is what
-    section.find saw last; `scale` and `change` are its workspaces.
+    Per lane: steps in a period and steps left, periods run, the period to stop at in any case and the next at which the
+    strobes are looked at; the period from which an approach may be followed and how long it is waited after a vain one,
+    the slowest decay known, the change before an extrapolation that has not proved itself and the state `before` it
+    (8, 2, N+2), the period of an orbit that is disturbed; what is known of a fine lane (8, 7); strobes (8, 2R, 2, N+2) of which `kept` are there, largest forces
+    (8, R, 3) as a ring, and what was seen last (8, 3): period, rate, distance. The rest are workspaces of lane_looks.
     """
 
     y: np.ndarray
@@ -70,13 +66,21 @@ class LaneState(NamedTuple):
     look: np.ndarray
     earliest: np.ndarray
     ready: np.ndarray
-    slowest: np.ndarray
+    wait: np.ndarray
     kept: np.ndarray
+    slowest: np.ndarray
+    jumped: np.ndarray
+    testing: np.ndarray
+    before: np.ndarray
+    fine: np.ndarray
     strobes: np.ndarray
     tops: np.ndarray
     seen: np.ndarray
     scale: np.ndarray
     change: np.ndarray
+    limit: np.ndarray
+    basis: np.ndarray
+    triangle: np.ndarray
 
 
 class Values(NamedTuple):
@@ -232,59 +236,6 @@ def lane_steps(lanes, state, count):
     store(state.phase, 0, sine)
     store(state.phase, 1, cosine)
     restore_subnormals(before)
-
-
-@kernel
-def keep_lane_strobe(state, lane):
-    """Note where a lane is at the end of a period, behind its earlier strobes; the oldest half goes when it is full."""
-    strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
-    if state.kept[lane] == strobes.shape[1]:
-        half = strobes.shape[1] // 2
-        for p in range(half):
-            copy(strobes[lane, half + p, 0], strobes[lane, p, 0])
-            copy(strobes[lane, half + p, 1], strobes[lane, p, 1])
-        state.kept[lane] = half
-    finite, place = True, state.kept[lane]
-    for i in range(m):
-        strobes[lane, place, 0, i], strobes[lane, place, 1, i] = y[i, lane], y[m + i, lane]
-        finite = finite and np.isfinite(y[i, lane]) and np.isfinite(y[m + i, lane])
-    state.kept[lane] += 1
-    return finite
-
-
-@kernel
-def look_at(state, lane):
-    """See what a lane's last strobes show; whether it is periodic or approaches an orbit by too long a way."""
-    kept, periods = state.kept[lane], state.periods[lane]
-    record = state.strobes[lane, max(0, kept - SEEN) : kept]
-    period, rate, distance, approached, its_rate, its_change = find(
-        record, LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE, state.slowest[lane], state.scale, state.change)
-    seen = state.seen[lane]
-    seen[0], seen[1], seen[2] = period, rate, distance
-    seen[3], seen[4], seen[5] = approached, its_rate, its_change
-    if period > 0:
-        return True
-    if approached == 0 or periods < max(state.ready[lane], ORBITS * approached):
-        return False
-    left = its_change * its_rate / (1.0 - its_rate)
-    return left > SETTLED_DISTANCE and log(SETTLED_DISTANCE / left) < _TOO_LONG * log(its_rate)
-
-
-@kernel
-def end_period(state, lane):
-    """Note strobe and largest forces of a lane, restart its phase exactly; whether it should be looked at."""
-    state.periods[lane] += 1
-    finite = keep_lane_strobe(state, lane)
-    for q in range(3):
-        state.tops[lane, state.periods[lane] % REMEMBERED, q] = state.peaks[ROWS * q, lane]
-        state.peaks[ROWS * q, lane] = 0.0
-    state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0
-    state.left[lane] = state.steps[lane]
-    forced = not finite or state.periods[lane] >= state.look[lane]
-    if state.periods[lane] < state.earliest[lane]:
-        return forced
-    state.earliest[lane] = state.periods[lane] + max(2, state.periods[lane] // 8)
-    return look_at(state, lane) or forced
 
 
 @kernel

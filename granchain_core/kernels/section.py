@@ -134,9 +134,12 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
         count = window_of(n)
         if run < count + n:
             break
+        nearer = False
+        for q in range(1, n):
+            nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
         now = change_between(strobes, scale, run, run - n)
-        if now > _WORTH_A_JUMP:
-            continue
+        if nearer or now > _WORTH_A_JUMP:
+            continue  # a shorter period is still being approached: this one's small change is that approach
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
             return n, earlier_rate(strobes, scale, n, rounding, change), rounding, 0, 0.0, 0.0
@@ -146,11 +149,8 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
             continue
         if approached == 0:
             approached, its_rate, its_change = n, rate, recent
-        nearer = False
-        for q in range(1, n):
-            nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
-        if nearer or now > _FAR:
-            continue  # a shorter period is still being approached: this one's small change is that approach
+        if now > _FAR:
+            continue
         if rate < _APPROACHING:
             approaching |= 1 << n
         rate = max(rate, slowest**n)
@@ -169,7 +169,8 @@ def nearest_neighbours(strobes, scale, nearest):
     for p in range(nearest.size):
         nearest[p] = np.inf
         for q in range(half):
-            nearest[p] = min(nearest[p], change_between(strobes, scale, half + p, q))
+            if abs(strobes[half + p, 0, 0] - strobes[q, 0, 0]) < nearest[p] * scale[0]:
+                nearest[p] = min(nearest[p], change_between(strobes, scale, half + p, q))
 
 
 @kernel

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kernels.lanes import ORBITS
+from ..kernels import approach
+from ..kernels.approach import ORBITS
 
 #: Successive changes used; as many slow modes less one are removed.
 ORDER = ORBITS
@@ -19,11 +20,11 @@ _LONGEST_JUMP = 3.0
 
 
 def reduced_rank(states: np.ndarray) -> np.ndarray:
-    """The limit of the rows x_0..x_k as reduced rank extrapolation sees it: x_0 + Σ ξ_i (x_{i+1} − x_i)."""
-    first = np.diff(states, axis=0)
-    second = np.diff(first, axis=0)
-    weights, *_ = np.linalg.lstsq(second.T, -first[0], rcond=1e-12)
-    return states[0] + weights @ first[:-1]
+    """The limit of the states x_0..x_k (k + 1, 2, N) as reduced rank extrapolation sees it."""
+    k, size = len(states) - 1, states[0].size
+    limit = np.zeros_like(states[0])
+    approach.reduced_rank(np.ascontiguousarray(states), np.zeros((k, size)), np.zeros((k, k)), limit)
+    return limit
 
 
 def within_reach(here: np.ndarray, there: np.ndarray, change: float, rate: float) -> bool:

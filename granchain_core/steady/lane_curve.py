@@ -19,10 +19,10 @@ from ..integrate.lane_block import NEVER, LaneBlock, scaled_state, state_of
 from ..kernels.lanes import LANES
 from ..lower import lower
 from ..scene import Scene
-from .lane_job import Job, LaneResult, failed, fine_look, first_look, look_coarse
+from .lane_job import Job, LaneResult, failed, look_coarse
 from .lyapunov import exponents_in_pairs
 from .regime import find_period, irregular
-from .settle import SLOW_PERIODS
+from .settle import MOST_PERIODS, SLOW_PERIODS
 
 #: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
 #: which is what is claimed.
@@ -55,11 +55,15 @@ class _Lanes:
                     self._start(lane, job)
 
     def _start(self, lane: int, job: Job) -> None:
-        """The coarse run is looked at when it may have settled, the finer one when it has forgotten the coarse one."""
+        """The coarse run is looked at when it has settled, the finer one when it has forgotten the coarse one."""
         if job.coarse is None:
-            self.block.put(lane, job.lowered, job.y, _COARSE, first_look(job))
-        else:
-            self.block.put(lane, job.lowered, job.y, _FINER, fine_look(job), NEVER)
+            look = min(MOST_PERIODS, job.affordable_periods - job.run)
+            self.block.put(lane, job.lowered, job.y, _COARSE, look)
+            return
+        regime, tops = job.coarse
+        assert regime.period is not None
+        rate = min(0.999, max(1e-3, regime.multiplier or 0.5))
+        self.block.put_fine(lane, job.lowered, job.y, _FINER, regime.period, rate, tops)
 
     def step(self) -> LaneResult | None:
         """Run until a lane is to be looked at, and do so."""
@@ -68,7 +72,7 @@ class _Lanes:
         if not finite:
             self._free(lane)
             return failed(job)
-        outcome = job.look_fine(self.block, lane) if job.coarse is not None else look_coarse(job, self.block, lane)
+        outcome = look_coarse(job, self.block, lane) if job.coarse is None else job.fine_result(self.block, lane)
         if outcome is None:
             return None
         self._free(lane)
@@ -86,17 +90,19 @@ class _Lanes:
         """Tell doubtful jobs apart, four at a time; one whose neighbours come closer is given more time."""
         jobs, self.doubtful = self.doubtful[: LANES // 2], self.doubtful[LANES // 2 :]
         found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], _BLOCKS, _BLOCK, self.stop)
-        for job, (growth, strobes, y) in zip(jobs, found, strict=True):
+        for job, (growth, strobes, tops, y) in zip(jobs, found, strict=True):
             if not np.isfinite(growth).all():
                 yield failed(job)
                 continue
             job.run += len(strobes)
             job.y, job.in_doubt = y, False
             regime = replace(find_period(strobes), periods_run=job.run)
-            if regime.name != "periodic":
-                regime = irregular(growth, job.record, job.run)
-            if regime.name == "periodic" or (regime.name == "unsettled" and growth.mean() < 0.0
-                                             and job.run < SLOW_PERIODS and job.affordable):
+            if regime.period is not None:
+                job.coarse = (regime, tops[-regime.period :].max(axis=0))
+                self.waiting.append(job)
+                continue
+            regime = irregular(growth, job.record, job.run)
+            if regime.name == "unsettled" and growth.mean() < 0.0 and job.run < SLOW_PERIODS and job.affordable:
                 self.waiting.append(job)
             else:
                 yield LaneResult(job.scene, job.tops, regime, None, state_of(job.lowered, y))

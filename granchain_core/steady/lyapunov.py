@@ -6,6 +6,7 @@ import numpy as np
 
 from ..integrate import Engine
 from ..integrate.lane_block import NEVER, LaneBlock
+from ..kernels.section import LONGEST_PERIOD
 from ..kernels.shadow import run_shadowed
 from ..lower import Lowered
 
@@ -14,11 +15,11 @@ _DISTANCE = 1e-8
 
 
 def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, block: int,
-                       stop: np.ndarray) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+                       stop: np.ndarray) -> list[tuple[np.ndarray, ...]]:
     """`exponents` of up to four scenes side by side in lanes, each from its scaled state (2(N+2),) at phase 0.
 
-    Of each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, and its last scaled state; exponents
-    are NaN where the motion did not stay finite.
+    Of each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its last periods
+    (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite.
     """
     pairs, periods = LaneBlock(scenes[0][0].scene, stop), (blocks + 1) * block
     size = max(1e-6, max(float(np.abs(y[: lowered.row]).max()) for lowered, y in scenes))
@@ -30,6 +31,7 @@ def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, bl
         pairs.put(2 * i + 1, lowered, y + offset * (_DISTANCE * size / np.linalg.norm(offset)), 1, periods, NEVER)
     growth = pairs.run_pairs(_DISTANCE * size, periods)
     return [(growth[i, block:].reshape(blocks, block).mean(axis=1), pairs.strobes(2 * i, periods).copy(),
+             np.array([pairs.tops(2 * i, n) for n in range(LONGEST_PERIOD, 0, -1)]),
              pairs.state.y[:, 2 * i].copy()) for i in range(len(scenes))]
 
 
