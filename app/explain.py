@@ -23,7 +23,7 @@ def explanation(scene: Scene, method: str | None) -> str:
             absent.append(title)
         else:
             present.append(f"{title} ({type(slot).__name__})")
-    setting = method_for(scene.accuracy) if method is None else setting_of(method, scene.accuracy)
+    setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     chosen = METHODS[setting.method]
     why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"
     fineness = (f"tolerance per step {setting.tolerance:.1e}" if chosen.adaptive

@@ -18,7 +18,7 @@ from .integrate import Engine, Setting, State, method_for
 from .integrate.engine import Counts, new_stop, rest
 from .integrate.methods import setting_of
 from .kernels.sampling import Samples
-from .result import Cost, Run, run_from
+from .result import Cost, Run, residual, run_from
 from .scene import Scene
 from .scene.validity import overlap_warnings
 from .steady.lyapunov import exponents
@@ -28,6 +28,8 @@ from .steady.regime import Regime, find_period, irregular
 MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
 #: A motion whose computations differ by more than this has no error estimate worth the name.
 _LOST = 0.3
+#: It is then computed until its energy account closes to so many times the accuracy, energies being quadratic.
+_CLOSES = 10.0
 #: Periods whose stroboscopic states are kept to decide the regime, however long a run is.
 _KEPT = 420
 #: Fewest periods on which a run is called anything but unsettled.
@@ -57,14 +59,15 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     began = time.perf_counter()
     flag = new_stop() if stop is None else stop
     begin = rest(scene) if start is None else start
-    setting = method_for(scene.accuracy) if method is None else setting_of(method, scene.accuracy)
+    setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     total = Counts()
     before = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
     while True:
         setting = setting.finer()
         now = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
         error = _difference(now, before)
-        if error <= scene.accuracy or setting.finest or error > _LOST:
+        lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
+        if error <= scene.accuracy or setting.finest or lost:
             break
         before = now
     regime = _regime(scene, now, periods + record, flag)

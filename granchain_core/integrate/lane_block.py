@@ -30,7 +30,7 @@ _WAIT, _FEWEST = 16, 2
 
 def can_share_lanes(scene: Scene) -> bool:
     """Whether lanes can run this scene: the tension cut needs all velocities before the forces, which lanes lack."""
-    return not (scene.has_dissipation and scene.tension == "cut")
+    return not scene.cuts_tension
 
 
 def alike(lowered: Lowered) -> bool:
@@ -60,7 +60,8 @@ class LaneBlock:
         self.state = kernels.LaneState(
             y=aligned(rows), gaps=aligned(n + 1), phase=aligned(2), peaks=aligned(3 * ROWS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
-            wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], jumped=parts[1], before=np.zeros((LANES, 2, n + 2)),
+            wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], jumped=parts[1],
+            before=np.zeros((LANES, 2, n + 2)),
             fine=np.zeros((LANES, FINE)), strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
             tops=np.zeros((LANES, REMEMBERED, 3)), seen=np.zeros((LANES, 3)), scale=np.zeros(2),
             change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),

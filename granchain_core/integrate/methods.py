@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from ..errors import unknown_name
@@ -12,12 +13,14 @@ from ..lower import Lowered
 class Method:
     """One way to integrate.
 
-    `order` is what it keeps across contact events, `order_with_cut` what it keeps where tension is cut: the force's
-    kink at F = 0 and its end at δ = 0 are no events that a fixed step is split at. `variables` are "uw" or "uv".
+    `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
+    for, `order_with_cut` where tension is cut: the force's kink at F = 0 and its end at δ = 0 are no events that a
+    fixed step is split at. `variables` are "uw" or "uv".
     """
 
     name: str
     title: str
+    order_smooth: float
     order: float
     events: bool
     adaptive: bool
@@ -33,7 +36,7 @@ class Setting:
     """A method with its fineness: `refine` times the live method's steps, or a relative tolerance per step."""
 
     method: str
-    refine: int = 1
+    refine: float = 1
     tolerance: float = 0.0
 
     def finer(self) -> Setting:
@@ -49,35 +52,42 @@ class Setting:
 
     def steps_per_period(self, lowered: Lowered, samples: int) -> int:
         """Steps in one period for a fixed-step method, a multiple of `samples`."""
-        return self.refine * lowered.steps_per_period(samples)
+        return math.ceil(self.refine * lowered.steps_per_period(samples) / samples) * samples
 
 
 METHODS: dict[str, Method] = {
     m.name: m
     for m in (
-        Method("rk4", "RK4 in w", 2.0, False, False, False, "fixed step; order 2 at contact events",
+        Method("rk4", "RK4 in w", 4.0, 2.0, False, False, False, "fixed step; order 2 at contact events",
                "Kutta 1901; w-variables: docs/model.md"),
-        Method("rk4-split", "RK4 in w, steps split at contact events", 2.5, True, False, False,
-               "fixed step; two changes of one contact inside a step are not seen",
-               "Kutta 1901; w-variables: docs/model.md"),
-        Method("rk4-naive", "RK4 in (u, v), as one would write it first", 1.0, False, False, False,
+        Method("rk4-split", "RK4 in w, steps split at contact events, what Simpson's rule misses there given back", 4.0,
+               4.0, True, False, False, "fixed step; below errors of about 1e-9 the order falls to 3.5",
+               "Kutta 1901; w-variables and events: docs/model.md"),
+        Method("rk4-naive", "RK4 in (u, v), as one would write it first", 4.0, 1.0, False, False, False,
                "no energy account; erratic where a dashpot contact opens or closes", "Kutta 1901", "uv"),
-        Method("verlet-naive", "velocity Verlet in (u, v), as one would write it first", 1.0, False, False, True,
+        Method("verlet-naive", "velocity Verlet in (u, v), as one would write it first", 2.0, 1.0, False, False, True,
                "no energy account; symplectic without damping only", "Verlet 1967; Swope et al. 1982", "uv"),
-        Method("dop853", "Dormand–Prince 8 in w, contact events located", 8.0, True, True, False,
+        Method("dop853", "Dormand–Prince 8 in w, contact events located", 8.0, 8.0, True, True, False,
                "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5"),
     )
 }
 
-#: Above this relative error the live method is the cheaper one, and below it its error at the live step, which falls
-#: with the power 2.5 of the step (`granchain accuracy sec2` measures both).
-_LIVE_IS_CHEAPER, _LIVE_ERROR = 2e-7, 6e-6
+#: Above this relative error the live method is the cheaper one; its error at the live step is about that below, and
+#: falls with the fourth power of the step (`granchain accuracy sec2` measures both).
+_LIVE_IS_CHEAPER, _LIVE_ERROR = 1e-10, 7e-6
+#: The same where tension is cut: the live method's order is then 1.
+_LIVE_IS_CHEAPER_WITH_CUT, _LIVE_ERROR_WITH_CUT = 1e-5, 1e-3
+#: Coarsest steps for one of the live method's.
+_COARSEST = 0.5
 
 
-def method_for(accuracy: float) -> Setting:
+def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
-    if accuracy >= _LIVE_IS_CHEAPER:
-        return Setting("rk4-split", refine=max(1, round((_LIVE_ERROR / accuracy) ** 0.4)))
+    if tension_cut:
+        if accuracy >= _LIVE_IS_CHEAPER_WITH_CUT:
+            return Setting("rk4-split", refine=max(1.0, _LIVE_ERROR_WITH_CUT / accuracy))
+    elif accuracy >= _LIVE_IS_CHEAPER:
+        return Setting("rk4-split", refine=max(_COARSEST, (_LIVE_ERROR / accuracy) ** 0.25))
     return Setting("dop853", tolerance=min(1e-3, 0.1 * accuracy))
 
 

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .effects.balance import Balance
 from .effects.driver import driver_displacement, driver_velocity
 from .effects.preload import overlap
 from .events import (
@@ -111,13 +112,24 @@ def keep_ends(slots, y, slope, ends, overlaps, rates):
 
 
 @kernel
-def give_back(slots, ends, y):
-    """Take from y what Simpson's rule gave too much beside contact events."""
+def give_back(slots, ends, v0, y):
+    """Take from y what Simpson's rule gave too much beside contact events; the driver moves at v0."""
     inverse_mass = slots.chain.inverse_mass
     m = inverse_mass.size
     for i in range(1, m - 1):
         y[i] += inverse_mass[i] * (ends[PATH, i] - ends[PATH, i - 1])
         y[m + i] += inverse_mass[i] * (ends[IMPULSE, i] - ends[IMPULSE, i - 1])
+    give_back_work(slots.balance, ends[IMPULSE, 0] * v0, y)
+
+
+@term
+def give_back_work(balance, excess, y):
+    """Take from the driver's work what its contact's impulse had too much. Absent: no work is kept."""
+
+
+@give_back_work.of(Balance)
+def _(balance, excess, y):
+    y[y.size - 2] -= excess
 
 
 @term
@@ -183,7 +195,7 @@ def split(slots, theta, dtheta, u_end, v_end, h, y, stages, counts):
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
             u_end, v_end, h * (1.0 - done), y, stages)
-        give_back(slots, ends, end)
+        give_back(slots, ends, v_end, end)
         motion(slots, u_end, v_end, end, k[3], stages.forces)
         counts[1] += 8
         counts[2] += 1

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .effects.contact import force_by_divider, force_by_series, positive_part
+from .effects.contact import positive_part
 from .effects.dissipation import LAWS, damping, lane_values, shape
 from .effects.foundation import lane_foundation, pull_back
 from .effects.preload import lane_overlap
@@ -23,7 +23,7 @@ from .lane_looks import end_period
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch_lanes
 from .sampling import CANCELLED, DONE, NOT_FINITE
 from .simd import LANES, blank, flush_subnormals, load, restore_subnormals, store
-from .simd_math import above_zero
+from .simd_math import above_zero, root, root_by_series
 
 #: Steps after which the stop flag is asked at the latest.
 _PATIENCE = 4096
@@ -52,8 +52,9 @@ class LaneState(NamedTuple):
     Per lane: steps in a period and steps left, periods run, the period to stop at in any case and the next at which the
     strobes are looked at; the period from which an approach may be followed and how long it is waited after a vain one,
     the slowest decay known, the change before an extrapolation that has not proved itself and the state `before` it
-    (8, 2, N+2), the period of an orbit that is disturbed; what is known of a fine lane (8, 7); strobes (8, 2R, 2, N+2) of which `kept` are there, largest forces
-    (8, R, 3) as a ring, and what was seen last (8, 3): period, rate, distance. The rest are workspaces of lane_looks.
+    (8, 2, N+2), the period of an orbit that is disturbed; what is known of a fine lane (8, 7); strobes (8, 2R, 2, N+2)
+    of which `kept` are there, largest forces (8, R, 3) as a ring, and what was seen last (8, 3): period, rate,
+    distance. The rest are workspaces of lane_looks.
     """
 
     y: np.ndarray
@@ -104,24 +105,36 @@ class Bead(NamedTuple):
 
 
 @inlined
-def contact(values, force, left, right, c):
-    """Elastic force and shape of G of contact c; `force` takes the root its own way."""
-    d = above_zero(lane_overlap(values.preload, left, right, c))
-    elastic = force(d)
-    return times_stiffness(values.unequal, values.wall, c, values.last, elastic), shape(values.law, d, elastic)
+def by_divider(d):
+    """√d by the divider."""
+    return root(d)
 
 
 @inlined
-def first_bead(values, force, u0, u, w):
+def by_multipliers(d):
+    """√d, d > 0, by the multipliers."""
+    return root_by_series(d)
+
+
+@inlined
+def contact(values, root_of, left, right, c):
+    """Elastic force and shape of G of contact c; `root_of` takes the root its own way."""
+    d = above_zero(lane_overlap(values.preload, left, right, c))
+    r = root_of(d)
+    return times_stiffness(values.unequal, values.wall, c, values.last, d * r), shape(values.law, d, r)
+
+
+@inlined
+def first_bead(values, root_of, u0, u, w):
     """Bead 1 of a stage with the driver at u0."""
-    e, G = contact(values, force, u0, u, 0)
+    e, G = contact(values, root_of, u0, u, 0)
     return Bead(u, w, e, G)
 
 
 @inlined
-def bead_slope(values, force, bead, i, right, right_w):
+def bead_slope(values, root_of, bead, i, right, right_w):
     """Slope of bead i, which is `bead`, between its neighbours; and the next bead with the contact between them."""
-    e, G = contact(values, force, bead.u, right, i)
+    e, G = contact(values, root_of, bead.u, right, i)
     du = lane_velocity(values.law, values.unequal, i, bead.w, bead.G - G)
     dw = over_mass(values.unequal, i, pull_back(values.foundation, bead.e - e, bead.u))
     return du, dw, Bead(right, right_w, e, G)
@@ -161,32 +174,32 @@ def lane_step(values, y, h, u0, middle, end):
     zero = blank(h)
     nothing = Bead(zero, zero, zero, shape(values.law, zero, zero))
     two, three, four = nothing, nothing, nothing
-    one = first_bead(values, force_by_series, u0, load(y, 1), load(y, m + 1))
+    one = first_bead(values, by_multipliers, u0, load(y, 1), load(y, m + 1))
     pushed, v_first, v_last = one.e, zero, zero
     sum_u, sum_w, whole_u, whole_w = zero, zero, zero, zero
     for i in range(1, n + 4):
         u1, w1, u2, w2, u3, w3 = zero, zero, zero, zero, zero, zero
         if i <= n:
             u, w = one.u, one.w
-            v_last, dw, one = bead_slope(values, force_by_series, one, i, load(y, i + 1), load(y, m + i + 1))
+            v_last, dw, one = bead_slope(values, by_multipliers, one, i, load(y, i + 1), load(y, m + i + 1))
             u1, w1 = u + half * v_last, w + half * dw
         if i == 1:
             v_first = v_last
-            two = first_bead(values, force_by_divider, middle, u1, w1)
+            two = first_bead(values, by_divider, middle, u1, w1)
             continue
         if i <= n + 1:
             before = two
-            du, dw, two = bead_slope(values, force_by_divider, two, i - 1, u1, w1)
+            du, dw, two = bead_slope(values, by_divider, two, i - 1, u1, w1)
             u2, w2 = load(y, i - 1) + half * du, load(y, m + i - 1) + half * dw
             new_u, new_w = before.u + 2.0 * u2, before.w + 2.0 * w2
         else:
             new_u, new_w = zero, zero
         if i == 2:
-            three = first_bead(values, force_by_series, middle, u2, w2)
+            three = first_bead(values, by_multipliers, middle, u2, w2)
             sum_u, sum_w = new_u, new_w
             continue
         if i <= n + 2:
-            du, dw, three = bead_slope(values, force_by_series, three, i - 2, u2, w2)
+            du, dw, three = bead_slope(values, by_multipliers, three, i - 2, u2, w2)
             u, w = load(y, i - 2), load(y, m + i - 2)
             u3, w3 = u + h * du, w + h * dw
             newer_u, newer_w = sum_u + (u3 - u), sum_w + (w3 - w)
@@ -194,10 +207,10 @@ def lane_step(values, y, h, u0, middle, end):
             newer_u, newer_w = zero, zero
         sum_u, sum_w = new_u, new_w
         if i == 3:
-            four = first_bead(values, force_by_divider, end, u3, w3)
+            four = first_bead(values, by_divider, end, u3, w3)
             whole_u, whole_w = newer_u, newer_w
             continue
-        du, dw, four = bead_slope(values, force_by_divider, four, i - 3, u3, w3)
+        du, dw, four = bead_slope(values, by_divider, four, i - 3, u3, w3)
         store(y, i - 3, third * whole_u + sixth * du)
         store(y, m + i - 3, third * whole_w + sixth * dw)
         whole_u, whole_w = newer_u, newer_w

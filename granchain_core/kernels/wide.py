@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .effects.contact import elastic_force, positive_part
-from .effects.dissipation import LAWS, damping, primitive
+from .effects.contact import positive_part
+from .effects.dissipation import LAWS, damping, shape
 from .effects.driver import driver_displacement, driver_velocity
 from .effects.foundation import pull_back
 from .effects.preload import row_overlap, row_values
@@ -21,7 +21,7 @@ from .fixed_step import drive_displacement, drive_velocity
 from .jit import inlined, kernel, term
 from .peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from .simd import at, blank, from_left, from_right, load, load16, load32, positive_mask, store, with_first
-from .simd_math import larger
+from .simd_math import larger, root
 
 
 class Width8(NamedTuple):
@@ -47,7 +47,7 @@ WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
 
 #: A step's beginning and its end in the workspace, and what is kept of each, one row a vector.
 BEGIN, END = 0, 1
-U, W, DU, DW, ELASTIC, KEPT = range(6)
+U, W, DU, PUSH, ELASTIC, KEPT = range(6)
 #: Steps whose forces are looked through together.
 BLOCK = 32
 
@@ -72,6 +72,7 @@ class Row(NamedTuple):
     """The chain's values as vectors, and its slots."""
 
     inverse_mass: Any
+    damping_over_mass: Any
     stiffness: Any
     dissipation: Any
     foundation: Any
@@ -79,12 +80,12 @@ class Row(NamedTuple):
 
 
 class At(NamedTuple):
-    """The chain at one instant: state, slope, overlaps, their rates, elastic forces."""
+    """The chain at one instant: state, velocities, forces on the beads, overlaps, their rates, elastic forces."""
 
     u: Any
     w: Any
     du: Any
-    dw: Any
+    push: Any
     gap: Any
     rate: Any
     elastic: Any
@@ -112,44 +113,55 @@ def _(width, array, row):
 
 
 @term
-def row_velocity(law, w, inverse_mass, G):
-    """v = w + (G_{i-1} − G_i)/m of all beads."""
+def over_masses(law, inverse_mass):
+    """What multiplies differences of shapes of G: its coefficient over the masses. Absent: nothing does."""
+    return None
+
+
+@term
+def row_velocity(law, w, damping_over_mass, shapes):
+    """v = w + (G_{i-1} − G_i)/m of all beads, from the shapes of G."""
     return w
 
 
 for _law in LAWS:
 
+    @over_masses.of(_law)
+    def _(law, inverse_mass):
+        return law.coefficient * inverse_mass
+
     @row_velocity.of(_law)
-    def _(law, w, inverse_mass, G):
-        return w + inverse_mass * (from_left(blank(G), G) - G)
+    def _(law, w, damping_over_mass, shapes):
+        return w + damping_over_mass * (from_left(blank(shapes), shapes) - shapes)
 
 
 @inlined
 def row_of(wide, slots):
     """The chain's values in registers."""
     width = wide.width
-    return Row(load_row(width, wide.inverse_mass, 0), load_row(width, wide.stiffness, 0), slots.dissipation,
-               slots.foundation, row_values(wide.preload, load_row, width))
+    inverse_mass = load_row(width, wide.inverse_mass, 0)
+    return Row(inverse_mass, over_masses(slots.dissipation, inverse_mass), load_row(width, wide.stiffness, 0),
+               slots.dissipation, slots.foundation, row_values(wide.preload, load_row, width))
 
 
 @inlined
 def row_slope(row, u0, u, w):
-    """Overlaps, elastic forces and slopes of displacements and w; the driver's own slope is left at zero."""
+    """Overlaps, elastic forces, velocities and forces on the beads; the driver's own velocity is left at zero."""
     here = with_first(u, u0)
     gap = row_overlap(row.preload, here, from_right(here, blank(here)))
     d = positive_part(gap)
-    e = elastic_force(row.stiffness, d)
-    du = row_velocity(row.dissipation, w, row.inverse_mass, primitive(row.dissipation, d))
-    dw = row.inverse_mass * pull_back(row.foundation, from_left(blank(e), e) - e, here)
-    return gap, e, du, dw
+    r = root(d)
+    e = row.stiffness * d * r
+    du = row_velocity(row.dissipation, w, row.damping_over_mass, shape(row.dissipation, d, r))
+    return gap, e, du, pull_back(row.foundation, from_left(blank(e), e) - e, here)
 
 
 @inlined
 def row_at(row, u0, v0, u, w):
     """The chain in state (u, w) with the driver at u0, moving at v0."""
-    gap, e, du, dw = row_slope(row, u0, u, w)
+    gap, e, du, push = row_slope(row, u0, u, w)
     moving = with_first(du, v0)
-    return At(u, w, du, dw, gap, moving - from_right(moving, blank(moving)), e)
+    return At(u, w, du, push, gap, moving - from_right(moving, blank(moving)), e)
 
 
 @inlined
@@ -159,11 +171,12 @@ def row_step(row, ua, ub, vb, h, x, path, impulse):
     `path` and `impulse` are what is added to displacements and w at the end.
     """
     half, sixth = 0.5 * h, h / 6.0
-    _, _, du2, dw2 = row_slope(row, ua, x.u + half * x.du, x.w + half * x.dw)
-    _, _, du3, dw3 = row_slope(row, ua, x.u + half * du2, x.w + half * dw2)
-    _, _, du4, dw4 = row_slope(row, ub, x.u + h * du3, x.w + h * dw3)
+    half_m, whole_m, sixth_m = half * row.inverse_mass, h * row.inverse_mass, sixth * row.inverse_mass
+    _, _, du2, push2 = row_slope(row, ua, x.u + half * x.du, x.w + half_m * x.push)
+    _, _, du3, push3 = row_slope(row, ua, x.u + half * du2, x.w + half_m * push2)
+    _, _, du4, push4 = row_slope(row, ub, x.u + h * du3, x.w + whole_m * push3)
     return row_at(row, ub, vb, x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + path,
-                  x.w + sixth * (x.dw + dw4 + 2.0 * (dw2 + dw3)) + impulse)
+                  x.w + sixth_m * (x.push + push4 + 2.0 * (push2 + push3)) + impulse)
 
 
 @inlined
@@ -173,7 +186,7 @@ def store_at(wide, end, x):
     store(wide.rows, first + U, x.u)
     store(wide.rows, first + W, x.w)
     store(wide.rows, first + DU, x.du)
-    store(wide.rows, first + DW, x.dw)
+    store(wide.rows, first + PUSH, x.push)
     store(wide.rows, first + ELASTIC, x.elastic)
     store(wide.ends, 2 * end + GAP, x.gap)
     store(wide.ends, 2 * end + RATE, x.rate)
@@ -184,7 +197,7 @@ def load_at(wide, end):
     """The chain at a step's beginning or end from the workspace."""
     width, rows, first = wide.width, wide.rows, KEPT * end
     return At(load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
-              load_row(width, rows, first + DW), load_row(width, wide.ends, 2 * end + GAP),
+              load_row(width, rows, first + PUSH), load_row(width, wide.ends, 2 * end + GAP),
               load_row(width, wide.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
 
 
@@ -283,7 +296,8 @@ def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, peaks, counts,
     counts[1] += 4 * count
     store_at(wide, BEGIN, x)
     for i in range(1, m - 1):
-        y[i], y[m + i], dy[i], dy[m + i] = rows[U, i], rows[W, i], rows[DU, i], rows[DW, i]
+        y[i], y[m + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
+        dy[m + i] = wide.inverse_mass[0, i] * rows[PUSH, i]
         e[i] = rows[ELASTIC, i]
     e[0] = rows[ELASTIC, 0]
     y[0] = drive_displacement(slots, drive, 2 * (j + count), dtheta)

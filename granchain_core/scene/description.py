@@ -150,6 +150,11 @@ class Scene:
         """Whether contacts lose energy at all."""
         return self.dissipation != "none" and self.D > 0
 
+    @property
+    def cuts_tension(self) -> bool:
+        """Whether contact forces are cut at zero: there has to be damping for them to be below."""
+        return self.tension == "cut" and self.has_dissipation
+
     def equation_latex(self) -> str:
         """The equation of motion with the terms that are computed, and no others."""
         from .equation import latex

@@ -81,7 +81,8 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
     period, rate, distance = block.state.seen[lane]
     if period > 0:
         regime = Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run)
-        return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, (regime, block.settled_tops(lane, int(period))))
+        settled = (regime, block.settled_tops(lane, int(period)))
+        return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, settled)
     if run >= job.affordable_periods:
         return unsettled(job, block, lane, run)
     record = block.strobes(lane)

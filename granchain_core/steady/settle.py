@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, Setting, State, method_for
 from ..integrate.engine import rest
 from ..result import Cost, Run, run_from
 from ..scene import Scene
@@ -213,7 +213,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
     assert n is not None
     rate = min(0.999, way.regime.multiplier or 0.5)
     # one period's error e moves the orbit by e/(1 − rate)
-    setting = Setting("dop853", tolerance=max(1e-14, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)))
+    setting = method_for(max(1e-13, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)), scene.cuts_tension)
     engine = Engine(scene, setting, samples, stop=way.stop)
     engine.start(way.engine.state)
     bound = np.inf

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import inlined, kernel
-from ..simd_math import clip, root, root_by_series
+from ..jit import kernel
+from ..simd_math import clip, root
 
 
 class Chain(NamedTuple):
@@ -32,18 +32,6 @@ def positive_part(overlap):
 def elastic_force(stiffness, d):
     """K d^{3/2} for an overlap d that is already non-negative."""
     return stiffness * d * root(d)
-
-
-@inlined
-def force_by_divider(d):
-    """d^{3/2} of vectors with the divider's root."""
-    return d * root(d)
-
-
-@inlined
-def force_by_series(d):
-    """d^{3/2} of vectors above zero with the multipliers' root."""
-    return d * root_by_series(d)
 
 
 @kernel

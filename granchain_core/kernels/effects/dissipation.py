@@ -119,24 +119,24 @@ def _(law):
 
 
 @term
-def shape(law, d, elastic):
-    """G over its coefficient, from d and d^{3/2}."""
+def shape(law, d, r):
+    """G over its coefficient, from d and r = √d."""
     return 0.0
 
 
 @shape.of(LinearDashpot)
-def _(law, d, elastic):
+def _(law, d, r):
     return d
 
 
 @shape.of(Tsuji)
-def _(law, d, elastic):
-    return 0.8 * d * root(root(d))
+def _(law, d, r):
+    return 0.8 * d * root(r)
 
 
 @shape.of(KuwabaraKono)
-def _(law, d, elastic):
-    return 2.0 / 3.0 * elastic
+def _(law, d, r):
+    return 2.0 / 3.0 * d * r
 
 
 for _law in LAWS:
