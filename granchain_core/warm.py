@@ -13,21 +13,26 @@ from pathlib import Path
 
 from .integrate import Engine, Setting
 from .integrate.engine import new_stop, rest
-from .integrate.lane_block import LaneBlock, can_share_lanes, scaled_state
+from .integrate.lane_block import LaneBlock, alike, can_share_lanes, scaled_state
 from .kernels.jit import CACHE_FOLDER
+from .kernels.wide import WIDTHS
 from .lower import lower
 from .scene import Scene, scene, scene_names
-from .steady.lyapunov import exponents
+from .steady.lyapunov import exponents, exponents_in_pairs
 
-#: What the pieces of one structure's kernels are for; each can be compiled in its own process.
+#: What the pieces of one structure's kernels are for; each can be compiled in its own process. Those with the energy
+#: account are for runs that are asked for by themselves, the dashboard does without.
 PIECES = ("live", "certified", "curve", "live account", "certified account")
+DASHBOARD = ("curve", "certified", "live")
 
 
 def structure(shown: Scene) -> str:
-    """Name of the set of effects that picks the compiled kernels of a scene."""
+    """Name of what picks the compiled kernels of a scene: its set of effects and the vectors its bodies fit into."""
     law = shown.dissipation if shown.has_dissipation else "none"
-    cut = "+cut" if shown.has_dissipation and shown.tension == "cut" else ""
-    return law + cut + ("+foundation" if shown.k > 0 else "") + ("+preload" if shown.F0 > 0 else "")
+    width = next((f"{lanes} lanes" for lanes in WIDTHS if lanes >= shown.N + 2), "long")
+    effects = (("cut", shown.cuts_tension), ("foundation", shown.k > 0), ("preload", shown.F0 > 0),
+               ("unequal beads", not alike(lower(shown))))
+    return "+".join([law, *(name for name, present in effects if present)]) + f", {width}"
 
 
 def is_warm(shown: Scene, pieces: Iterable[str] = ("live", "certified")) -> bool:
@@ -36,7 +41,7 @@ def is_warm(shown: Scene, pieces: Iterable[str] = ("live", "certified")) -> bool
 
 
 def _marker(name: str, piece: str) -> Path:
-    return CACHE_FOLDER / f"compiled-{name}-{piece.replace(' ', '-')}"
+    return CACHE_FOLDER / f"compiled-{name}-{piece}".replace(" ", "-").replace(",", "")
 
 
 def warm(shown: Scene, pieces: Iterable[str] = PIECES) -> None:
@@ -59,8 +64,10 @@ def _warm_curve(short: Scene) -> None:
     if can_share_lanes(short):
         block = LaneBlock(short, new_stop())
         lowered = lower(short)
-        block.put(0, lowered, scaled_state(lowered, rest(short)), 1, look=1)
+        y = scaled_state(lowered, rest(short))
+        block.put(0, lowered, y, 1, look=1)
         block.run()
+        exponents_in_pairs([(lowered, y)], 1, 1, new_stop())
 
 
 def _warm_piece(job: tuple[Scene, str]) -> str:
@@ -69,11 +76,10 @@ def _warm_piece(job: tuple[Scene, str]) -> str:
 
 
 def warm_presets(workers: int = 2) -> Iterable[str]:
-    """Compile everything the presets need, in `workers` processes; yields what has been finished."""
+    """Compile what the dashboard needs for the presets, in `workers` processes; yields what has been finished."""
     seen: dict[str, Scene] = {}
     for name in scene_names():
         seen.setdefault(structure(scene(name)), scene(name))
-    jobs = [(one, piece) for piece in reversed(PIECES) for one in seen.values()]
-    jobs.sort(key=lambda job: "certified" not in job[1])
+    jobs = [(one, piece) for piece in DASHBOARD for one in seen.values()]
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         yield from pool.map(_warm_piece, jobs)

@@ -51,7 +51,7 @@ CACHE_FOLDER = cache_folder()
 
 def inlined(function):
     """Decorator for what belongs into its caller's code: values that stay in registers."""
-    return numba.njit(nogil=True, fastmath=_FLAGS, error_model="numpy", forceinline=True)(function)
+    return numba.njit(nogil=True, fastmath=_FLAGS, error_model="numpy", forceinline=True, _nrt=False)(function)
 
 
 def kernel(function):
@@ -59,7 +59,7 @@ def kernel(function):
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
     try:
-        return numba.njit(cache=True, nogil=True, fastmath=_FLAGS, error_model="numpy")(function)
+        return numba.njit(cache=True, nogil=True, fastmath=_FLAGS, error_model="numpy", _nrt=False)(function)
     finally:
         numba.config.CACHE_DIR = before
 
@@ -78,7 +78,7 @@ def term(absent):
     generic.__name__ = generic.__qualname__ = absent.__name__
     generic.__doc__ = absent.__doc__
 
-    @overload(generic, strict=False, jit_options={"fastmath": _FLAGS, "error_model": "numpy"})
+    @overload(generic, strict=False, jit_options={"fastmath": _FLAGS, "error_model": "numpy", "_nrt": False})
     def _typed(*args):
         slot = args[0]
         found = slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)

@@ -50,7 +50,9 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     shadow.place()
     growth = np.zeros((blocks + 1) * block)
     strobes = np.zeros((len(growth), 2, row))
+    # step by step, whatever vectors the engine has: one kernel for chains of every length
+    one, other = engine.work._replace(along=None), shadow.work._replace(along=None)
     status, done = run_shadowed(engine.method, engine.lowered.slots, engine.drive, engine.h, engine.y, shadow.y,
-                                engine.work, shadow.work, growth, strobes, engine.counts.array, engine.stop)
+                                one, other, growth, strobes, engine.counts.array, engine.stop)
     engine.raise_for(status, done)
     return growth[block:].reshape(blocks, block).mean(axis=1), strobes[:, :, 1:-1]
