@@ -14,13 +14,15 @@ import hashlib
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import llvmlite.binding
 import numba
 from numba import types
 from numba.extending import overload
 
-_FLAGS = {"nsz", "arcp", "contract", "reassoc"}
+#: Kernels allocate nothing, so arrays in them are not counted: that is less code to compile and to run.
+_OPTIONS: Any = {"fastmath": {"nsz", "arcp", "contract", "reassoc"}, "error_model": "numpy", "_nrt": False}
 
 
 def _sources_hash() -> str:
@@ -51,7 +53,7 @@ CACHE_FOLDER = cache_folder()
 
 def inlined(function):
     """Decorator for what belongs into its caller's code: values that stay in registers."""
-    return numba.njit(nogil=True, fastmath=_FLAGS, error_model="numpy", forceinline=True, _nrt=False)(function)
+    return numba.njit(nogil=True, forceinline=True, **_OPTIONS)(function)
 
 
 def kernel(function):
@@ -59,7 +61,7 @@ def kernel(function):
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
     try:
-        return numba.njit(cache=True, nogil=True, fastmath=_FLAGS, error_model="numpy", _nrt=False)(function)
+        return numba.njit(cache=True, nogil=True, **_OPTIONS)(function)
     finally:
         numba.config.CACHE_DIR = before
 
@@ -78,7 +80,7 @@ def term(absent):
     generic.__name__ = generic.__qualname__ = absent.__name__
     generic.__doc__ = absent.__doc__
 
-    @overload(generic, strict=False, jit_options={"fastmath": _FLAGS, "error_model": "numpy", "_nrt": False})
+    @overload(generic, strict=False, jit_options=_OPTIONS)
     def _typed(*args):
         slot = args[0]
         found = slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)
