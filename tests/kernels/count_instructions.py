@@ -85,28 +85,20 @@ def direct(kernel, *arguments):
     return lambda count: entry(*arguments, count)
 
 
-def from_same_state(e: Engine, steps):
-    """`steps` starting from the engine's present state every time."""
+def from_same_state(e: Engine, run):
+    """`run` starting from the engine's present state every time."""
     y, k = e.y.copy(), e.work.k.copy()
 
     def work(count: int) -> None:
         e.y[:], e.work.k[:] = y, k
-        steps(count)
+        run(count)
 
     return work
 
 
-def product(e: Engine):
-    """The product's steps as a function of their number."""
-    return from_same_state(e, direct(by_hand.steps_of_product, e.method, e.lowered.slots, e.drive, e.h, e.y, e.work,
-                                     e.counts.array))
-
-
-def hand_written(e: Engine):
-    """The same chain by the hand-written kernel."""
-    chain, w, beta = e.lowered.slots.chain, e.work, e.lowered.slots.driver.beta
-    return from_same_state(e, direct(by_hand.steps_by_hand, chain.inverse_mass, chain.stiffness, e.drive, beta,
-                                     2.0 * np.pi / e.grid, e.h, e.y, w.k, w.stage, w.end, w.forces.e, e.counts.array))
+def steps(kernel, e: Engine):
+    """RK4 steps of the chain by one of the two kernels, as a function of their number."""
+    return from_same_state(e, direct(kernel, e.method, e.lowered.slots, e.drive, e.h, e.y, e.work, e.counts.array))
 
 
 def per_call(work) -> float:
@@ -116,16 +108,9 @@ def per_call(work) -> float:
     return (instructions(lambda: work(2 * CALLS)) - instructions(lambda: work(CALLS))) / CALLS
 
 
-def slope(e: Engine):
-    """The product's slope as a function of the number of evaluations."""
-    return direct(by_hand.motions_of_product, e.lowered.slots, e.y, np.zeros_like(e.y), e.work.forces)
-
-
-def slope_by_hand(e: Engine):
-    """The hand-written slope as a function of the number of evaluations."""
-    chain = e.lowered.slots.chain
-    return direct(by_hand.motions_by_hand, chain.inverse_mass, chain.stiffness, e.y, np.zeros_like(e.y),
-                  e.work.forces.e)
+def slopes(kernel, e: Engine):
+    """Evaluations of the slope by one of the two kernels, as a function of their number."""
+    return direct(kernel, e.lowered.slots, e.y, np.zeros_like(e.y), e.work.forces)
 
 
 def code_size(kernel, signature) -> int:
@@ -140,10 +125,10 @@ def disassembled(bare: Engine, founded: Engine) -> dict:
     """Figures from the code's size: `motion`, `motion_by_hand`, `founded`; the cache folder must have been empty."""
     from granchain_core.kernels.motion import motion
 
-    slope_by_hand(bare)(1)
+    slopes(by_hand.motions_by_hand, bare)(1)
     sizes = {}
     for name, e in (("motion", bare), ("founded", founded)):
-        slope(e)(1)
+        slopes(by_hand.motions_of_product, e)(1)
         signature = next(s for s in motion.overloads if s[0] == numba.typeof(e.lowered.slots))
         sizes[name] = code_size(motion, signature)
     return {**sizes, "motion_by_hand": code_size(by_hand.motion_by_hand, by_hand.motion_by_hand.signatures[0])}
@@ -151,9 +136,11 @@ def disassembled(bare: Engine, founded: Engine) -> dict:
 
 def executed(bare: Engine, founded: Engine) -> dict:
     """Figures from single-stepping."""
-    return {"step": per_call(product(bare)), "step_by_hand": per_call(hand_written(bare)),
-            "motion": per_call(slope(bare)), "motion_by_hand": per_call(slope_by_hand(bare)),
-            "founded": per_call(slope(founded))}
+    hand, product = by_hand.motions_by_hand, by_hand.motions_of_product
+    return {"step": per_call(steps(by_hand.steps_of_product, bare)),
+            "step_by_hand": per_call(steps(by_hand.steps_by_hand, bare)),
+            "motion": per_call(slopes(product, bare)), "motion_by_hand": per_call(slopes(hand, bare)),
+            "founded": per_call(slopes(product, founded))}
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""Lanes and SIMD along the chain give what the scalar method gives, scene by scene and law by law."""
+"""SIMD along the chain gives what the scalar method gives, law by law; lanes, the points that each scene gives alone."""
 
 from __future__ import annotations
 
@@ -32,21 +32,6 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
     assert np.abs(a.force - b.force).max() < ROUNDING
     assert fast.tops == pytest.approx(slow.tops, rel=1e-11, abs=ROUNDING)
     assert (fast.counts.array == slow.counts.array).all()
-
-
-@pytest.mark.parametrize("changes", CHAINS)
-def test_every_lane_is_the_scalar_method_on_its_own_scene(changes: dict[str, object]) -> None:
-    frequencies = [200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0]
-    scenes = [scene("sec2").evolve(f=f, **changes) for f in frequencies]
-    block = LaneBlock(scenes[0], new_stop())
-    for lane, one in enumerate(scenes):
-        block.put(lane, lower(one), scaled_state(lower(one), rest(one)), 1, look=3, earliest=3)
-    lane, finite = block.run()  # the fastest drive ends its third period first
-    assert finite and lane == len(scenes) - 1
-    engine = Engine(scenes[lane], Setting("rk4"), 1)
-    strobes, tops = engine.periods(3)
-    assert np.abs(block.strobes(lane)[:, 0] - strobes[:, 0]).max() < ROUNDING
-    assert block.tops(lane, 3) == pytest.approx(tops.max(axis=0), rel=1e-9, abs=ROUNDING)
 
 
 def test_a_curve_by_lanes_is_what_each_frequency_gives_by_itself() -> None:

@@ -1,0 +1,98 @@
+"""Program: vector instructions in the machine code of the two SIMD steps, effect by effect, as JSON.
+
+    GRANCHAIN_CACHE=<empty folder> python machine_code.py
+
+{kernel: {case: counts}} for `wide` (one chain along the lanes, its split step included) and `lanes` (eight chains), with
+nothing but contacts and driver, with one effect more, and, under "… by hand", for the same source with the absent
+effects struck out by hand (struck_out.py). Only code that is fresh can be read: what comes from the cache has none.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+import numba
+import struck_out
+
+from granchain_core import scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.engine import new_stop
+from granchain_core.integrate.lane_block import LaneBlock
+from granchain_core.kernels import lanes, wide
+
+EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
+NOTHING = {"dissipation": "none"}
+#: Cases that are written by hand too; compiling each takes some seconds.
+BY_HAND = ("nothing", "dissipation")
+#: Instructions by what they do; a multiplication and an addition in one count as both.
+KINDS = {"mul": "multiply", "add": "add", "sub": "add", "fmadd": "both", "fmsub": "both", "fnmadd": "both",
+         "fnmsub": "both", "sqrt": "root", "div": "divide", "rsqrt14": "root", "max": "choose", "min": "choose",
+         "blendm": "choose", "and": "choose", "cmp": "compare", "permt2": "shuffle", "perm": "shuffle",
+         "expand": "shuffle", "align": "shuffle", "shuf": "shuffle"}
+_PACKED = re.compile(r"^v([a-z]+?(?:14)?)(?:\d{3})?(?:eq|lt|le|gt|ge|neq|nlt|nle|ngt|nge|ord|unord)?pd$")
+
+
+def functions(text: str) -> dict[str, list[str]]:
+    """Instructions of every function of a module's assembly, the wrappers for Python left out."""
+    found: dict[str, list[str]] = {}
+    name = None
+    for line in text.splitlines():
+        if re.match(r"^[A-Za-z_]\S*:", line):
+            name = None if line.startswith(("_ZN7cpython", "NRT_", "cfunc")) else line.split(":")[0]
+        elif name is not None and re.match(r"^\t[a-z]", line):
+            found.setdefault(name, []).append(line.strip())
+    return found
+
+
+def counts(kernel, arguments) -> dict:
+    """Packed arithmetic by kind, and all instructions and mnemonics of the kernel with what it calls."""
+    kernel.compile(tuple(numba.typeof(a) for a in arguments))
+    text = kernel.inspect_asm(kernel.signatures[-1])
+    found, mnemonics = Counter(), Counter()
+    for lines in functions(text).values():
+        for line in lines:
+            mnemonic = line.split()[0]
+            mnemonics[mnemonic] += 1
+            packed = _PACKED.match(mnemonic)
+            if packed and "xmm" not in line and packed.group(1) in KINDS:
+                kind = KINDS[packed.group(1)]
+                for one in ("multiply", "add") if kind == "both" else (kind,):
+                    found[one] += 1
+    return {"packed": dict(found), "all": sum(mnemonics.values()), "mnemonics": dict(sorted(mnemonics.items()))}
+
+
+def wide_counts(module, e: Engine) -> dict:
+    """Of the step of one chain."""
+    space = module.Wide(module.WIDTHS[e.work.along.width.lanes], *e.work.along[1:])
+    return counts(module.wide_steps, (space, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0],
+                                      e.work.forces.e, e.peaks, e.counts.array, e.stop))
+
+
+def lane_counts(module, block: LaneBlock) -> dict:
+    """Of the step of eight chains."""
+    return counts(module.lane_steps, (block.lanes, block.state, 4))
+
+
+def main() -> None:
+    """Print the counts."""
+    found: dict[str, dict] = {"wide": {}, "lanes": {}}
+    cases = {"nothing": NOTHING, **{effect: {**NOTHING, **knobs} for effect, knobs in EFFECTS.items()}}
+    for case, knobs in cases.items():
+        chain = scene("sec2").evolve(**knobs)
+        engine, block = Engine(chain, Setting("rk4-split"), 1), LaneBlock(chain, new_stop())
+        found["wide"][case], found["lanes"][case] = wide_counts(wide, engine), lane_counts(lanes, block)
+        if case in BY_HAND:
+            absent = (*(effect for effect in EFFECTS if effect != case), "unequal")
+            with tempfile.TemporaryDirectory() as folder:
+                struck = struck_out.without(absent, Path(folder))
+                found["wide"][f"{case} by hand"] = wide_counts(struck["wide"], engine)
+                found["lanes"][f"{case} by hand"] = lane_counts(struck["lanes"], block)
+    print(json.dumps(found))
+
+
+if __name__ == "__main__":
+    main()
