@@ -11,6 +11,7 @@ from bokeh.document import Document
 
 from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settling
 
+from .accuracy import AccuracyPage
 from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
 from .curves import Curves
 from .exchange import Exchange
@@ -39,8 +40,9 @@ class Controller:
         self._jobs = LatestWins(partial(self.later, self._arrived), partial(self.later, self.failed))
         self._painter: Painter[Settled | LivePicture] = Painter(self._send, self._idle)
         self._live: LiveRun | None = None
-        self.curves = Curves(self.views, self.later, self.after, lambda: self._jobs.busy)
+        self.curves = Curves(self.views, self.later, self.after, lambda: self.busy)
         self.exchange = Exchange(self)
+        self.accuracy = AccuracyPage(self)
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
             "painted": lambda m: self._painter.painted(m.get("number")),
@@ -49,7 +51,7 @@ class Controller:
             "step": self._step, "look": self._look, "understood": self._understood,
             "lock": self._lock, "curve": self._curve,
             "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
-            "curve-stop": lambda _: self.curves.stop(), **self.exchange.actions,
+            "curve-stop": lambda _: self.curves.stop(), **self.exchange.actions, **self.accuracy.actions,
         }
 
     # Coming in and going out
@@ -105,6 +107,12 @@ class Controller:
         """The visitor left."""
         self._jobs.close()
         self.curves.close()
+        self.accuracy.close()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture is being computed; what can wait, waits."""
+        return self._jobs.busy
 
     # Computing and painting
 
@@ -145,6 +153,7 @@ class Controller:
             return
         if isinstance(picture, Settled):
             self.session.picture = picture
+            self.accuracy.describe()
         if self.session.notice:
             self.note("")
         self._painter.offer(picture)
@@ -194,6 +203,7 @@ class Controller:
 
     def _describe(self) -> None:
         scene = self.session.scene
+        self.accuracy.describe()
         self.views.equation.display(latex=scene.equation_latex())
         self.views.corner.display(effects=list(scene.effects), validity=list(scene.validity()))
 

@@ -17,6 +17,24 @@ const TABS = {
     }
     return [list, paragraph("solid from rest, dashed sweeping up, dotted sweeping down; ● with a ring is now", "soft")];
   },
+  accuracy: (model) => {
+    const page = window.granchain;
+    const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
+    open.addEventListener("click", () => page.cover("accuracy"));
+    const host = Object.assign(document.createElement("div"), { className: "small" });
+    const said = paragraph("");
+    const show = () => {
+      const { rows = [], told, status, done = 0 } = page.accuracy ?? {};
+      const running = ["waiting", "compiling", "measuring"].includes(status);
+      said.textContent = running ? `measuring, ${Math.round(100 * done)} % …` : told?.stale ? "The knobs have moved; open the page to measure again." : told?.sentence ?? "";
+      host.classList.toggle("stale", Boolean(told?.stale));
+      if (host.isConnected && rows.length) workPicture(host, { ...page.accuracy, compact: true });
+    };
+    model.send_msg({ do: "accuracy-open" });
+    requestAnimationFrame(show);
+    model.small = show;
+    return [said, host, open];
+  },
   effects: ({ state }) => {
     const list = document.createElement("ul");
     for (const effect of state.effects ?? []) list.append(Object.assign(document.createElement("li"), { textContent: effect }));
@@ -63,6 +81,7 @@ export function render({ model }) {
     tabs.append(tab);
   }
   model.on("state", show);
+  window.granchain.on("accuracy", () => { if (chosen === "accuracy") model.small?.(); });
   show();
   return root;
 }

@@ -1,0 +1,95 @@
+"""What one effect costs in a step: the same chain's kernel with it and without it, timed by turns.
+
+Two costs are told apart. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The
+live method also splits steps where contacts open or close, so an effect that changes the motion (a preload that keeps
+contacts closed, a chain without damping that never comes to order) costs or saves far more than its own code.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import Cancelled
+from ..integrate import Engine, Setting
+from ..integrate.engine import new_stop
+from ..scene import Scene
+
+#: Turns, and seconds one run of a turn should take; together under half a second for a pair.
+_TURNS, _RUN = 21, 0.006
+CODE, MOTION = "rk4", "rk4-split"
+"""The methods that show the cost of an effect's code, and its cost in the live picture's motion."""
+
+#: Drive periods that are run before, so that the chain is in motion.
+_BEFORE = 3
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A kernel to be timed: a scene, with the energy account in its equations or without."""
+
+    scene: Scene
+    balance: bool = False
+
+
+@dataclass(frozen=True)
+class EffectCost:
+    """Nanoseconds a step with the effect and without; `spread` is how far their difference varies between turns."""
+
+    with_it: float
+    without: float
+    spread: float
+
+    @property
+    def difference(self) -> float:
+        """What the effect adds [ns]."""
+        return self.with_it - self.without
+
+    @property
+    def percent(self) -> float:
+        """The same in per cent of the step without it."""
+        return 100.0 * self.difference / self.without
+
+
+def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: np.ndarray | None = None,
+                pause: Callable[[], None] | None = None) -> EffectCost:
+    """Time both kernels by turns and take medians; `pause` is called before each turn. Raises `Cancelled`."""
+    flag = new_stop() if stop is None else stop
+    pair = [_Stepper(variant, method, flag) for variant in (with_it, without)]
+    times = np.zeros((_TURNS, 2))
+    for turn in range(_TURNS):
+        if pause is not None:
+            pause()
+        if flag[0]:
+            raise Cancelled
+        order = (0, 1) if turn % 2 else (1, 0)  # neither is always the one that runs first
+        for place in order:
+            times[turn, place] = pair[place].nanoseconds_per_step()
+    middle = np.median(times, axis=0)
+    differences = times[:, 0] - times[:, 1]
+    spread = float(np.median(np.abs(differences - np.median(differences))))
+    return EffectCost(float(middle[0]), float(middle[1]), spread)
+
+
+class _Stepper:
+    """A chain in motion that can be timed for a short while."""
+
+    def __init__(self, variant: Variant, method: str, stop: np.ndarray) -> None:
+        self._engine = Engine(variant.scene, Setting(method), 1, balance=variant.balance, stop=stop)
+        self._engine.periods(_BEFORE)
+        self._periods = 1
+        self._periods = max(1, int(_RUN / max(self._seconds(), 1e-7)))
+
+    def _seconds(self) -> float:
+        began = time.perf_counter()
+        self._engine.periods(self._periods)
+        return time.perf_counter() - began
+
+    def nanoseconds_per_step(self) -> float:
+        """One short run."""
+        before = self._engine.counts.steps
+        seconds = self._seconds()
+        return 1e9 * seconds / (self._engine.counts.steps - before)
