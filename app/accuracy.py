@@ -44,7 +44,7 @@ class AccuracyPage:
         self.status = "none"
         self.done = 0.0
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "accuracy-open": self._open, "accuracy-measure": lambda _: self._measure(),
+            "accuracy-open": lambda _: self.open(), "accuracy-measure": lambda _: self._measure(),
             "accuracy-cancel": lambda _: self.cancel(),
         }
 
@@ -52,6 +52,11 @@ class AccuracyPage:
     def running(self) -> bool:
         """Whether a measurement is under way or waits for its turn."""
         return self.status in ("waiting", "compiling", "measuring")
+
+    @property
+    def progress_words(self) -> str:
+        """How far the measurement is."""
+        return f"{len(self.rows)} settings measured" if self.rows or self.running else "its page was not opened yet"
 
     def describe(self) -> None:
         """Tell what follows from the knobs and the picture: asked, cheapest, now, and whether the rows still hold."""
@@ -75,7 +80,7 @@ class AccuracyPage:
         """The visitor left."""
         self._stop[0] = 1
 
-    def _open(self, _: dict[str, Any]) -> None:
+    def open(self) -> None:
         """The page or its small version came on the screen: what was never measured is measured now."""
         self._view.display(ways=described_ways())
         if self.status == "none":
@@ -120,7 +125,7 @@ class AccuracyPage:
         return True
 
     def _pause(self, stop: Stop) -> None:
-        while self._page.busy and not stop[0]:
+        while self._page.unsettled and not stop[0]:
             time.sleep(_PATIENCE)
 
     def _report(self, found: WorkPrecision, stop: Stop) -> None:

@@ -136,8 +136,8 @@ export function render({ model }) {
     else if (message.type === "no-lesson") lesson.forget();
   });
   page.on("cover", (name) => {
+    model.send_msg({ do: "cover", name });
     if (name !== "accuracy") return;
-    send("accuracy-open");
     requestAnimationFrame(() => { redraw(); lesson.show(); });
   });
   new ResizeObserver(() => { if (page.covered === "accuracy") { redraw(); lesson.show(); } }).observe(work);

@@ -3,6 +3,7 @@
 const ENTRIES = [
   ["start", (v) => v, "Where the steady state was started."],
   ["accuracy", (v) => v, "Relative error of the displacements asked for, the one reached, and the computing time of this picture. Click: what accuracy costs."],
+  ["energy", (v) => v, "Work of the driver minus what was lost and stored, over the largest of them, for the periods shown."],
   ["method", (v) => v, "Method of integration."],
   ["effects", (v) => v.join(" · "), "The effects that are computed; an absent one has no code and no cost."],
 ];

@@ -47,6 +47,7 @@ def run_entries(run: Run) -> dict[str, Any]:
     """Accuracy, method and effects of a run."""
     return {
         "accuracy": accuracy_words(run),
+        "energy": "" if run.energy_residual is None else f"energy closes to {short_error(run.energy_residual)}",
         "method": run.cost.method,
         "effects": list(run.scene.effects),
     }

@@ -37,16 +37,16 @@ class Variant:
 
 @dataclass(frozen=True)
 class EffectCost:
-    """Nanoseconds a step with the effect and without; `spread` is how far their difference varies between turns."""
+    """Nanoseconds a step with the effect and without, and what it adds; all are medians over the turns.
+
+    `difference` is taken turn by turn, so that a machine that slows down for a while does not count as an effect;
+    `spread` is the median distance of the turns from it.
+    """
 
     with_it: float
     without: float
+    difference: float
     spread: float
-
-    @property
-    def difference(self) -> float:
-        """What the effect adds [ns]."""
-        return self.with_it - self.without
 
     @property
     def percent(self) -> float:
@@ -70,8 +70,9 @@ def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: np
             times[turn, place] = pair[place].nanoseconds_per_step()
     middle = np.median(times, axis=0)
     differences = times[:, 0] - times[:, 1]
-    spread = float(np.median(np.abs(differences - np.median(differences))))
-    return EffectCost(float(middle[0]), float(middle[1]), spread)
+    difference = float(np.median(differences))
+    spread = float(np.median(np.abs(differences - difference)))
+    return EffectCost(float(middle[0]), float(middle[1]), difference, spread)
 
 
 class _Stepper:
