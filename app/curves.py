@@ -88,6 +88,11 @@ class Curves:
         self._done = -1.0
         self._views.curvebar.display(done=-1.0)
 
+    @property
+    def computing(self) -> bool:
+        """Whether a curve is under way."""
+        return 0.0 <= self._done < 1.0
+
     def activities(self) -> list[tuple[str, str, str]]:
         """Name, state and detail of every direction, as it is at this moment."""
         found = []
@@ -99,7 +104,7 @@ class Curves:
                 found.append((title, "there", "complete"))
             elif not self._visible:
                 found.append((title, "off", "not on the screen"))
-            elif name in self._remaining and 0.0 <= self._done < 1.0:
+            elif name in self._remaining and self.computing:
                 found.append((title, "computing", f"{100 * self._done:.0f} % of what is asked for"))
             else:
                 found.append((title, "off", "waits until the knobs rest, or was stopped"))

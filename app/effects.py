@@ -99,7 +99,8 @@ class EffectsPanel:
     def _next(self) -> None:
         """Begin what is to be done next: compile for one effect, or time it."""
         scene = self._page.session.scene
-        if self.measuring or self._page.unsettled or time.monotonic() - self._moved < _QUIET:
+        busy = self.measuring or self._page.unsettled or self._page.curves.computing
+        if busy or time.monotonic() - self._moved < _QUIET:
             return
         if not COMPILER.has(scene, LIVE, CERTIFIED, CURVE):  # the picture's own kernels come first
             return

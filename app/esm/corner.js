@@ -36,7 +36,9 @@ const TABS = {
     model.send_msg({ do: "accuracy-open" });
     requestAnimationFrame(show);
     drawSmall = show;
-    return [said, host, open];
+    const row = Object.assign(document.createElement("div"), { className: "row top" });
+    row.append(said, open);
+    return [row, host];
   },
   effects: effectsTab,
   data: (model) => {

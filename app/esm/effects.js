@@ -7,11 +7,11 @@ const create = (tag, properties = {}, ...children) => {
 };
 const signed = (value) => `${value < 0 ? "−" : "+"}${Math.abs(value) < 9.95 ? Math.abs(value).toFixed(1) : Math.abs(value).toFixed(0)}`;
 
-// Nanoseconds and per cent; a difference within the spread of the turns is told as that.
+// Nanoseconds, how far they varied between the turns, and per cent.
 const cost = (measured) => {
   if (!measured) return null;
   const { difference, percent, spread } = measured;
-  const cell = create("span", { className: "cost" }, `${signed(difference)} ns`, create("small", { textContent: ` ${signed(percent)} %` }));
+  const cell = create("span", { className: "cost" }, `${signed(difference)} ns`, create("small", { textContent: ` ± ${spread.toFixed(0)} · ${signed(percent)} %` }));
   cell.title = `with it ${measured.with.toFixed(1)} ns a step, without ${measured.without.toFixed(1)} ns; medians of runs by turns, spread ± ${spread.toFixed(1)} ns`;
   return cell;
 };

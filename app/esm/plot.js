@@ -97,7 +97,7 @@ function asked({ svg, x0, x1, y0, y1 }, Y, told, agreement, lowest, small) {
   const y = Y(told.asked);
   svg.append(draw("rect", { x: x0, width: x1 - x0, y, height: Math.max(0, y0 - y), class: "good" }),
     draw("line", { x1: x0, x2: x1, y1: y, y2: y, class: "asked" }));
-  words(svg, x0 + 5, y - 5, `asked ${told.asked_words}`, "start", "asked-words");
+  if (!small) words(svg, x0 + 5, y - 5, `asked ${told.asked_words}`, "start", "asked-words");
   if (agreement > lowest) {
     const limit = Math.min(y0, Math.max(y1, Y(agreement)));
     svg.append(draw("line", { x1: x0, x2: x1, y1: limit, y2: limit, class: "agreement" }));

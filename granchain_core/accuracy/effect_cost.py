@@ -18,8 +18,9 @@ from ..integrate import Engine, Setting
 from ..integrate.engine import new_stop
 from ..scene import Scene
 
-#: Turns, and seconds one run of a turn should take; together under half a second for a pair.
-_TURNS, _RUN = 21, 0.006
+#: Pairs of freshly allocated chains, turns for each, and seconds one run of a turn should take. Where an array happens
+#: to lie in memory can make a step a fifth slower, and stays so: hence several chains. Under half a second in all.
+_CHAINS, _TURNS, _RUN = 6, 5, 0.004
 CODE, MOTION = "rk4", "rk4-split"
 """The methods that show the cost of an effect's code, and its cost in the live picture's motion."""
 
@@ -58,13 +59,14 @@ def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: np
                 pause: Callable[[], None] | None = None) -> EffectCost:
     """Time both kernels by turns and take medians; `pause` is called before each turn. Raises `Cancelled`."""
     flag = new_stop() if stop is None else stop
-    pair = [_Stepper(variant, method, flag) for variant in (with_it, without)]
-    times = np.zeros((_TURNS, 2))
-    for turn in range(_TURNS):
+    times = np.zeros((_CHAINS * _TURNS, 2))
+    for turn in range(len(times)):
         if pause is not None:
             pause()
         if flag[0]:
             raise Cancelled
+        if turn % _TURNS == 0:
+            pair = [_Stepper(variant, method, flag) for variant in (with_it, without)]
         order = (0, 1) if turn % 2 else (1, 0)  # neither is always the one that runs first
         for place in order:
             times[turn, place] = pair[place].nanoseconds_per_step()
