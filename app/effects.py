@@ -178,7 +178,8 @@ class EffectsPanel:
             "code": _words(costs.get(CODE)), "motion": _words(costs.get(MOTION)),
             "state": refused or self._failed.get(name) or (
                 "compiling its kernel …" if name == self._compiling else
-                "being timed …" if name == self.measuring else "not measured yet"),
+                "being timed …" if name == self.measuring else
+                "not measured yet, waits for the curve" if self._page.curves.computing else "not measured yet"),
         }
 
     def _step(self, scene: Scene) -> dict[str, float]:

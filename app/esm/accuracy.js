@@ -41,7 +41,7 @@ class Lesson {
     this.key = part("span", { className: "key" }, part("i"), "certified", part("i", { className: "dashed" }), "naive");
     this.root = part("div", { className: "lesson" }, part("div", { className: "row" }, this.methods, this.steps, this.key),
       this.said, part("div", { className: "draw" }, this.draw));
-    this.root.hidden = true;
+    this.show();
   }
 
   load(message) {
@@ -59,12 +59,11 @@ class Lesson {
 
   forget() {
     this.data = null;
-    this.said.textContent = "";
-    this.draw.replaceChildren();
+    this.show();
   }
 
   show() {
-    this.root.hidden = false;
+    this.root.hidden = !this.data;
     if (!this.data) return;
     const chosen = this.data.drawn.find((one) => one.method === this.methods.value && String(one.steps) === this.steps.value);
     this.said.textContent = !chosen ? "" : chosen.failure
@@ -111,7 +110,7 @@ export function render({ model }) {
     const running = ["waiting", "compiling", "measuring"].includes(state.status);
     status.textContent = STATUS[state.status] ?? "";
     meter.hidden = cancel.hidden = !running;
-    again.hidden = running;
+    again.hidden = running || !state.status || state.status === "none";
     meter.value = state.done ?? 0;
     agreement.textContent = state.agreement_words ?? "";
     agreement.title = state.reference ? `Reference: ${state.reference}. Second: ${state.second}.` : "";

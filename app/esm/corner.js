@@ -88,6 +88,7 @@ export function render({ model }) {
   const choose = (name) => {
     const before = chosen;
     chosen = name;
+    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects"].includes(name));
     if (before === "effects" || name === "effects") looking();
     show();
   };

@@ -87,7 +87,9 @@ function workPicture(host, { rows, ways, told, agreement, compact }) {
     return point;
   });
   rings(f, X, Y, told, points, small);
-  if (!small) label(svg, told?.now ? [{ x: X(told.now.ms) + 3, y: Y(told.now.error) - 12, text: "this page now", className: "now-words" }, ...ends] : ends, f);
+  ends.sort((a, b) => a.y - b.y);
+  if (told?.now) ends.push({ x: X(told.now.ms) + 3, y: Y(told.now.error) - 12, text: "this page now", className: "now-words" });
+  if (!small) label(svg, ends, f);
   return points;
 }
 
@@ -119,7 +121,7 @@ function rings({ svg }, X, Y, told, points, small) {
 // The methods' names at the ends of their lines, pushed apart where they would cover each other.
 function label(svg, ends, { y0, y1 }) {
   const placed = [];
-  for (const end of ends.sort((a, b) => a.y - b.y)) {
+  for (const end of ends) {
     let y = end.y + 5;
     while (placed.some((other) => Math.abs(other.y - y) < 16 && Math.abs(other.x - end.x) < 110)) y += 4;
     y = Math.min(Math.max(y, y1 + 12), y0 + 4);

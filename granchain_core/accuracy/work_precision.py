@@ -31,6 +31,9 @@ _ROW_LIMIT, _REFERENCE_LIMIT = 8.0, 60.0
 #: A setting is run until it has taken so many seconds or runs; the fastest counts, so that neither a compiler nor a
 #: neighbour on the machine is measured. What takes longer than the last is run once.
 _ENOUGH, _MOST_RUNS, _SLOW = 0.05, 9, 0.5
+#: What takes less than so many seconds is measured in a second round, too, seconds after the first: a neighbour that
+#: was busy during all of the first runs is not there for long.
+_BRIEF = 0.1
 
 
 class Measured(NamedTuple):
@@ -92,7 +95,7 @@ def work_precision(scene: Scene, stop: np.ndarray | None = None, progress: Calla
     """
     flag = new_stop() if stop is None else stop
     todo = list(choices())
-    total, done = len(todo) + 3, 0
+    total, done = 2 * len(todo) + 3, 0
 
     def advance() -> None:
         nonlocal done
@@ -108,15 +111,18 @@ def work_precision(scene: Scene, stop: np.ndarray | None = None, progress: Calla
 
     found = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
                           f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
-    exact = _within(flag, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).moved
+    exact = _within("The reference", flag, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).moved
     advance()
     found.lesson = lesson(scene, flag)
     advance()
     for choice in todo:
         found.rows.append(_row(scene, choice, exact, flag))
         advance()
+    for place, choice in enumerate(todo):
+        found.rows[place] = _faster(found.rows[place], scene, choice, exact, flag)
+        advance()
     try:
-        other = _within(flag, _REFERENCE_LIMIT, lambda stop: _scipys(scene, *_SECOND, stop, located=True))
+        other = _within("It", flag, _REFERENCE_LIMIT, lambda stop: _scipys(scene, *_SECOND, stop, located=True))
         found.agreement = _distance(other.moved, exact)
     except NumbersFailed as problem:
         found.disagreement = problem.sentence
@@ -139,18 +145,26 @@ def _row(scene: Scene, choice: Choice, exact: np.ndarray, stop: np.ndarray) -> R
     return Row(choice.way, choice.label, _distance(best.moved, exact), best.seconds, best.rhs, choice.value)
 
 
+def _faster(before: Row, scene: Scene, choice: Choice, exact: np.ndarray, stop: np.ndarray) -> Row:
+    """The better of a brief row and its second measurement; a long one or a failure as it is."""
+    if before.failure or before.wall_s > _BRIEF:
+        return before
+    again = _row(scene, choice, exact, stop)
+    return again if again.wall_s < before.wall_s and not again.failure else before
+
+
 def _fastest(stop: np.ndarray, measure: Measure) -> Measured:
     """The run with the least time of several; a slow setting is run once or twice."""
     runs: list[Measured] = []
     while len(runs) < _MOST_RUNS:
-        runs.append(_within(stop, _ROW_LIMIT, measure))
+        runs.append(_within("It", stop, _ROW_LIMIT, measure))
         spent = sum(run.seconds for run in runs)
         if spent > _ENOUGH and (len(runs) > 1 or spent > _SLOW):
             break
     return min(runs, key=lambda run: run.seconds)
 
 
-def _within(stop: np.ndarray, seconds: float, measure: Measure) -> Measured:
+def _within(what: str, stop: np.ndarray, seconds: float, measure: Measure) -> Measured:
     """Run `measure` with a flag that also goes up after `seconds`, which is then a failure and not a cancellation."""
     try:
         with Limited(stop, seconds) as limit:
@@ -158,7 +172,7 @@ def _within(stop: np.ndarray, seconds: float, measure: Measure) -> Measured:
     except Cancelled:
         if stop[0]:
             raise
-        raise NumbersFailed(f"It was not done after {seconds:g} s and was given up.", "too-slow") from None
+        raise NumbersFailed(f"{what} was not done after {seconds:g} s and was given up.", "too-slow") from None
 
 
 def _ours(scene: Scene, setting: Setting, stop: np.ndarray) -> Measured:

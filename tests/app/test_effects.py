@@ -79,7 +79,7 @@ def test_slots_name_types_and_absences() -> None:
     found = {name: kind for name, _, kind in slots_of(scene("sec2"), balance=False)}
     assert found == {"chain": "Chain", "dissipation": "LinearDashpot", "tension": None, "foundation": None,
                      "preload": None, "driver": "Harmonic", "balance": None}
-    assert dict((name, kind) for name, _, kind in slots_of(scene("rig"), balance=True))["balance"] == "Balance"
+    assert {name: kind for name, _, kind in slots_of(scene("rig"), balance=True)}["balance"] == "Balance"
 
 
 def test_the_account_of_a_picture_closes() -> None:
