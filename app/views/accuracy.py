@@ -15,6 +15,8 @@ from .component import Component, text
 
 _PALETTE = ("#e0900a", "#9b6bf2", "#0fa3b8", "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hexagon", "star", "down", "pentagon")
+_LOST = 1e-4
+"""References that differ by more than this belong to a motion that nobody can follow for ten periods."""
 _NAIVE_MARKS, _NAIVE_COLOUR = ("x", "plus", "star"), "#8a8f98"
 
 
@@ -55,6 +57,9 @@ def described_reference(found: WorkPrecision) -> dict[str, Any]:
     known = math.isfinite(found.agreement)
     if found.disagreement:
         words = f"The second reference failed: {found.disagreement}"
+    elif found.agreement > _LOST:
+        words = (f"Two references differ by {short_error(found.agreement)}: this motion amplifies every error, "
+                 "so smaller ones mean nothing here.")
     elif known:
         words = f"Two independent references agree to {short_error(found.agreement)}."
     else:

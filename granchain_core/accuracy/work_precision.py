@@ -17,6 +17,7 @@ from ..errors import BadInput, Cancelled, NumbersFailed
 from ..integrate import Engine, Setting
 from ..integrate.engine import new_stop
 from ..scene import Scene
+from .compiled import METHODS_PIECE, compile_piece
 from .limit import Limited
 from .naive import Lesson, lesson
 from .scipy_methods import solve
@@ -111,6 +112,7 @@ def work_precision(scene: Scene, stop: np.ndarray | None = None, progress: Calla
 
     found = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
                           f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
+    compile_piece(scene, METHODS_PIECE)  # else a compiler would eat the time of a method's first row
     exact = _within("The reference", flag, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).moved
     advance()
     found.lesson = lesson(scene, flag)

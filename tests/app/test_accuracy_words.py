@@ -83,6 +83,8 @@ def test_the_reference_is_told_with_its_agreement() -> None:
     assert described_reference(found)["agreement"] is None
     found.agreement = 7.1e-12
     assert described_reference(found)["agreement_words"] == "Two independent references agree to 7e-12."
+    found.agreement = 0.68
+    assert "amplifies every error" in described_reference(found)["agreement_words"]
     found.disagreement = "It was not done."
     assert "The second reference failed: It was not done." in described_reference(found)["agreement_words"]
 
