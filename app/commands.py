@@ -235,6 +235,12 @@ def _null(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
+def _naive(found: Any) -> list[dict[str, Any]]:
+    """What plain steps in (u, v) make of the output force."""
+    return [{"method": one.method, "steps_per_period": one.steps, "output_force_error": _null(one.error),
+             "failure": one.failure} for one in found.lesson.drawn]
+
+
 def accuracy(arguments: argparse.Namespace) -> None:
     """Error against time for every method."""
     from granchain_core.accuracy import work_precision
@@ -244,13 +250,22 @@ def accuracy(arguments: argparse.Namespace) -> None:
     found = in_background(lambda stop: work_precision(chosen, stop, progress))
     if arguments.json:
         rows = [{**asdict(row), "error": _null(row.error)} for row in found.rows]
-        _show_json({"reference": {"method": found.reference, "agreement": _null(found.agreement)}, "rows": rows})
+        _show_json({"reference": {"method": found.reference, "agreement": _null(found.agreement),
+                                  "second": found.second, "disagreement": found.disagreement}, "rows": rows,
+                    "naive": _naive(found)})
         return
-    print(f"reference: {found.reference}; a second one agrees to {found.agreement:.1e}")
+    print(f"reference: {found.reference}")
+    print(f"second reference: {found.second}: " + (found.disagreement or f"agrees to {found.agreement:.1e}"))
     print("method          setting                   error     time_ms  evaluations")
     for row in found.rows:
+        if row.failure:
+            print(f"{row.method:14}  {row.setting:22}  failed: {row.failure}")
+            continue
         print(f"{row.method:14}  {row.setting:22}  {row.error:8.1e}  {1e3 * row.wall_s:8.2f}  {row.rhs:11d}")
     for error in (1e-3, 1e-6, 1e-9):
         best = found.cheapest(error)
         if best is not None:
             print(f"the cheapest way to {error:g} is {best.method}, {best.setting}: {1e3 * best.wall_s:.2f} ms")
+    for one in found.lesson.drawn if found.lesson else ():
+        drawn = one.failure or f"off by {100 * one.error:.2g} % of the largest"
+        print(f"output force by {one.method} with {one.steps} steps a period: {drawn}")

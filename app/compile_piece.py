@@ -3,8 +3,8 @@
 import json
 import sys
 
+from app.compiling import load
 from granchain_core import Scene
-from granchain_core.warm import warm
 
 if __name__ == "__main__":
-    warm(Scene.from_json(json.load(sys.stdin)), (sys.argv[1],))
+    load(Scene.from_json(json.load(sys.stdin)), sys.argv[1])

@@ -14,6 +14,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 
 from granchain_core import Scene
+from granchain_core.accuracy import compiled
 from granchain_core.warm import is_warm, structure, warm
 
 from .jobs import BACKGROUND, Stop
@@ -28,6 +29,14 @@ _LOOK = 0.05
 _ROOT = Path(__file__).resolve().parent.parent
 
 
+def load(scene: Scene, piece: str) -> None:
+    """Have one piece of the kernels in this process: from the cache, or compiled here where it is not there."""
+    if piece in compiled.PIECES:
+        compiled.compile_piece(scene, piece)
+    else:
+        warm(scene, (piece,))
+
+
 def _compile(scene: Scene, piece: str) -> None:
     """Compile in another process; where none can be started, in this one."""
     command = [sys.executable, "-m", "app.compile_piece", piece]
@@ -35,7 +44,7 @@ def _compile(scene: Scene, piece: str) -> None:
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
     except (OSError, subprocess.CalledProcessError):
-        warm(scene, (piece,))
+        load(scene, piece)
 
 
 class Compiler:
@@ -85,7 +94,7 @@ class Compiler:
         for piece in (LIVE, CERTIFIED, CURVE):
             if not self.has(scene, piece):
                 self.ask(scene, piece).result()
-            warm(scene, (piece,))
+            load(scene, piece)
 
 
 COMPILER = Compiler()

@@ -11,8 +11,11 @@ from bokeh.document import Document
 
 from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settling
 
+from .account import with_account
+from .accuracy import AccuracyPage
 from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
 from .curves import Curves
+from .effects import EffectsPanel
 from .exchange import Exchange
 from .frames import samples_for
 from .jobs import LatestWins, Stop
@@ -21,6 +24,7 @@ from .painter import Painter
 from .promptness import in_one_go, send_at_once
 from .session import LOOKS, SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
+from .transport import Transport
 from .views.knobs import foundation_words, knob_state
 from .views.shell import Views
 
@@ -36,20 +40,23 @@ class Controller:
         self._document = document
         self.session = session
         self.views = Views(self.received, partial(self._guarded, self._choose_frequency))
-        self._jobs = LatestWins(partial(self.later, self._arrived), partial(self.later, self.failed))
-        self._painter: Painter[Settled | LivePicture] = Painter(self._send, self._idle)
-        self._live: LiveRun | None = None
-        self.curves = Curves(self.views, self.later, self.after, lambda: self._jobs.busy)
+        self.jobs = LatestWins(partial(self.later, self._arrived), partial(self.later, self.failed))
+        self._painter: Painter[Settled | LivePicture] = Painter(self._send, self.idle)
+        self.live: LiveRun | None = None
+        self.curves = Curves(self.views, self.later, self.after, lambda: self.busy)
         self.exchange = Exchange(self)
+        self.accuracy = AccuracyPage(self)
+        self.effects = EffectsPanel(self)
+        self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
             "painted": lambda m: self._painter.painted(m.get("number")),
-            "set": self._set, "restore": self._restore, "scene": self._scene, "mode": self._mode,
-            "start": self._start, "speed": self._speed, "playing": self._playing, "reset": self._reset,
-            "step": self._step, "look": self._look, "understood": self._understood,
+            "set": self._set, "restore": self._restore, "scene": self._scene,
+            "look": self._look, "understood": self._understood,
             "lock": self._lock, "curve": self._curve,
             "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
-            "curve-stop": lambda _: self.curves.stop(), **self.exchange.actions,
+            "cover": self._cover, "curve-stop": lambda _: self.curves.stop(),
+            **Transport(self).actions, **self.exchange.actions, **self.accuracy.actions, **self.effects.actions,
         }
 
     # Coming in and going out
@@ -103,19 +110,31 @@ class Controller:
 
     def close(self, session_context: object) -> None:
         """The visitor left."""
-        self._jobs.close()
+        self.jobs.close()
         self.curves.close()
+        self.accuracy.close()
+        self.effects.close()
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture is being computed; what can wait, waits."""
+        return self.jobs.busy
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
+        return self.jobs.busy and self.live is None
 
     # Computing and painting
 
-    def _compute(self) -> None:
+    def compute(self) -> None:
         """A new picture for the knobs as they are now."""
         if self.session.mode == "live":
-            if self._live is not None:
-                self._live.change(self.session.scene)
-            self._idle()
+            if self.live is not None:
+                self.live.change(self.session.scene)
+            self.idle()
         else:
-            self._jobs.submit(partial(self._settled, self.session.scene))
+            self.jobs.submit(partial(self._settled, self.session.scene))
 
     def _settled(self, scene: Scene, stop: Stop) -> Iterator[Settled]:
         """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
@@ -123,7 +142,10 @@ class Controller:
         pictures = settling(scene, start=self.session.previous_state(), samples=samples_for(scene), stop=stop)
         yield next(pictures)
         if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
-            yield from pictures
+            for picture in pictures:
+                yield picture
+                if picture.final and self.session.account:
+                    yield with_account(picture, stop)
 
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
         if not COMPILER.has(scene, LIVE):
@@ -132,9 +154,9 @@ class Controller:
                 COMPILER.ask(scene, piece)
             COMPILER.await_piece(scene, LIVE, stop)
 
-    def _live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
+    def live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
         """One step of the live run: so many samples, or as many as viewing time asks for."""
-        live = self._live
+        live = self.live
         if live is not None:
             self._await_live_kernels(self.session.scene, stop)
             yield live.advance(samples) if samples else live.step(self.session.speed)
@@ -145,14 +167,15 @@ class Controller:
             return
         if isinstance(picture, Settled):
             self.session.picture = picture
+            self.accuracy.describe()
         if self.session.notice:
             self.note("")
         self._painter.offer(picture)
 
     def shown_run(self) -> Run | None:
         """What is on the screen, as a run."""
-        if self._live is not None:
-            return self._live.window_run()
+        if self.live is not None:
+            return self.live.window_run()
         return None if self.session.picture is None else self.session.picture.run
 
     def _send(self, number: int, picture: Settled | LivePicture) -> None:
@@ -162,10 +185,10 @@ class Controller:
             else:
                 show_live(self.views, number, picture, self.session.playing)
 
-    def _idle(self) -> None:
+    def idle(self) -> None:
         """The browser has painted everything: in live mode that asks for the next step."""
         if self.session.mode == "live" and self.session.playing and not self._painter.waits:
-            self._jobs.submit(partial(self._live_step, None))
+            self.jobs.submit(partial(self.live_step, None))
 
     # What the visitor does
 
@@ -179,14 +202,14 @@ class Controller:
         scene = self.session.scene
         self.views.knobs.state = knob_state(scene)
         self.views.corner.display(look_at=scene.look_at, paper=scene.paper)
-        self._header()
+        self.header()
         self._describe()
         self.curves.open(scene)
         if self.session.mode == "live":
-            self._live = LiveRun(scene)
-        self._compute()
+            self.live = LiveRun(scene)
+        self.compute()
 
-    def _header(self) -> None:
+    def header(self) -> None:
         session = self.session
         self.views.header.display(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, look=session.look,
@@ -194,8 +217,10 @@ class Controller:
 
     def _describe(self) -> None:
         scene = self.session.scene
+        self.accuracy.describe()
+        self.effects.changed()
         self.views.equation.display(latex=scene.equation_latex())
-        self.views.corner.display(effects=list(scene.effects), validity=list(scene.validity()))
+        self.views.corner.display(validity=list(scene.validity()))
 
     def _set(self, message: dict[str, Any]) -> None:
         name = str(message.get("name"))
@@ -216,12 +241,24 @@ class Controller:
                               foundation=foundation_words(scene))
 
     def _turned(self, name: str) -> None:
-        self._compute()
+        self.compute()
         if self.session.sentence:
             self.say("")
         self._describe()
         if name != "f":
             self.curves.changed(self.session.scene)
+
+    def switched(self, name: str, on: bool) -> None:
+        """Switch an effect; the knobs follow."""
+        self.session.switch(name, on)
+        self._echo()
+        self._turned(name)
+
+    def _cover(self, message: dict[str, Any]) -> None:
+        """A page over the pictures was opened or closed."""
+        self.covered = message.get("name") is not None
+        if message.get("name") == "accuracy":
+            self.accuracy.open()
 
     def _choose_frequency(self, frequency: float) -> None:
         low, high = slider_range(self.session.scene, "f")
@@ -233,40 +270,6 @@ class Controller:
         self.session.choose(message.get("name"))
         self.say("")
         self._new_scene()
-
-    def _mode(self, message: dict[str, Any]) -> None:
-        self.session.set_mode(message.get("value"))
-        self._live = LiveRun(self.session.scene) if self.session.mode == "live" else None
-        self._header()
-        self._compute()
-
-    def _start(self, message: dict[str, Any]) -> None:
-        self.session.set_start(message.get("value"))
-        self._header()
-        self._compute()
-
-    def _speed(self, message: dict[str, Any]) -> None:
-        self.session.set_speed(message.get("value"))
-        self._header()
-
-    def _playing(self, message: dict[str, Any]) -> None:
-        self.session.playing = bool(message.get("value"))
-        if self._live is not None:
-            self._live.hold()
-            if not self.session.playing:
-                self._jobs.submit(partial(self._live_step, 1))
-        self._idle()
-
-    def _reset(self, _: dict[str, Any]) -> None:
-        if self._live is not None:
-            self._live.reset()
-        self.session.picture = None
-        self._compute()
-
-    def _step(self, _: dict[str, Any]) -> None:
-        if self._live is not None:
-            self.session.playing = False
-            self._jobs.submit(partial(self._live_step, self._live.samples))
 
     def _understood(self, _: dict[str, Any]) -> None:
         self.session.notice = ""

@@ -38,6 +38,7 @@ class Curves:
         self._buffer: list[Progress] = []
         self._key: Scene | None = None
         self._remaining: list[str] = []
+        self._done = -1.0
 
     def open(self, scene: Scene) -> None:
         """Another scene: an empty figure over its frequencies."""
@@ -84,7 +85,30 @@ class Curves:
     def stop(self) -> None:
         """Give up what is being computed; what there is stays."""
         self._sweep.cancel()
+        self._done = -1.0
         self._views.curvebar.display(done=-1.0)
+
+    @property
+    def computing(self) -> bool:
+        """Whether a curve is under way."""
+        return 0.0 <= self._done < 1.0
+
+    def activities(self) -> list[tuple[str, str, str]]:
+        """Name, state and detail of every direction, as it is at this moment."""
+        found = []
+        for name in DIRECTIONS:
+            title = "resonance curve " + ("from rest" if name == "rest" else f"sweeping {name}")
+            if not self._wanted[name]:
+                found.append((title, "off", "not asked for"))
+            elif self._computed.get(name) is not None and self._computed.get(name) == self._key:
+                found.append((title, "there", "complete"))
+            elif not self._visible:
+                found.append((title, "off", "not on the screen"))
+            elif name in self._remaining and self.computing:
+                found.append((title, "computing", f"{100 * self._done:.0f} % of what is asked for"))
+            else:
+                found.append((title, "off", "waits until the knobs rest, or was stopped"))
+        return found
 
     def close(self) -> None:
         """The visitor left."""
@@ -107,7 +131,7 @@ class Curves:
             self._views.curve.show_directions(shown)
             self._views.curve.begin(missing)
             self._views.curvebar.display(**self._wanted, done=0.0 if missing else -1.0)
-        self._remaining = list(missing)
+        self._remaining, self._done = list(missing), 0.0 if missing else -1.0
         self._sweep.start(scene, missing)
 
     def _show_features(self, scene: Scene) -> None:
@@ -137,7 +161,8 @@ class Curves:
                     self._computed[progress.direction] = self._key
                     self._views.curve.finished(progress.direction)
                     show_regime(self._views)
-            self._views.curvebar.display(done=self._overall(buffer[-1]))
+            self._done = self._overall(buffer[-1])
+            self._views.curvebar.display(done=self._done)
 
     def _overall(self, progress: Progress) -> float:
         """Progress over all directions of this request."""

@@ -13,16 +13,19 @@ _SLOTS = {
 }
 
 
+def slots_of(scene: Scene, balance: bool) -> list[tuple[str, str, str | None]]:
+    """Every slot of the scene's kernel: name, title, and the type compiled into it or None where it is absent."""
+    slots = lower(scene, balance=balance).slots
+    found = ((name, title, getattr(slots, name)) for name, title in _SLOTS.items())
+    return [(name, title, None if slot is None else type(slot).__name__) for name, title, slot in found]
+
+
 def explanation(scene: Scene, method: str | None) -> str:
     """The slots of the kernel that `run` uses, and its method, in a few lines."""
-    lowered = lower(scene, balance=True)
-    present, absent = [], []
-    for name, title in _SLOTS.items():
-        slot = getattr(lowered.slots, name)
-        if slot is None:
-            absent.append(title)
-        else:
-            present.append(f"{title} ({type(slot).__name__})")
+    lowered = lower(scene)
+    slots = slots_of(scene, balance=True)
+    present = [f"{title} ({kind})" for _, title, kind in slots if kind is not None]
+    absent = [title for _, title, kind in slots if kind is None]
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     chosen = METHODS[setting.method]
     why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"

@@ -19,6 +19,8 @@ _CORES = os.cpu_count() or 1
 
 PICTURES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="picture")
 BACKGROUND = ThreadPoolExecutor(max_workers=max(1, _CORES // 2), thread_name_prefix="background")
+MEASUREMENTS = ThreadPoolExecutor(max_workers=1, thread_name_prefix="measurement")
+"""What measures times, one after the other for all visitors: two at once would measure each other."""
 
 Stop = np.ndarray
 """A flag of one byte that running kernels look at."""

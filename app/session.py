@@ -6,10 +6,13 @@ No Panel and no Bokeh in here, so that every rule of the page can be tested with
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
+
+from .effect_switches import ACCOUNT, changes
 
 MODES = ("settled", "live")
 STARTS = ("rest", "previous")
@@ -30,10 +33,23 @@ class Session:
     picture: Settled | None = None
     sentence: str = ""
     notice: str = ""
+    account: bool = False
+    remembered: dict[str, Any] = field(default_factory=dict)
 
     def change(self, name: str, value: object) -> None:
         """Turn knob `name` to `value`."""
         self.scene = self.scene.evolve(**{name: value})
+
+    def switch(self, name: str, on: bool) -> None:
+        """Switch an effect on or off; what its knobs were is remembered for the way back."""
+        if name == ACCOUNT:
+            self.account = on
+            return
+        moved = changes(name, on, self.scene, self.remembered)
+        before = {knob: self.scene.knobs[knob] for knob in moved if knob != "kappa"}
+        self.scene = self.scene.evolve(**moved)
+        if not on:
+            self.remembered.update(before)
 
     def restore(self, name: str) -> None:
         """Turn knob `name` back to what the preset has."""
@@ -46,6 +62,7 @@ class Session:
         """Open another preset, in the same mode."""
         self.scene = scene(name if isinstance(name, str) else str(name)[:60])
         self.picture = None
+        self.remembered.clear()
 
     def set_mode(self, mode: object) -> None:
         """`settled` or `live`."""

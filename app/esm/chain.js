@@ -223,6 +223,7 @@ export function render({ model }) {
     const periods = (clock.frames.rows - 1) / clock.frames.samples;
     clock.moveTo(((clock.row / clock.frames.samples + 1) % periods) / periods);
   });
+  page.on("cover", () => { dirty = true; });
   page.on("look", () => { drawing.look(); dirty = true; });
   document.addEventListener("visibilitychange", () => {
     if (!document.hidden) model.send_msg({ do: "visible" });
@@ -231,7 +232,7 @@ export function render({ model }) {
   const loop = (now) => {
     clock.tick(now);
     const { frames } = clock;
-    if (frames && (dirty || (clock.playing && !frames.live))) {
+    if (frames && !page.covered && (dirty || (clock.playing && !frames.live))) {
       drawing.draw(frames, clock.row);
       cursor.place();
       dirty = false;

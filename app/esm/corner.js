@@ -5,6 +5,9 @@ const LARGEST_FILE = 2_000_000;
 
 const paragraph = (text, className = "") => Object.assign(document.createElement("p"), { textContent: text, className });
 
+// Draws the small picture of accuracy again; set while its tab is open.
+let drawSmall = () => {};
+
 const TABS = {
   "look at": ({ state }) => [paragraph(state.look_at ?? ""), paragraph(state.paper ?? "", "soft")],
   regimes: ({ state }) => {
@@ -17,11 +20,27 @@ const TABS = {
     }
     return [list, paragraph("solid from rest, dashed sweeping up, dotted sweeping down; ● with a ring is now", "soft")];
   },
-  effects: ({ state }) => {
-    const list = document.createElement("ul");
-    for (const effect of state.effects ?? []) list.append(Object.assign(document.createElement("li"), { textContent: effect }));
-    return [list, ...(state.validity ?? []).map((sentence) => paragraph(sentence, "soft"))];
+  accuracy: (model) => {
+    const page = window.granchain;
+    const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
+    open.addEventListener("click", () => page.cover("accuracy"));
+    const host = Object.assign(document.createElement("div"), { className: "small" });
+    const said = paragraph("");
+    const show = () => {
+      const { rows = [], told, status, done = 0 } = page.accuracy ?? {};
+      const running = ["waiting", "compiling", "measuring"].includes(status);
+      said.textContent = running ? `measuring, ${Math.round(100 * done)} % …` : told?.stale ? "The knobs have moved; open the page to measure again." : told?.sentence ?? "";
+      host.classList.toggle("stale", Boolean(told?.stale));
+      if (host.isConnected && rows.length) workPicture(host, { ...page.accuracy, compact: true });
+    };
+    model.send_msg({ do: "accuracy-open" });
+    requestAnimationFrame(show);
+    drawSmall = show;
+    const row = Object.assign(document.createElement("div"), { className: "row top" });
+    row.append(said, open);
+    return [row, host];
   },
+  effects: effectsTab,
   data: (model) => {
     const row = document.createElement("div");
     row.className = "row";
@@ -52,17 +71,37 @@ export function render({ model }) {
   body.setAttribute("role", "tabpanel");
   root.append(tabs, body);
   let chosen = "look at";
+  const larger = Object.assign(document.createElement("button"), { textContent: "⤢", title: "Larger, over the curve", type: "button", className: "larger" });
+  larger.addEventListener("click", () => {
+    const tall = document.getElementById("curves").classList.toggle("tall");
+    larger.title = tall ? "Smaller, the curve comes back" : "Larger, over the curve";
+    larger.setAttribute("aria-pressed", String(tall));
+  });
   const show = () => {
-    for (const tab of tabs.children) tab.setAttribute("aria-selected", String(tab.textContent === chosen));
+    const focused = root.getRootNode().activeElement?.dataset?.name;
+    for (const tab of tabs.querySelectorAll("[role=tab]")) tab.setAttribute("aria-selected", String(tab.textContent === chosen));
     body.replaceChildren(...TABS[chosen](model));
+    if (focused) body.querySelector(`[data-name="${focused}"]`)?.focus();
+  };
+  // Nobody looks at the costs: then none are measured.
+  const looking = () => model.send_msg({ do: "effects-visible", value: chosen === "effects" && !window.granchain.covered });
+  const choose = (name) => {
+    const before = chosen;
+    chosen = name;
+    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects"].includes(name));
+    if (before === "effects" || name === "effects") looking();
+    show();
   };
   for (const name of Object.keys(TABS)) {
     const tab = Object.assign(document.createElement("button"), { textContent: name, type: "button" });
     tab.setAttribute("role", "tab");
-    tab.addEventListener("click", () => { chosen = name; show(); });
+    tab.addEventListener("click", () => choose(name));
     tabs.append(tab);
   }
+  tabs.append(larger);
   model.on("state", show);
+  window.granchain.on("accuracy", () => { if (chosen === "accuracy") drawSmall(); });
+  window.granchain.on("cover", () => { if (chosen === "effects") looking(); });
   show();
   return root;
 }

@@ -33,7 +33,9 @@ export function render({ model }) {
   model.on("state", show);
   show();
   // A curve nobody looks at is not computed.
-  new IntersectionObserver(([entry]) => model.send_msg({ do: "curve-visible", value: entry.isIntersecting }))
-    .observe(document.getElementById("curve"));
+  let onScreen = true;
+  const look = () => model.send_msg({ do: "curve-visible", value: onScreen && !window.granchain.covered });
+  new IntersectionObserver(([entry]) => { onScreen = entry.isIntersecting; look(); }).observe(document.getElementById("curve"));
+  window.granchain.on("cover", look);
   return root;
 }

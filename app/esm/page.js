@@ -27,11 +27,21 @@ window.granchain = (() => {
   const drawer = (open) => {
     document.getElementById("page").classList.toggle("drawer", open);
   };
+  // A page over the pictures, or null for the pictures themselves; what is covered is not computed.
+  let covered = null;
+  const cover = (name) => {
+    covered = name;
+    document.getElementById("page").classList.toggle("covered", name !== null);
+    emit("cover", name);
+  };
+  document.addEventListener("keydown", (event) => { if (event.key === "Escape" && covered) cover(null); });
   document.addEventListener("pointerdown", (event) => {
     const side = document.getElementById("side");
     const page = document.getElementById("page");
     if (page?.classList.contains("drawer") && !event.composedPath().includes(side)) drawer(false);
   });
 
-  return { on, emit, look, setLook, nextLook: () => setLook(LOOKS[(LOOKS.indexOf(look()) + 1) % 3], true), drawer };
+  return {
+    on, emit, cover, get covered() { return covered; }, look, setLook, nextLook: () => setLook(LOOKS[(LOOKS.indexOf(look()) + 1) % 3], true), drawer,
+  };
 })();

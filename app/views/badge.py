@@ -7,6 +7,7 @@ from typing import Any
 from granchain_core import Run, Settled
 from granchain_core.steady.resonance import pushes
 
+from ..words import duration, short_error
 from .component import Component, text
 
 
@@ -36,16 +37,17 @@ def regime_words(picture: Settled, nature: str) -> str:
     return ready + ratio + regime.sentence
 
 
-def _duration(seconds: float) -> str:
-    return f"{seconds:.1f} s" if seconds >= 1.0 else f"{1e3 * seconds:.3g} ms"
+def accuracy_words(run: Run) -> str:
+    """What was asked, what was reached, and what that took."""
+    reached = "no claim" if run.error_estimate is None else f"reached {short_error(run.error_estimate)}"
+    return f"asked {short_error(run.scene.accuracy)} · {reached} · {duration(run.cost.wall_s)}"
 
 
 def run_entries(run: Run) -> dict[str, Any]:
-    """Error, cost, method and effects of a run."""
-    error = run.error_estimate
+    """Accuracy, method and effects of a run."""
     return {
-        "error": "no claim" if error is None else f"{error:.0e}".replace("e-0", "e-"),
-        "time": _duration(run.cost.wall_s),
+        "accuracy": accuracy_words(run),
+        "energy": "" if run.energy_residual is None else f"energy closes to {short_error(run.energy_residual)}",
         "method": run.cost.method,
         "effects": list(run.scene.effects),
     }

@@ -11,6 +11,7 @@ from bokeh.models import Range1d
 
 from granchain_core import Settled
 
+from .accuracy import Accuracy
 from .badge import Badge
 from .chain import PALETTE, Chain
 from .component import text
@@ -41,6 +42,7 @@ class Views:
         self.curvebar = CurveBar(received)
         self.corner = Corner(received, sizing_mode="stretch_both", state={"regimes": [
             {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
+        self.accuracy = Accuracy(received, sizing_mode="stretch_both")
         self.badge = Badge(received)
         self.shown: Settled | None = None
 
@@ -52,7 +54,7 @@ class Views:
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)
         page.add_variable("gap", GAP)
-        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "badge"):
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "accuracy", "badge"):
             page.add_panel(name, getattr(self, name))
         page.add_panel("left", pane(self.trains.left))
         page.add_panel("map", pane(self.energy.figure))

@@ -2,43 +2,151 @@
 
 from __future__ import annotations
 
-import numpy as np
-from scipy.integrate import solve_ivp
+from dataclasses import dataclass
+from typing import Any
 
-from ..integrate.engine import Counts, rest
+import numpy as np
+from scipy.integrate import DOP853, LSODA, RK45
+from scipy.optimize import brentq
+
+from ..errors import Cancelled, NumbersFailed
+from ..integrate.engine import Counts, new_stop, rest
 from ..integrate.lane_block import scaled_state
 from ..kernels.dop853 import evaluate
-from ..lower import lower
+from ..lower import Lowered, lower
 from ..scene import Scene
 
-SOLVERS = ("LSODA", "RK45", "DOP853")
+
+@dataclass(frozen=True)
+class Solver:
+    """One of SciPy's solvers, with what its documentation claims."""
+
+    name: str
+    title: str
+    make: Any
+    order: float
+    restrictions: str
+    reference: str
 
 
-def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: int) -> tuple[np.ndarray, Counts]:
+_ACROSS = "steps across contact events; its tolerance is per step and says nothing about the end"
+
+SOLVERS: dict[str, Solver] = {
+    s.name: s
+    for s in (
+        Solver("LSODA", "SciPy LSODA, Adams and BDF with switching", LSODA, 12.0, _ACROSS,
+               "Petzold 1983; Hindmarsh 1983"),
+        Solver("RK45", "SciPy RK45, Dormand–Prince 5(4)", RK45, 5.0, _ACROSS, "Dormand & Prince 1980"),
+        Solver("DOP853", "SciPy DOP853, Dormand–Prince 8(5,3)", DOP853, 8.0, _ACROSS,
+               "Hairer, Nørsett & Wanner 1993, section II.5"),
+    )
+}
+#: The largest step is a period over this number, so that the driver is never stepped over.
+_LEAST_STEPS = 16
+#: Least relative tolerance SciPy takes without changing it.
+_LEAST_RTOL = 3e-14
+#: Contact events nearer to a step's start than this fraction of the period are the one it started from.
+_SAME_EVENT = 1e-9
+
+
+class Motion:
+    """The beads' equations as SciPy wants them: a function of time and one flat array (u_1..u_N, w_1..w_N)."""
+
+    def __init__(self, lowered: Lowered, stop: np.ndarray) -> None:
+        self.lowered = lowered
+        self.stop = stop
+        self.evaluations = 0
+        self._row = lowered.row
+        self._whole, self._slope, self._forces = np.zeros(lowered.size), np.zeros(lowered.size), lowered.forces()
+
+    def inner(self, y: np.ndarray) -> np.ndarray:
+        """The beads' part of a whole state array."""
+        row = self._row
+        return np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
+
+    def __call__(self, t: float, inner: np.ndarray) -> np.ndarray:
+        """Slope at local time t of the period."""
+        row, whole = self._row, self._whole
+        self.evaluations += 1
+        whole[1 : row - 1], whole[row + 1 : 2 * row - 1] = inner[: row - 2], inner[row - 2 :]
+        evaluate(self.lowered.slots, self.lowered.beta, t, whole, self._slope, self._forces)
+        return self.inner(self._slope)
+
+    def overlaps(self, t: float, inner: np.ndarray) -> np.ndarray:
+        """Overlap of every contact (N+1,) in scaled units."""
+        slots = self.lowered.slots
+        drive = slots.driver.amplitude * np.sin(self.lowered.beta * t)
+        bodies = np.concatenate([[drive], inner[: self._row - 2], [0.0]])
+        static = 0.0 if slots.preload is None else slots.preload.static
+        return bodies[:-1] - bodies[1:] + static
+
+
+def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: int, stop: np.ndarray | None = None,
+          located: bool = False) -> tuple[np.ndarray, Counts]:
     """Scaled displacements (rows, N) from rest at `samples` a period, both ends; atol = rtol = tolerance.
 
-    Solved period by period, so that the drive phase stays exact. Rows after a failure are NaN.
+    Solved period by period, so that the drive phase stays exact; with `located` the solver is also started anew
+    wherever a contact opens or closes, as a careful user would do it. Raises `NumbersFailed` and `Cancelled`.
     """
-    lowered, counts = lower(scene), Counts()
-    forces, row = lowered.forces(), lowered.row
-    y, whole = scaled_state(lowered, rest(scene)), np.zeros(lowered.size)
-
-    def slope(t: float, inner: np.ndarray) -> np.ndarray:
-        dy = np.zeros(lowered.size)
-        whole[1 : row - 1], whole[row + 1 : 2 * row - 1] = inner[: row - 2], inner[row - 2 :]
-        evaluate(lowered.slots, lowered.beta, t, whole, dy, forces)
-        return np.concatenate([dy[1 : row - 1], dy[row + 1 : 2 * row - 1]])
-
-    inner = np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
+    lowered = lower(scene)
+    motion = Motion(lowered, new_stop() if stop is None else stop)
+    inner = motion.inner(scaled_state(lowered, rest(scene)))
     out = np.full((periods * samples + 1, scene.N), np.nan)
-    out[0] = inner[: row - 2]
-    times = lowered.period * np.arange(samples + 1) / samples
+    out[0] = inner[: scene.N]
     for p in range(periods):
-        found = solve_ivp(slope, (0.0, lowered.period), inner, solver, times, rtol=max(tolerance, 3e-14),
-                          atol=tolerance, max_step=lowered.period / 16)
-        counts.array[1] += found.nfev
-        if not found.success or found.y.shape[1] != samples + 1:
-            break
-        out[p * samples + 1 : (p + 1) * samples + 1] = found.y[: row - 2, 1:].T
-        inner = found.y[:, -1]
+        inner, rows = _period(motion, SOLVERS[solver], tolerance, inner, samples, located)
+        out[p * samples + 1 : (p + 1) * samples + 1] = rows
+        if not np.isfinite(inner).all():  # LSODA calls that a success
+            raise NumbersFailed(f"SciPy's {solver} lost the motion in drive period {p + 1}: its state is no longer "
+                                f"finite, at tolerance {tolerance:g}.", "not-finite")
+    counts = Counts()
+    counts.array[1] = motion.evaluations
     return out, counts
+
+
+def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray, samples: int,
+            located: bool) -> tuple[np.ndarray, np.ndarray]:
+    """One drive period: the state at its end and the displacements at its samples, the start left out."""
+    period, n = motion.lowered.period, len(inner) // 2
+    times = period * np.arange(1, samples + 1) / samples
+    rows, t = np.full((samples, n), np.nan), 0.0
+
+    def start(t: float, state: np.ndarray, end: float) -> Any:
+        return solver.make(motion, t, state, end, max_step=period / _LEAST_STEPS, rtol=max(tolerance, _LEAST_RTOL),
+                           atol=tolerance)
+
+    one, event = start(0.0, inner, period), period
+    while t < period:
+        if motion.stop[0]:
+            raise Cancelled
+        before = one.y.copy()
+        one.step()
+        if one.status == "failed":
+            raise NumbersFailed(f"SciPy's {solver.name} gave up after {t / period:.3g} of a drive period at "
+                                f"tolerance {tolerance:g}.", "solver-gave-up")
+        dense = one.dense_output()
+        if located and one.t_bound == period:
+            event = _first_event(motion, dense, one, before)
+            if event < one.t:
+                one = start(t, before, event)
+                continue
+        inside = (times > t) & (times <= one.t)
+        if inside.any():
+            rows[inside] = dense(times[inside])[:n].T
+        t, inner = one.t, one.y
+        if one.status == "finished" and t < period:
+            one = start(t, inner, period)
+    return inner, rows
+
+
+def _first_event(motion: Motion, dense: Any, one: Any, before: np.ndarray) -> float:
+    """When the first contact opens or closes inside the step just taken; infinite where none does."""
+    changed = (motion.overlaps(one.t_old, before) > 0.0) != (motion.overlaps(one.t, one.y) > 0.0)
+    near = _SAME_EVENT * motion.lowered.period
+    first = np.inf
+    for c in np.flatnonzero(changed):
+        if (motion.overlaps(one.t_old + near, dense(one.t_old + near))[c] > 0.0) == (
+                motion.overlaps(one.t, one.y)[c] > 0.0):
+            continue
+        first = min(first, brentq(lambda t, c=c: motion.overlaps(t, dense(t))[c], one.t_old + near, one.t, xtol=1e-14))
+    return first

@@ -1,112 +1,195 @@
 """The picture of the trade: error against time for every method and setting, and how sure the reference is.
 
-The reference is the certified method at its finest; SciPy's DOP853, another implementation without event location, is
-run beside it, and how far the two are apart says how well the reference itself is known.
+The reference is the certified method at its finest. A second one shares only the equations with it: SciPy's DOP853,
+started anew wherever a contact opens or closes. How far the two are apart says how well the truth itself is known.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import BadInput, Cancelled, NumbersFailed
 from ..integrate import Engine, Setting
-from ..integrate.engine import Counts, new_stop
+from ..integrate.engine import new_stop
 from ..scene import Scene
-from .scipy_methods import SOLVERS, solve
+from .compiled import METHODS_PIECE, compile_piece
+from .limit import Limited
+from .naive import Lesson, lesson
+from .scipy_methods import solve
+from .ways import SCIPY, Choice, choices
 
 #: Periods from rest, and samples a period at which displacements are compared.
 PERIODS, SAMPLES = 10, 16
-_FIXED = ("verlet-naive", "rk4-naive", "rk4", "rk4-split")
-_REFINES = (1, 2, 4, 8, 16)
-_TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
-_SCIPY_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
 _REFERENCE = Setting("dop853", tolerance=3e-15)
-_SECOND = ("DOP853", 1e-12)
+_SECOND = ("DOP853", 1e-14)
+#: Seconds after which a setting is given up, and a reference.
+_ROW_LIMIT, _REFERENCE_LIMIT = 8.0, 60.0
+#: A setting is run until it has taken so many seconds or runs; the fastest counts, so that neither a compiler nor a
+#: neighbour on the machine is measured. What takes longer than the last is run once.
+_ENOUGH, _MOST_RUNS, _SLOW = 0.05, 9, 0.5
+#: What takes less than so many seconds is measured in a second round, too, seconds after the first: a neighbour that
+#: was busy during all of the first runs is not there for long.
+_BRIEF = 0.1
+
+
+class Measured(NamedTuple):
+    """One computation: displacements in scaled units, evaluations, and the seconds it took."""
+
+    moved: np.ndarray
+    rhs: int
+    seconds: float
+
+
+Measure = Callable[[np.ndarray], Measured]
 
 
 @dataclass(frozen=True)
 class Row:
-    """One method at one setting: largest displacement error over the largest displacement, seconds, evaluations."""
+    """One method at one setting: largest displacement error over the largest displacement, seconds, evaluations.
+
+    `value` is the setting as a number. With a `failure` there is neither error nor time.
+    """
 
     method: str
     setting: str
     error: float
     wall_s: float
     rhs: int
+    value: float = 0.0
+    failure: str = ""
 
 
 @dataclass(eq=False)
 class WorkPrecision:
-    """All rows, the reference's method and its agreement with a second one."""
+    """All rows, the reference's method and its agreement with a second one (NaN as long as that is not there)."""
 
     scene: Scene
     reference: str
-    agreement: float
+    second: str
+    agreement: float = float("nan")
     rows: list[Row] = field(default_factory=list)
+    lesson: Lesson | None = None
+    disagreement: str = ""
 
     def cheapest(self, error: float) -> Row | None:
         """The fastest of granchain's and SciPy's settings that is at least this accurate."""
-        good = [row for row in self.rows if row.error <= error]
-        return min(good, key=lambda row: row.wall_s) if good else None
+        return cheapest(self.rows, error)
 
 
-def work_precision(scene: Scene, stop: np.ndarray | None = None,
-                   progress: Callable[[float], None] | None = None) -> WorkPrecision:
-    """Measure every method on `scene` from rest, here and now. Raises `NumbersFailed` and `Cancelled`."""
+def cheapest(rows: list[Row], error: float) -> Row | None:
+    """The fastest row that is at least this accurate; failed ones never are."""
+    good = [row for row in rows if not row.failure and row.error <= error]
+    return min(good, key=lambda row: row.wall_s) if good else None
+
+
+def work_precision(scene: Scene, stop: np.ndarray | None = None, progress: Callable[[float], None] | None = None,
+                   report: Callable[[WorkPrecision], None] | None = None,
+                   pause: Callable[[], None] | None = None) -> WorkPrecision:
+    """Measure every method on `scene` from rest, here and now. Raises `NumbersFailed` and `Cancelled`.
+
+    `report` is told the growing result after each part; `pause` is called before each and may hold it up.
+    """
     flag = new_stop() if stop is None else stop
-    jobs = [(m, Setting(m, refine=r)) for m in _FIXED for r in _REFINES]
-    jobs += [("dop853", Setting("dop853", tolerance=t)) for t in _TOLERANCES]
-    others = [(solver, t) for solver in SOLVERS for t in _SCIPY_TOLERANCES]
-    total, done = len(jobs) + len(others) + 2, 0
+    todo = list(choices())
+    total, done = 2 * len(todo) + 3, 0
 
     def advance() -> None:
         nonlocal done
         done += 1
+        if report is not None:
+            report(found)
         if progress is not None:
             progress(done / total)
+        if pause is not None:
+            pause()
+        if flag[0]:
+            raise Cancelled
 
-    exact, _, _ = _ours(scene, _REFERENCE, flag)
-    advance()
-    second, _ = solve(scene, *_SECOND, PERIODS, SAMPLES)
-    advance()
     found = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
-                          _distance(second, exact))
-    for row in _rows(scene, exact, jobs, others, flag):
-        found.rows.append(row)
+                          f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
+    compile_piece(scene, METHODS_PIECE)  # else a compiler would eat the time of a method's first row
+    exact = _within("The reference", flag, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).moved
+    advance()
+    found.lesson = lesson(scene, flag)
+    advance()
+    for choice in todo:
+        found.rows.append(_row(scene, choice, exact, flag))
         advance()
+    for place, choice in enumerate(todo):
+        found.rows[place] = _faster(found.rows[place], scene, choice, exact, flag)
+        advance()
+    try:
+        other = _within("It", flag, _REFERENCE_LIMIT, lambda stop: _scipys(scene, *_SECOND, stop, located=True))
+        found.agreement = _distance(other.moved, exact)
+    except NumbersFailed as problem:
+        found.disagreement = problem.sentence
+    advance()
     return found
 
 
-def _rows(scene: Scene, exact: np.ndarray, jobs: list[tuple[str, Setting]], others: list[tuple[str, float]],
-          stop: np.ndarray) -> Iterator[Row]:
-    for name, setting in jobs:
-        label = f"tolerance {setting.tolerance:g}" if setting.tolerance else f"{setting.refine} × the live steps"
-        try:
-            moved, seconds, counts = _ours(scene, setting, stop)
-        except NumbersFailed:
-            yield Row(name, label, float("inf"), 0.0, 0)
-            continue
-        yield Row(name, label, _distance(moved, exact), seconds, counts.rhs)
-    for solver, tolerance in others:
-        began = time.perf_counter()
-        moved, counts = solve(scene, solver, tolerance, PERIODS, SAMPLES)
-        seconds = time.perf_counter() - began
-        yield Row(f"scipy {solver}", f"tolerance {tolerance:g}", _distance(moved, exact), seconds, counts.rhs)
+def _row(scene: Scene, choice: Choice, exact: np.ndarray, stop: np.ndarray) -> Row:
+    """Measure one setting; what goes wrong with it is its own."""
+
+    def measure(limit: np.ndarray) -> Measured:
+        if choice.setting is not None:
+            return _ours(scene, choice.setting, limit)
+        return _scipys(scene, choice.way.removeprefix(SCIPY), choice.value, limit)
+
+    try:
+        best = _fastest(stop, measure)
+    except (NumbersFailed, BadInput) as problem:
+        return Row(choice.way, choice.label, float("inf"), 0.0, 0, choice.value, str(problem))
+    return Row(choice.way, choice.label, _distance(best.moved, exact), best.seconds, best.rhs, choice.value)
 
 
-def _ours(scene: Scene, setting: Setting, stop: np.ndarray) -> tuple[np.ndarray, float, Counts]:
-    """Displacements, seconds (the faster of two runs, so that no compiler is measured) and counts."""
-    best = float("inf")
-    for _ in range(2):
-        engine = Engine(scene, setting, SAMPLES, stop=stop)
-        began = time.perf_counter()
-        moved = engine.record(PERIODS * SAMPLES).displacement
-        best = min(best, time.perf_counter() - began)
-    return moved, best, engine.counts
+def _faster(before: Row, scene: Scene, choice: Choice, exact: np.ndarray, stop: np.ndarray) -> Row:
+    """The better of a brief row and its second measurement; a long one or a failure as it is."""
+    if before.failure or before.wall_s > _BRIEF:
+        return before
+    again = _row(scene, choice, exact, stop)
+    return again if again.wall_s < before.wall_s and not again.failure else before
+
+
+def _fastest(stop: np.ndarray, measure: Measure) -> Measured:
+    """The run with the least time of several; a slow setting is run once or twice."""
+    runs: list[Measured] = []
+    while len(runs) < _MOST_RUNS:
+        runs.append(_within("It", stop, _ROW_LIMIT, measure))
+        spent = sum(run.seconds for run in runs)
+        if spent > _ENOUGH and (len(runs) > 1 or spent > _SLOW):
+            break
+    return min(runs, key=lambda run: run.seconds)
+
+
+def _within(what: str, stop: np.ndarray, seconds: float, measure: Measure) -> Measured:
+    """Run `measure` with a flag that also goes up after `seconds`, which is then a failure and not a cancellation."""
+    try:
+        with Limited(stop, seconds) as limit:
+            return measure(limit.flag)
+    except Cancelled:
+        if stop[0]:
+            raise
+        raise NumbersFailed(f"{what} was not done after {seconds:g} s and was given up.", "too-slow") from None
+
+
+def _ours(scene: Scene, setting: Setting, stop: np.ndarray) -> Measured:
+    """The motion by one of granchain's methods."""
+    engine = Engine(scene, setting, SAMPLES, stop=stop)
+    began = time.perf_counter()
+    moved = engine.record(PERIODS * SAMPLES).displacement
+    return Measured(moved, engine.counts.rhs, time.perf_counter() - began)
+
+
+def _scipys(scene: Scene, solver: str, tolerance: float, stop: np.ndarray, located: bool = False) -> Measured:
+    """The motion by one of SciPy's solvers."""
+    began = time.perf_counter()
+    moved, counts = solve(scene, solver, tolerance, PERIODS, SAMPLES, stop, located)
+    return Measured(moved, counts.rhs, time.perf_counter() - began)
 
 
 def _distance(moved: np.ndarray, exact: np.ndarray) -> float:

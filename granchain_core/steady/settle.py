@@ -203,6 +203,11 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     return Settled(run, regime, start, origin, False, True)
 
 
+def certified_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
+    """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − rate)."""
+    return method_for(max(1e-13, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)), scene.cuts_tension)
+
+
 def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
     """The certified method on its own orbit, and the bound on what is left to go.
 
@@ -212,8 +217,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
     scene, n = way.scene, way.regime.period
     assert n is not None
     rate = min(0.999, way.regime.multiplier or 0.5)
-    # one period's error e moves the orbit by e/(1 − rate)
-    setting = method_for(max(1e-13, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)), scene.cuts_tension)
+    setting = certified_setting(scene, accuracy, rate)
     engine = Engine(scene, setting, samples, stop=way.stop)
     engine.start(way.engine.state)
     bound = np.inf

@@ -1,0 +1,102 @@
+"""What one effect costs in a step: the same chain's kernel with it and without it, timed by turns.
+
+Two costs are told apart. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The
+live method also splits steps where contacts open or close, so an effect that changes the motion (a preload that keeps
+contacts closed, a chain without damping that never comes to order) costs or saves far more than its own code.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import Cancelled
+from ..integrate import Engine, Setting
+from ..integrate.engine import new_stop
+from ..scene import Scene
+
+#: Pairs of freshly allocated chains, turns for each, and seconds one run of a turn should take. Where an array happens
+#: to lie in memory can make a step a fifth slower, and stays so: hence several chains. About half a second in all.
+_CHAINS, _TURNS, _RUN = 7, 7, 0.004
+CODE, MOTION = "rk4", "rk4-split"
+"""The methods that show the cost of an effect's code, and its cost in the live picture's motion."""
+
+#: Drive periods that are run before, so that the chain is in motion.
+_BEFORE = 3
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A kernel to be timed: a scene, with the energy account in its equations or without."""
+
+    scene: Scene
+    balance: bool = False
+
+
+@dataclass(frozen=True)
+class EffectCost:
+    """Nanoseconds a step with the effect and without, and what it adds: medians over pairs of chains.
+
+    `difference` is taken pair by pair, so that a machine that slows down for a while does not count as an effect;
+    `spread` is the median distance of the pairs from it.
+    """
+
+    with_it: float
+    without: float
+    difference: float
+    spread: float
+
+    @property
+    def percent(self) -> float:
+        """The same in per cent of the step without it."""
+        return 100.0 * self.difference / self.without
+
+
+def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: np.ndarray | None = None,
+                pause: Callable[[], None] | None = None) -> EffectCost:
+    """Time both kernels by turns; `pause` is called before each. Raises `Cancelled`.
+
+    Of a pair's turns the fastest count, because a neighbour on the machine only ever makes a run slower.
+    """
+    flag = new_stop() if stop is None else stop
+    times = np.zeros((_CHAINS, _TURNS, 2))
+    for chain, turn in np.ndindex(_CHAINS, _TURNS):
+        if pause is not None:
+            pause()
+        if flag[0]:
+            raise Cancelled
+        if turn == 0:
+            pair = [_Stepper(variant, method, flag) for variant in (with_it, without)]
+        order = (0, 1) if turn % 2 else (1, 0)  # neither is always the one that runs first
+        for place in order:
+            times[chain, turn, place] = pair[place].nanoseconds_per_step()
+    fastest = times.min(axis=1)
+    middle = np.median(fastest, axis=0)
+    differences = fastest[:, 0] - fastest[:, 1]
+    difference = float(np.median(differences))
+    spread = float(np.median(np.abs(differences - difference)))
+    return EffectCost(float(middle[0]), float(middle[1]), difference, spread)
+
+
+class _Stepper:
+    """A chain in motion that can be timed for a short while."""
+
+    def __init__(self, variant: Variant, method: str, stop: np.ndarray) -> None:
+        self._engine = Engine(variant.scene, Setting(method), 1, balance=variant.balance, stop=stop)
+        self._engine.periods(_BEFORE)
+        self._periods = 1
+        self._periods = max(1, int(_RUN / max(self._seconds(), 1e-7)))
+
+    def _seconds(self) -> float:
+        began = time.perf_counter()
+        self._engine.periods(self._periods)
+        return time.perf_counter() - began
+
+    def nanoseconds_per_step(self) -> float:
+        """One short run."""
+        before = self._engine.counts.steps
+        seconds = self._seconds()
+        return 1e9 * seconds / (self._engine.counts.steps - before)

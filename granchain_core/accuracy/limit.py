@@ -1,0 +1,42 @@
+"""A stop flag that goes up by itself when time is over: one slow setting must not hold up all the others."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+
+from ..integrate.engine import new_stop
+
+_LOOK = 0.01
+"""Seconds between looks at the outer flag and the clock."""
+
+
+class Limited:
+    """`with Limited(stop, seconds) as limit:` gives `limit.flag`, raised with `stop` or after `seconds`.
+
+    Afterwards it is `stop` itself that tells a cancelled computation from one that was merely too slow.
+    """
+
+    def __init__(self, stop: np.ndarray, seconds: float) -> None:
+        self.flag = new_stop()
+        self._stop = stop
+        self._seconds = seconds
+        self._done = threading.Event()
+        self._watcher = threading.Thread(target=self._watch, name="limit", daemon=True)
+
+    def __enter__(self) -> Limited:
+        self._end = time.monotonic() + self._seconds
+        self._watcher.start()
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        self._done.set()
+        self._watcher.join()
+
+    def _watch(self) -> None:
+        while not self._done.wait(_LOOK):
+            if self._stop[0] or time.monotonic() > self._end:
+                self.flag[0] = 1
+                return

@@ -1,0 +1,84 @@
+"""What the naive method would have drawn: the output force in (u, v) with plain steps, beside the certified one.
+
+That is the lesson of the whole page: the picture looks like a result, and nothing in it says that it is wrong.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import NumbersFailed
+from ..integrate import METHODS, Engine, Setting
+from ..lower import Lowered
+from ..scene import Scene
+
+#: Steps in a drive period one would naturally take; the second is what is shown first.
+NATURAL_STEPS = (100, 200, 500, 1000, 2000)
+#: Samples a period of the drawn force; it divides all of them.
+_SAMPLES = 100
+#: Drive periods from rest that are run, and the last ones that are shown.
+_RUN, _SHOWN = 10, 2
+_TRUE = Setting("dop853", tolerance=1e-11)
+
+
+@dataclass(frozen=True)
+class PlainSteps(Setting):
+    """A fixed-step setting by the number of steps in a drive period."""
+
+    steps: int = 0
+
+    def steps_per_period(self, lowered: Lowered, samples: int) -> int:
+        """The steps asked for; they must be a multiple of `samples`."""
+        return self.steps
+
+
+@dataclass(frozen=True, eq=False)
+class Naive:
+    """One naive method at one step: the output force it draws [N] and its largest error over the largest force.
+
+    `failure` says why there is none.
+    """
+
+    method: str
+    steps: int
+    error: float
+    force: np.ndarray
+    failure: str = ""
+
+
+@dataclass(eq=False)
+class Lesson:
+    """The certified output force [N] over time [s], the last periods of a run from rest, and what was drawn instead."""
+
+    time: np.ndarray
+    force: np.ndarray
+    drawn: list[Naive] = field(default_factory=list)
+
+
+def lesson(scene: Scene, stop: np.ndarray) -> Lesson:
+    """Run the naive methods at natural steps. Raises `NumbersFailed` where the truth itself fails, and `Cancelled`."""
+    first = (_RUN - _SHOWN) * _SAMPLES
+    true = output_force(scene, _TRUE, stop)[first:]
+    time = (first + np.arange(len(true))) / _SAMPLES * scene.period
+    found = Lesson(time, true)
+    largest = float(np.abs(true).max())
+    for method in METHODS.values():
+        if method.variables != "uv":
+            continue
+        for steps in NATURAL_STEPS:
+            try:
+                force = output_force(scene, PlainSteps(method.name, steps=steps), stop)[first:]
+            except NumbersFailed as problem:
+                found.drawn.append(Naive(method.name, steps, float("inf"), np.zeros(0), problem.sentence))
+                continue
+            error = float(np.abs(force - true).max()) / largest if largest > 0.0 else 0.0
+            found.drawn.append(Naive(method.name, steps, error, force))
+    return found
+
+
+def output_force(scene: Scene, setting: Setting, stop: np.ndarray) -> np.ndarray:
+    """Total force on the wall from rest [N], both ends of every sample."""
+    engine = Engine(scene, setting, _SAMPLES, stop=stop)
+    return engine.record(_RUN * _SAMPLES).force[:, -1] * engine.lowered.scales.force

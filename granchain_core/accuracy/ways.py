@@ -1,0 +1,65 @@
+"""The methods and settings that are measured: the whole table of methods, and SciPy's solvers beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ..integrate import METHODS, Setting
+from .scipy_methods import SOLVERS
+
+_REFINES = (1, 2, 4, 8, 16)
+_TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+_SCIPY_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
+SCIPY = "scipy "
+"""What the names of SciPy's solvers begin with."""
+
+
+@dataclass(frozen=True)
+class Way:
+    """A method as it is presented: `family` is "granchain", "naive" (in (u, v)) or "scipy"."""
+
+    name: str
+    title: str
+    family: str
+    order: float
+    restrictions: str
+    reference: str
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One setting of one way; `value` is its refinement of the live steps, or its tolerance."""
+
+    way: str
+    label: str
+    value: float
+    setting: Setting | None
+
+
+def ways() -> dict[str, Way]:
+    """Everything that can be measured, by name: the table of methods as it is now, then SciPy's solvers."""
+    own = [Way(m.name, m.title, "naive" if m.variables == "uv" else "granchain", m.order, m.restrictions, m.reference)
+           for m in METHODS.values()]
+    others = [Way(SCIPY + s.name, s.title, "scipy", s.order, s.restrictions, s.reference) for s in SOLVERS.values()]
+    return {way.name: way for way in (*own, *others)}
+
+
+def label(setting: Setting) -> str:
+    """A setting in words."""
+    if METHODS[setting.method].adaptive:
+        return f"tolerance {setting.tolerance:.2g}"
+    return f"{setting.refine:.3g} × the live steps"
+
+
+def choices() -> Iterator[Choice]:
+    """Every setting of every way, the cheap ones of each first."""
+    for method in METHODS.values():
+        values = _TOLERANCES if method.adaptive else _REFINES
+        for value in values:
+            setting = (Setting(method.name, tolerance=value) if method.adaptive
+                       else Setting(method.name, refine=int(value)))
+            yield Choice(method.name, label(setting), float(value), setting)
+    for solver in SOLVERS:
+        for tolerance in _SCIPY_TOLERANCES:
+            yield Choice(SCIPY + solver, f"tolerance {tolerance:g}", tolerance, None)
