@@ -14,7 +14,8 @@ from .fixed_step import PATIENCE, drive_displacement, drive_velocity, step
 from .jit import kernel, term
 from .motion import contact_force, copy, motion, stored_energy
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
-from .wide import Wide, wide_steps
+from .wide import Wide
+from .wide_run import wide_steps
 
 #: Outcome of a kernel: 0 done, positive why it stopped.
 DONE, CANCELLED, NOT_FINITE, STEP_TOO_SMALL, CHATTER = 0, 1, 2, 3, 4
