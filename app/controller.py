@@ -246,7 +246,7 @@ class Controller:
             self.say("")
         self._describe()
         if name != "f":
-            self.curves.changed(self.session.scene)
+            self.curves.moved(self.session.scene)
 
     def switched(self, name: str, on: bool) -> None:
         """Switch an effect; the knobs follow."""

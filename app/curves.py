@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 
 from panel.io import unlocked
 
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Measured, stated_features
+from granchain_core.steady.curve import draft_curve
 
 from .compiling import CERTIFIED, COMPILER, CURVE, LIVE
+from .jobs import LatestWins, Stop
 from .session import rig_beads, slider_range
 from .show import show_regime
-from .sweep import DIRECTIONS, Progress, Sweep, without_frequency
+from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid, without_frequency
 from .views.shell import Views
 
 _QUIET = 350
@@ -30,6 +33,8 @@ class Curves:
         self._later = later
         self._after = after
         self._sweep = Sweep(self._report, lambda error: later(self._raise, error), busy)
+        self._drafts = LatestWins(partial(later, self._draw_draft), partial(later, self._raise))
+        self._begun = 0
         self._wanted = {name: name == "rest" for name in _SETTINGS}
         self._visible = True
         self._computed: dict[str, Scene] = {}
@@ -49,8 +54,24 @@ class Curves:
         self._show_features(scene)
         self.changed(scene)
 
+    def moved(self, scene: Scene) -> None:
+        """Another knob than f moves: a draft is drawn at once, the curve itself when the knob rests."""
+        self.changed(scene)
+        if self._visible and self._wanted["rest"] and COMPILER.has(scene, CURVE):
+            self._drafts.submit(partial(self._draft, scene, self._begun))
+
+    @staticmethod
+    def _draft(scene: Scene, begun: int, stop: Stop) -> Iterator[tuple[int, list[CurvePoint]]]:
+        yield begun, draft_curve(scene, grid(scene, COARSE), stop)
+
+    def _draw_draft(self, drafted: tuple[int, list[CurvePoint]]) -> None:
+        begun, points = drafted
+        if points and begun == self._begun:  # else the curve itself is on its way
+            with unlocked():
+                self._views.curve.redraw("rest", points)
+
     def changed(self, scene: Scene) -> None:
-        """Another knob than f has moved."""
+        """What is shown has changed."""
         self._sweep.cancel()
         self._due += 1
         self._after(_QUIET, self._begin_if_last, scene, self._due)
@@ -113,6 +134,7 @@ class Curves:
     def close(self) -> None:
         """The visitor left."""
         self._sweep.cancel()
+        self._drafts.close()
 
     def measured(self, measured: Measured | None) -> None:
         """The visitor's own data."""
@@ -131,6 +153,7 @@ class Curves:
             self._views.curve.show_directions(shown)
             self._views.curve.begin(missing)
             self._views.curvebar.display(**self._wanted, done=0.0 if missing else -1.0)
+        self._begun += bool(missing)
         self._remaining, self._done = list(missing), 0.0 if missing else -1.0
         self._sweep.start(scene, missing)
 

@@ -14,7 +14,7 @@ from .jobs import BACKGROUND
 from .session import slider_range
 
 DIRECTIONS = ("rest", "up", "down")
-_COARSE, _SWEEP = 75, 150
+COARSE, _SWEEP = 75, 150
 _PASSES = 2
 _PATIENCE = 0.01
 """Seconds between looks whether the picture in front is done; a curve never competes with a moving knob."""
@@ -88,7 +88,7 @@ class Sweep:
 
     def _from_rest(self, scene: Scene, direction: str, stop: threading.Event) -> None:
         found: list[CurvePoint] = []
-        frequencies = grid(scene, _COARSE)
+        frequencies = grid(scene, COARSE)
         finest = 0.26 * float(frequencies[1] - frequencies[0])
         for number in range(_PASSES + 1):
             low, high = number / (_PASSES + 1), (number + 1) / (_PASSES + 1)

@@ -44,6 +44,11 @@ def _marker(name: str, piece: str) -> Path:
     return CACHE_FOLDER / f"compiled-{name}-{piece}".replace(" ", "-").replace(",", "")
 
 
+def mark_warm(shown: Scene, piece: str) -> None:
+    """Note that a piece of the kernels of this scene's structure has been compiled."""
+    _marker(structure(shown), piece).touch()
+
+
 def warm(shown: Scene, pieces: Iterable[str] = PIECES) -> None:
     """Compile and cache the kernels of one scene's structure by running them shortly."""
     short = shown.evolve(f=max(shown.f, 1000.0))
@@ -55,7 +60,7 @@ def warm(shown: Scene, pieces: Iterable[str] = PIECES) -> None:
             engine = Engine(short, Setting(method, tolerance=1e-3), 2, balance=piece.endswith("account"))
             engine.periods(1)
             engine.record(2)
-        _marker(structure(shown), piece).touch()
+        mark_warm(shown, piece)
 
 
 def _warm_curve(short: Scene) -> None:

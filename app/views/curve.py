@@ -143,6 +143,12 @@ class Curve:
         self._rescale()
         self._draw(direction)
 
+    def redraw(self, direction: str, points: list[CurvePoint]) -> None:
+        """A whole curve in place of what there is of it, drawn while a knob moves."""
+        self._whole = self._whole and direction != "rest"
+        self._points[direction] = []
+        self.add(direction, points, covers=True)
+
     def nature(self, frequency: float) -> str:
         """What this frequency is on the whole curve from rest: "resonance", "anti-resonance" or ""."""
         if not self._whole:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from ..integrate import METHODS, Engine, Setting
-from ..kernels.jit import CACHE_FOLDER
 from ..scene import Scene
-from ..warm import structure
+from ..warm import mark_warm
 from .effect_cost import CODE, MOTION
 
 #: Names of these pieces of a structure's kernels, beside those of `granchain_core.warm`.
@@ -22,4 +21,4 @@ def compile_piece(scene: Scene, piece: str) -> None:
     else:
         for name in (CODE, MOTION):
             Engine(short, Setting(name), 1, balance=piece == ACCOUNT_PIECE).periods(1)
-    (CACHE_FOLDER / f"compiled-{structure(scene)}-{piece.replace(' ', '-')}").touch()
+    mark_warm(scene, piece)

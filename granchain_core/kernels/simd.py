@@ -53,6 +53,7 @@ def _splat(builder, kind, value):
 
 
 def as_vector(builder, wanted, kind, value):
+    """A vector as it is, a number in all lanes."""
     return value if isinstance(kind, VectorType) else _splat(builder, wanted.ir, value)
 
 

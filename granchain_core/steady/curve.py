@@ -19,6 +19,7 @@ from ..integrate.engine import new_stop
 from ..integrate.lane_block import can_share_lanes
 from ..scene import Scene
 from .lane_curve import lane_results
+from .lane_job import LaneResult
 from .regime import Regime
 from .settle import Settling, relax, settle
 
@@ -206,12 +207,28 @@ def _points(scenes: _Shared, flag: np.ndarray) -> Iterator[CurvePoint]:
         return
     rest_of_them = itertools.chain([first], scenes)
     if can_share_lanes(first):
-        for r in lane_results(rest_of_them, flag):
-            yield CurvePoint(r.scene.f, float(r.tops[1]), float(r.tops[2]), float(r.tops[0]), r.regime,
-                             r.error_estimate, r.state, r.failure)
+        yield from (_from_lane(result) for result in lane_results(rest_of_them, flag))
         return
     for one in rest_of_them:
         yield _safe_point(one, None, flag)
+
+
+def _from_lane(result: LaneResult) -> CurvePoint:
+    tops = result.tops
+    return CurvePoint(result.scene.f, float(tops[1]), float(tops[2]), float(tops[0]), result.regime,
+                      result.error_estimate, result.state, result.failure)
+
+
+def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: np.ndarray) -> list[CurvePoint]:
+    """A first impression of the curve from rest, on one core, to be drawn while a knob still moves.
+
+    Coarse steps and few periods: no errors are claimed, and what is not periodic by then is unsettled. Empty for scenes
+    that lanes cannot run. `stop` is a flag from `new_stop`. Raises `BadInput` and `Cancelled`.
+    """
+    if not can_share_lanes(scene):
+        return []
+    scenes = iter(checked_frequencies(scene, frequencies))
+    return [_from_lane(result) for result in lane_results(scenes, stop, draft=True)]
 
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",

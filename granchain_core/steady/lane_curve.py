@@ -19,7 +19,7 @@ from ..integrate.lane_block import NEVER, LaneBlock, scaled_state, state_of
 from ..kernels.lanes import LANES
 from ..lower import lower
 from ..scene import Scene
-from .lane_job import Job, LaneResult, failed, look_coarse
+from .lane_job import Job, LaneResult, draft_result, failed, look_coarse
 from .lyapunov import exponents_in_pairs
 from .regime import find_period, irregular
 from .settle import MOST_PERIODS, SLOW_PERIODS
@@ -28,6 +28,8 @@ from .settle import MOST_PERIODS, SLOW_PERIODS
 #: which is what is claimed.
 _FINER = 3
 _COARSE = 1.0
+#: Periods after which a draft gives up.
+_DRAFT = 300
 #: Blocks and periods a block for the Lyapunov exponent.
 _BLOCKS, _BLOCK = 10, 20
 #: Periods over which the largest force of an irregular motion is taken.
@@ -37,8 +39,9 @@ _IRREGULAR_PERIODS = 100
 class _Lanes:
     """A block of lanes with the jobs in them, those waiting for a lane and those whose regime is in doubt."""
 
-    def __init__(self, first: Scene, scenes: Iterator[Scene], stop: np.ndarray) -> None:
+    def __init__(self, first: Scene, scenes: Iterator[Scene], stop: np.ndarray, draft: bool) -> None:
         self.block = LaneBlock(first, stop)
+        self.draft = draft
         self.stop = stop
         self.waiting = [_new_job(first)]
         self.scenes = scenes
@@ -57,7 +60,7 @@ class _Lanes:
     def _start(self, lane: int, job: Job) -> None:
         """The coarse run is looked at when it has settled, the finer one when it has forgotten the coarse one."""
         if job.coarse is None:
-            look = min(MOST_PERIODS, job.affordable_periods - job.run)
+            look = min(_DRAFT if self.draft else MOST_PERIODS, job.affordable_periods - job.run)
             self.block.put(lane, job.lowered, job.y, _COARSE, look)
             return
         regime, tops = job.coarse
@@ -72,6 +75,10 @@ class _Lanes:
         if not finite:
             self._free(lane)
             return failed(job)
+        if self.draft:
+            result = draft_result(job, self.block, lane)
+            self._free(lane)
+            return result
         outcome = look_coarse(job, self.block, lane) if job.coarse is None else job.fine_result(self.block, lane)
         if outcome is None:
             return None
@@ -108,15 +115,16 @@ class _Lanes:
                 yield LaneResult(job.scene, job.tops, regime, None, state_of(job.lowered, y))
 
 
-def lane_results(scenes: Iterator[Scene], stop: np.ndarray) -> Iterator[LaneResult]:
+def lane_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False) -> Iterator[LaneResult]:
     """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
 
-    Raises `Cancelled`.
+    A draft ends with the coarse run and after few periods: without errors, and what is not periodic by then is called
+    unsettled. Raises `Cancelled`.
     """
     first = next(scenes, None)
     if first is None:
         return
-    lanes = _Lanes(first, scenes, stop)
+    lanes = _Lanes(first, scenes, stop, draft)
     while True:
         lanes.fill()
         if len(lanes.doubtful) >= LANES // 2 or (lanes.doubtful and not lanes.jobs):

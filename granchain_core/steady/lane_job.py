@@ -74,6 +74,17 @@ class Job:
         return LaneResult(self.scene, tops, replace(regime, distance=distance), error, state)
 
 
+def draft_result(job: Job, block: LaneBlock, lane: int) -> LaneResult:
+    """What the coarse run alone has come to."""
+    run = int(block.state.periods[lane])
+    period, rate, distance = block.state.seen[lane]
+    if period <= 0:
+        return unsettled(job, block, lane, run)
+    regime = Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run)
+    tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
+    return LaneResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]))
+
+
 def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | None:
     """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
     here = int(block.state.periods[lane])

@@ -73,6 +73,28 @@ async (seconds) => {
 """
 
 
+DRAG = """
+async (seconds) => {
+  const drawn = [];
+  const start = performance.now();
+  for (const document of Bokeh.documents)
+    for (const model of document._all_models.values())
+      if (model.data && model.data.regime !== undefined)
+        model.properties.data.change.connect(() => {
+          if (model.data.frequency.length > 20)
+            requestAnimationFrame(() => drawn.push(performance.now() - start));
+        });
+  const field = findDeep('[data-knob="A0"] input[type="range"]');
+  while (performance.now() - start < 1000 * seconds) {
+    const key = Math.floor((performance.now() - start) / 2000) % 2 ? "ArrowLeft" : "ArrowRight";
+    field.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, composed: true }));
+    await new Promise((done) => setTimeout(done, 50));
+  }
+  return drawn;
+}
+"""
+
+
 def quantile(values: list[float], share: float) -> float:
     """The value below which `share` of the values lie."""
     return statistics.quantiles(values, n=100, method="inclusive")[round(100 * share) - 1]
@@ -89,6 +111,14 @@ def settled_latency(page: Page, steps: int) -> dict[str, Any]:
             unchanged += not result["changed"]
     return {"steps": steps, "p50_ms": quantile(times, 0.5), "p95_ms": quantile(times, 0.95),
             "max_ms": max(times), "unchanged_pictures": unchanged}
+
+
+def curve_redraws(page: Page, seconds: float) -> dict[str, Any]:
+    """Resonance curves drawn while A0 is moved twenty times a second."""
+    drawn = page.evaluate(DRAG, seconds)
+    gaps = [b - a for a, b in pairwise(drawn)]
+    return {"seconds": seconds, "curves_per_second": len(drawn) / seconds,
+            "gap_p95_ms": quantile(gaps, 0.95) if len(gaps) > 1 else None}
 
 
 def live_figures(page: Page, seconds: float) -> dict[str, Any]:
@@ -119,6 +149,7 @@ def main() -> None:
             page.evaluate(LISTEN)
             page.wait_for_timeout(15_000)
             figures = {"settled": settled_latency(page, options.steps),
+                       "drag_A0": curve_redraws(page, 10.0),
                        "live": live_figures(page, options.seconds)}
             browser.close()
     print(json.dumps(figures, indent=2))
