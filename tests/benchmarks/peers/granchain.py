@@ -22,7 +22,7 @@ from ..problem import Solved
 
 #: Its fixed-step methods and the multiples of the live method's steps that are tried.
 FIXED = ("rk4-split", "rk4")
-REFINES = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 96, 128, 256)
+REFINES = (0.5, 0.6, 0.7, 0.8, 1, 1.2, 1.4, 1.6, 2, 2.5, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 96, 128, 256)
 #: The reference: the certified method at its finest; for the curve, where 300 points are needed, coarser.
 FINEST, CURVE_TOLERANCE = 3e-15, 1e-9
 
@@ -85,7 +85,7 @@ def _returns(strobes: np.ndarray, near: float = 1e-6) -> bool:
 def lane_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
     """Exactly 100 + 20 periods of every point in lanes on this thread: longest first, places filled as they end."""
     lowered = [lower(_scene(f)) for f in sorted(frequencies)]
-    refine, total = int(refine), problem.PASSED + problem.WATCHED
+    total = problem.PASSED + problem.WATCHED
     values, rest = np.zeros(len(lowered)), np.zeros(2 * lowered[0].row)
     began = time.perf_counter()
     block = LaneBlock(lowered[0].scene, new_stop())
@@ -107,16 +107,16 @@ def lane_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
         values[place[lane]] = block.tops(lane, problem.WATCHED)[2]
         fill(lane)
     seconds = time.perf_counter() - began
-    evaluations = 4 * total * refine * sum(one.steps_per_period() for one in lowered)
+    evaluations = 4 * total * round(refine * sum(one.steps_per_period() for one in lowered))
     order = np.argsort(np.argsort(frequencies))
     return Peaks(values[order], seconds, evaluations)
 
 
 def cases() -> list[Case]:
     """Every method of the engine that is worth it, and the lanes."""
-    found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(Setting(m, refine=int(r))), unit="refine")
+    found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(Setting(m, refine=r)), unit="refine")
              for m in FIXED]
     found.append(Case("granchain dop853", "w", rungs(1e-4, 1e-13, 4),
                       lambda t: _recording(Setting("dop853", tolerance=t))))
-    found.append(Case("granchain lanes", "w", peaks=lane_peaks, curve_ladder=(1, 2, 3, 4, 5, 6), unit="refine"))
+    found.append(Case("granchain lanes", "w", peaks=lane_peaks, curve_ladder=(0.5, 0.6, 0.7, 0.85, 1, 1.25, 1.5, 2, 3, 4, 5, 6), unit="refine"))
     return found
