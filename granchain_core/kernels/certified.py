@@ -16,8 +16,9 @@ from .jit import kernel
 from .motion import copy
 from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
 
-#: A step ends at most this overlap behind the event it was aimed at, in units of the largest displacement.
-_BEHIND = 1e-14
+#: A step is aimed to end this overlap behind the event, some roundings of the largest displacement, and lands within
+#: a few times that: the moment of a contact is then as exact as its speed lets it be.
+_BEHIND, _NEAR = 1e-15, 4.0
 #: No contact opens and closes more often than this in one period unless it chatters.
 _EVENTS_PER_CONTACT = 2000
 #: Growth and shrinkage of the step from one to the next.
@@ -134,7 +135,7 @@ def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
     target = -behind if before else behind
     for _ in range(6):
         d = overlap(slots.preload, work.end, c)
-        if (d > 0.0) != before and abs(d) < max(100.0 * behind, 1e-3 * method.tolerance * work.scale[0]):
+        if (d > 0.0) != before and abs(d) < _NEAR * abs(target):
             break
         approach = work.k[STAGES, c] - work.k[STAGES, c + 1]
         change = (target - d) / approach if approach != 0.0 else 0.0

@@ -103,6 +103,8 @@ def test_drive_displacement_column_is_exact_at_any_time():
 def test_stop_flag_ends_a_long_run_soon(method, recording):
     """A flag raised from another thread ends the kernel, also in the middle of a long period."""
     stop = new_stop()
+    quick = Engine(scene("sec2").evolve(f=1e5, N=300), Setting(method, tolerance=1e-3), 1)
+    quick.record(1) if recording else quick.periods(1)  # compiling asks no flag
     slow = Engine(scene("sec2").evolve(f=0.5, N=300), Setting(method, refine=16, tolerance=1e-11), 1, stop=stop)
     raised = [0.0]
 

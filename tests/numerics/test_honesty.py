@@ -1,73 +1,81 @@
-"""Asked for an accuracy, `run` reaches it and its estimate bounds the error, on random mild scenes.
-
-Thirty scenes by default; GRANCHAIN_SCENES=100 runs the hundred of the issue. Figures are printed with -s.
-"""
+"""The errors that `run` and the curve state bound the true ones, on random scenes (honesty.py, curve_honesty.py)."""
 
 from __future__ import annotations
 
 import functools
-import os
 
+import curve_honesty
+import honesty
 import numpy as np
 import pytest
 
-from granchain_core import Scene, run, scene
+from granchain_core import Run, run, scene
 
-COUNT = int(os.environ.get("GRANCHAIN_SCENES", "30"))
-ASKED = (1e-4, 1e-6, 1e-8)
-
-
-def mild_scene(rng: np.random.Generator) -> Scene:
-    """A dissipative chain whose errors do not grow exponentially over the four periods looked at.
-
-    The rig without its foundation is irregular at every frequency and with it above about 120 Hz (PHYSICS trap 8); with
-    Kuwabara–Kono damping, which hardly damps small overlaps, it amplifies errors too.
-    """
-    laws, kappas = ["linear", "tsuji", "kuwabara-kono"], [0.0, 1e-3, 5e-3]
-    common = {"N": int(rng.integers(1, 21)), "wall": str(rng.choice(["bead", "same-material", "rigid"]))}
-    if rng.random() < 0.6:
-        return scene("sec2").evolve(
-            f=10.0 ** rng.uniform(2.0, 3.4), A0=10.0 ** rng.uniform(-7.0, -5.7), D=rng.uniform(50.0, 300.0),
-            kappa=float(rng.choice(kappas)), dissipation=str(rng.choice(laws)), **common)
-    return scene("rig").evolve(
-        f=rng.uniform(20.0, 100.0), A0=rng.uniform(6e-6, 13e-6), D=rng.uniform(25.0, 150.0),
-        kappa=float(rng.choice(kappas[1:])), dissipation=str(rng.choice(laws[:2])), **common)
+#: By what factor a stated error may at most be below the true one.
+AT_MOST = 4.0
+UNCUT = [s for s in honesty.FEW if s[1] == "allowed"]
+CUT = [s for s in honesty.FEW if s[1] == "cut"]
 
 
 @functools.cache
-def figures() -> np.ndarray:
-    """(scenes, accuracies, 2): true error over what was asked, true error over the estimate."""
-    rng = np.random.default_rng(20240611)
-    sizes = {"periods": 0, "record": 4, "samples": 16}
-    found, refused = [], 0
-    while len(found) < COUNT:
-        chosen = mild_scene(rng)
-        true = run(chosen.evolve(accuracy=1e-11), **sizes)
-        if true.error_estimate > 1e-9:  # a tenth of the finest asked: below that it is no yardstick
-            refused += 1
-            assert refused <= COUNT // 10, "too many of these scenes amplify errors to be called mild"
-            continue
-        row = []
-        for asked in ASKED:
-            result = run(chosen.evolve(accuracy=asked), **sizes)
-            error = np.abs(result.displacement - true.displacement).max() / np.abs(true.displacement).max()
-            row.append((error / asked, error / result.error_estimate))
-        found.append(row)
-    return np.array(found)
+def uncut() -> list:
+    """Forty random scenes without a tension cut."""
+    return [v for v in honesty.verdicts(40, 20, UNCUT) if v is not None]
 
 
-@pytest.mark.parametrize("asked", ASKED)
-def test_true_error_is_below_what_was_asked(asked):
-    """In at least 95 % of the scenes (the issue's own figure)."""
-    ratio = figures()[:, ASKED.index(asked), 0]
-    print(f"asked {asked:g}: {np.mean(ratio < 1):.1%} below, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
-    assert np.mean(ratio < 1.0) >= 0.95
+def excess(found: list) -> np.ndarray:
+    """True errors over what may be, the stated error and three times how well the truth is known."""
+    return np.array([v.error / (v.stated + 3.0 * v.known) for v in found])
 
 
-@pytest.mark.parametrize("asked", ASKED)
-def test_reported_estimate_bounds_the_true_error(asked):
-    """In at least 95 % of the scenes the true error is below the reported estimate; elsewhere by a small factor only."""
-    ratio = figures()[:, ASKED.index(asked), 1]
-    print(f"asked {asked:g}: {np.mean(ratio <= 1):.1%} bounded, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
-    assert np.mean(ratio <= 1.0) >= 0.95
-    assert ratio.max() < 5.0  # the order is uneven at events: two computations may agree better than either is right
+def test_the_stated_error_bounds_the_true_one():
+    """At any accuracy from 1e-3 to 1e-9: in 99 % of a thousand scenes (`python -m tests.numerics.honesty`), which is one
+    of these forty at most; two computations that agree by chance are then wrong by a small factor only."""
+    ratio = excess(uncut())
+    print(f"{len(ratio)} scenes: {np.mean(ratio <= 1.0):.1%} bounded, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
+    assert (ratio > 1.0).sum() <= 1
+    assert ratio.max() < AT_MOST
+
+
+def test_a_run_that_is_done_is_as_accurate_as_asked():
+    """The true error is below what was asked, within the same small factor, and in 95 % of the scenes without it."""
+    met = np.array([v.error / v.asked for v in uncut() if v.status == "done"])
+    assert np.mean(met <= 1.0) >= 0.95
+    assert met.max() < AT_MOST
+
+
+def test_most_scenes_are_done():
+    """Only motions that amplify errors beyond what any number of steps can mend are not."""
+    assert np.mean([v.status == "done" for v in uncut()]) > 0.8
+
+
+@pytest.mark.xfail(strict=False, reason="with a cut the fixed step is of order 1, so that the finer of two computations is as "
+                                        "wrong as they differ; the certified method does better there")
+def test_the_stated_error_bounds_the_true_one_with_a_tension_cut():
+    """The same demand where tension is cut."""
+    ratio = excess([v for v in honesty.verdicts(20, 21, CUT) if v is not None])
+    assert (ratio > 1.0).sum() <= 1
+    assert ratio.max() < AT_MOST
+
+
+def same_steps() -> Run:
+    """A gentle, pressed motion asked for so coarsely that the largest step alone decides: two computations are one."""
+    chain = scene("sec2").evolve(F0=1.0, A0=1e-8, f=3000.0, accuracy=1e-3)
+    return run(chain, periods=0, record=3, samples=16, method="dop853")
+
+
+@pytest.mark.xfail(strict=False, reason="two tolerances that take the same steps differ by nothing, which is stated as the error")
+def test_two_computations_by_the_same_steps_are_no_evidence():
+    """An error of exactly nothing is never true: no double-precision motion is that good."""
+    assert same_steps().error_estimate > 0.0
+
+
+@pytest.mark.parametrize("base", ["sec2", "rig"])
+def test_the_error_stated_by_a_curve_bounds_the_true_one(base):
+    """Periodic points of the lanes at random drive, A₀, D and k against the certified orbit, every one of them."""
+    found = list(curve_honesty.points(40, 9, base))
+    assert len(found) >= 20
+    ratio = np.array([p.error / p.stated for p in found])
+    print(f"{base}: {len(found)} points, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
+    assert (ratio <= 1.0).all()
+    assert max(p.stated for p in found) < 1e-2

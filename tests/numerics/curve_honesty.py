@@ -1,0 +1,92 @@
+"""Program: is the error that a curve states for a periodic point above the true one? Random drive, A₀, D and k.
+
+    python -m tests.numerics.curve_honesty --count 1000 [--seed 1]
+
+Points come from the lanes, from rest. True is the certified method on the same orbit: from the point's state through
+as many periods as it takes until the orbit repeats itself to 1e-9, then its largest output force.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from granchain_core import Scene, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.engine import new_stop
+from granchain_core.steady.lane_curve import lane_results
+
+#: The orbit repeats itself to this, or the point is not judged after this many periods.
+REPEATS, PATIENCE = 1e-9, 3000
+#: Instants in a period at which the true force is looked at: one that jumps is then missed by a few 1e-4 of its rise.
+FINE = 8192
+
+
+@dataclass(frozen=True)
+class Point:
+    """A periodic point: relative error of its output force, what is stated of it, its scene and period."""
+
+    error: float
+    stated: float
+    scene: Scene
+    period: int
+
+
+def random_scene(rng: np.random.Generator, base: str) -> Scene:
+    """Section 2's chain or the rig with other springs and dampers, all of one structure and one N."""
+    if base == "sec2":
+        return scene("sec2").evolve(f=10.0 ** rng.uniform(2.0, 3.4), A0=10.0 ** rng.uniform(-7.0, -5.5),
+                                    D=10.0 ** rng.uniform(1.3, 2.6), kappa=10.0 ** rng.uniform(-4.0, -2.0))
+    return scene("rig").evolve(f=rng.uniform(20.0, 120.0), A0=rng.uniform(5e-6, 13e-6), D=rng.uniform(20.0, 150.0),
+                               kappa=10.0 ** rng.uniform(-3.3, -2.0))
+
+
+def true_force(chosen: Scene, state, period: int) -> float | None:
+    """Largest output force on the orbit through `state`, scaled; None where it does not come to repeat itself."""
+    engine = Engine(chosen, Setting("rk4-split", refine=16), 1)
+    engine.start(state)
+    for _ in range(PATIENCE // (8 * period)):
+        strobes, _ = engine.periods(8 * period)
+        change = np.abs(strobes[-1] - strobes[-1 - period]).max(axis=1) / np.abs(strobes).max(axis=(0, 2))
+        if change.max() < REPEATS:
+            exact = Engine(chosen, Setting("dop853", tolerance=1e-11), FINE)
+            exact.start(engine.state)
+            exact.record(period * FINE)
+            return float(exact.tops[1])
+    return None
+
+
+def points(count: int, seed: int, base: str) -> Iterator[Point]:
+    """Periodic points among `count` random scenes, judged."""
+    rng = np.random.default_rng(seed)
+    for r in lane_results((random_scene(rng, base) for _ in range(count)), new_stop()):
+        if r.regime.name != "periodic" or r.failure:
+            continue
+        top = true_force(r.scene, r.state, r.regime.period)
+        if top is not None:
+            unit = r.scene.K * r.scene.A0**1.5
+            yield Point(abs(r.tops[1] / unit / top - 1.0), r.error_estimate, r.scene, r.regime.period)
+
+
+def main() -> None:
+    """Print how many are bounded, and those that are not."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=1)
+    words = parser.parse_args()
+    for base in ("sec2", "rig"):
+        found = list(points(words.count, words.seed, base))
+        ratio = np.array([p.error / p.stated for p in found])
+        print(f"{base}: {len(found)} periodic points of {words.count}, {np.mean(ratio <= 1.0):.2%} bounded; true/stated median "
+              f"{np.median(ratio):.2g}, worst {ratio.max():.2g}; stated median {np.median([p.stated for p in found]):.1e}")
+        for p in found:
+            if p.error > p.stated:
+                s = p.scene
+                print(f"  true {p.error:.2e} stated {p.stated:.2e} period {p.period}: f={s.f!r} A0={s.A0!r} D={s.D!r} k={s.k!r}")
+
+
+if __name__ == "__main__":
+    main()
