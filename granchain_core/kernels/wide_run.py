@@ -13,6 +13,7 @@ from .jit import inlined, kernel
 from .peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from .simd import at, blank, positive_mask, store
 from .simd_math import larger
+from .subnormals import flush_subnormals, restore_subnormals
 from .wide import (
     BEGIN,
     BLOCK,
@@ -85,7 +86,7 @@ def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, peaks, counts,
 
     The stop flag leaves them incomplete.
     """
-    rows, row = wide.rows, row_of(wide, slots)
+    rows, row, before = wide.rows, row_of(wide, slots), flush_subnormals()
     m = slots.chain.inverse_mass.size
     for i in range(m):
         rows[U, i], rows[W, i] = y[i], y[m + i]
@@ -117,6 +118,7 @@ def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, peaks, counts,
         watch_block(wide.forces[2], block, top_elastic, peaks, OUTPUT_ELASTIC)
         if stop[0] != 0:
             break
+    restore_subnormals(before)
     counts[0] += count
     counts[1] += 4 * count
     store_at(wide, BEGIN, x)
