@@ -12,6 +12,7 @@ from ..kernels import sampling
 from ..kernels.along import Along
 from ..kernels.certified import run_certified
 from ..kernels.dop853 import ALL_STAGES, Dop853, Work
+from ..kernels.dopri5 import Dopri5, run_without_events
 from ..kernels.events import ENDS
 from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.motion import place
@@ -32,6 +33,8 @@ _LEAST_STEPS = 16
 _LARGEST_TABLE = 200_000
 
 _FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split, "rk4-naive": Rk4Naive, "verlet-naive": VerletNaive}
+#: Adaptive methods with the kernel that runs them.
+_ADAPTIVE: dict[str, Any] = {"dop853": (Dop853, run_certified), "dopri5": (Dopri5, run_without_events)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +157,8 @@ class Engine:
 
     def _prepare_adaptive(self) -> None:
         lo = self.lowered
-        self.method = Dop853(self.setting.tolerance, lo.period / _LEAST_STEPS)
+        kind, self._run = _ADAPTIVE[self.setting.method]
+        self.method = kind(self.setting.tolerance, lo.period / _LEAST_STEPS)
         size = lo.size
         self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
                          slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2), forces=lo.forces())
@@ -220,9 +224,9 @@ class Engine:
         every = self.grid // self.samples
         lo, work = self.lowered, self.work
         if self._adaptive:
-            status, rows = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, work, self.clock,
-                                         self.grid_index, count * every, self.grid, every, samples, self.peaks,
-                                         self.counts.array, self.stop)
+            status, rows = self._run(self.method, lo.slots, lo.beta, lo.period, self.y, work, self.clock,
+                                     self.grid_index, count * every, self.grid, every, samples, self.peaks,
+                                     self.counts.array, self.stop)
         else:
             status, rows = sampling.run_samples(self.method, lo.slots, self.drive, self.h, self.y, work,
                                                 self.grid_index, every, samples, self.peaks, self.counts.array,
@@ -263,9 +267,9 @@ class Engine:
         strobes[0] = self.y[:row], self.work.k[0, :row]
         for p in range(len(tops)):
             next_period(self.peaks)
-            status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
-                                      self.grid, self.grid, self.grid if watch else 0, keep, self.peaks,
-                                      self.counts.array, self.stop)
+            status, _ = self._run(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
+                                  self.grid, self.grid, self.grid if watch else 0, keep, self.peaks,
+                                  self.counts.array, self.stop)
             self.raise_for(status, p)
             strobes[p + 1] = self.y[:row], self.work.k[0, :row]
             if watch:

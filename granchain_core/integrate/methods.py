@@ -15,7 +15,8 @@ class Method:
 
     `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
     for, `order_with_cut` where tension is cut: the force's kink at F = 0 and its end at δ = 0 are no events that a
-    fixed step is split at. `variables` are "uw" or "uv".
+    fixed step is split at. All are measured, the least of the damping laws, for adaptive methods per mean step
+    (tests/numerics/test_orders.py). `variables` are "uw" or "uv".
     """
 
     name: str
@@ -67,8 +68,12 @@ METHODS: dict[str, Method] = {
         Method("rk4-naive", "RK4 in (u, v), as one would write it first", 4.0, 1.0, False, False, False,
                "no energy account; erratic where a dashpot contact opens or closes", "Kutta 1901", "uv"),
         Method("verlet-naive", "velocity Verlet in (u, v), as one would write it first", 1.0, 1.0, False, False, True,
-               "no energy account; symplectic, and of order 2, without damping only", "Verlet 1967; Swope et al. 1982", "uv"),
-        Method("dop853", "Dormand–Prince 8 in w, contact events located", 8.0, 7.5, True, True, False,
+               "no energy account; symplectic, and of order 2, without damping only",
+               "Verlet 1967; Swope et al. 1982", "uv"),
+        Method("dopri5", "Dormand–Prince 5 in w, error control without events", 5.4, 4.0, False, True, False,
+               "a contact that opens and closes within a step is not seen; largest forces at its steps only",
+               "Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, section II.5"),
+        Method("dop853", "Dormand–Prince 8 in w, contact events located", 8.5, 7.5, True, True, False,
                "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5"),
     )
 }
