@@ -12,13 +12,16 @@ import numpy as np
 from .dop853 import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
 from .effects.driver import driver_displacement
 from .effects.preload import overlap
-from .jit import kernel
+from .effects.tension import NoTension
+from .jit import kernel, term
 from .motion import copy
 from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
 
 #: A step is aimed to end this overlap behind the event, some roundings of the largest displacement, and lands within
-#: a few times that: the moment of a contact is then as exact as its speed lets it be.
+#: so many times that: the moment of a contact is then as exact as its speed lets it be.
 _BEHIND, _NEAR = 1e-15, 4.0
+#: The same where tension is cut: a contact without force may linger at δ = 0, which is no chatter.
+_BEHIND_CUT, _NEAR_CUT = 1e-14, 100.0
 #: No contact opens and closes more often than this in one period unless it chatters.
 _EVENTS_PER_CONTACT = 2000
 #: Growth and shrinkage of the step from one to the next.
@@ -124,6 +127,17 @@ def first_event(slots, beta, t, h, y, work, counts):
     return contact, first
 
 
+@term
+def landing(tension):
+    """How far behind an event a step is to end, and within how many times that. Absent: as exactly as can be."""
+    return _BEHIND, _NEAR
+
+
+@landing.of(NoTension)
+def _(tension):
+    return _BEHIND_CUT, _NEAR_CUT
+
+
 @kernel
 def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
     """Shorten or lengthen a step so that it ends just behind the event of contact c; returns its size.
@@ -131,11 +145,12 @@ def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
     An event that turns out to lie behind `limit` is left to the next step.
     """
     before = overlap(slots.preload, y, c) > 0.0
-    behind = _BEHIND * max(1.0, work.scale[0])
+    behind, near = landing(slots.tension)
+    behind *= max(1.0, work.scale[0])
     target = -behind if before else behind
     for _ in range(6):
         d = overlap(slots.preload, work.end, c)
-        if (d > 0.0) != before and abs(d) < _NEAR * abs(target):
+        if (d > 0.0) != before and abs(d) < near * abs(target):
             break
         approach = work.k[STAGES, c] - work.k[STAGES, c + 1]
         change = (target - d) / approach if approach != 0.0 else 0.0
