@@ -81,18 +81,13 @@ METHODS: dict[str, Method] = {
 #: Above this relative error the live method is the cheaper one; its error at the live step is about that below, and
 #: falls with the fourth power of the step (`granchain accuracy sec2` measures both).
 _LIVE_IS_CHEAPER, _LIVE_ERROR = 1e-10, 7e-6
-#: The same where tension is cut: the live method's order is then 1.
-_LIVE_IS_CHEAPER_WITH_CUT, _LIVE_ERROR_WITH_CUT = 1e-5, 1e-3
 #: Coarsest steps for one of the live method's.
 _COARSEST = 0.5
 
 
 def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
-    if tension_cut:
-        if accuracy >= _LIVE_IS_CHEAPER_WITH_CUT:
-            return Setting("rk4-split", refine=max(1.0, _LIVE_ERROR_WITH_CUT / accuracy))
-    elif accuracy >= _LIVE_IS_CHEAPER:
+    if accuracy >= _LIVE_IS_CHEAPER and not tension_cut:  # with a cut it is of order 1
         return Setting("rk4-split", refine=max(_COARSEST, (_LIVE_ERROR / accuracy) ** 0.25))
     return Setting("dop853", tolerance=min(1e-3, 0.1 * accuracy))
 

@@ -97,7 +97,7 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
         return solve(shown, name, tolerance, periods, samples, stop, located)
 
     monkeypatch.setattr(module, "solve", solver)
-    monkeypatch.setattr(module, "_ROW_LIMIT", 0.2)
+    monkeypatch.setattr(module, "_ROW_LIMIT", 1.0)
     found = work_precision(SHORT)
     failures = {row.method: row.failure for row in found.rows if row.failure}
     assert "lost the motion" in failures["scipy LSODA"] and "given up" in failures["scipy RK45"]

@@ -22,7 +22,7 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.engine import new_stop
 from granchain_core.integrate.lane_block import LaneBlock
-from granchain_core.kernels import lanes, wide
+from granchain_core.kernels import lanes, wide, wide_run
 
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
 NOTHING = {"dissipation": "none"}
@@ -65,10 +65,10 @@ def counts(kernel, arguments) -> dict:
     return {"packed": dict(found), "all": sum(mnemonics.values()), "mnemonics": dict(sorted(mnemonics.items()))}
 
 
-def wide_counts(module, e: Engine) -> dict:
-    """Of the step of one chain."""
+def wide_counts(module, steps, e: Engine) -> dict:
+    """Of the step of one chain: its workspace is of `module`, its code in `steps`."""
     space = module.Wide(module.WIDTHS[e.work.along.width.lanes], *e.work.along[1:])
-    return counts(module.wide_steps, (space, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0],
+    return counts(steps.wide_steps, (space, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0],
                                       e.work.forces.e, e.peaks, e.counts.array, e.stop))
 
 
@@ -84,12 +84,12 @@ def main() -> None:
     for case, knobs in cases.items():
         chain = scene("sec2").evolve(**knobs)
         engine, block = Engine(chain, Setting("rk4-split"), 1), LaneBlock(chain, new_stop())
-        found["wide"][case], found["lanes"][case] = wide_counts(wide, engine), lane_counts(lanes, block)
+        found["wide"][case], found["lanes"][case] = wide_counts(wide, wide_run, engine), lane_counts(lanes, block)
         if case in BY_HAND:
             absent = (*(effect for effect in EFFECTS if effect != case), "unequal")
             with tempfile.TemporaryDirectory() as folder:
                 struck = struck_out.without(absent, Path(folder))
-                found["wide"][f"{case} by hand"] = wide_counts(struck["wide"], engine)
+                found["wide"][f"{case} by hand"] = wide_counts(struck["wide"], struck["wide_run"], engine)
                 found["lanes"][f"{case} by hand"] = lane_counts(struck["lanes"], block)
     print(json.dumps(found))
 

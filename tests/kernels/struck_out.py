@@ -15,7 +15,7 @@ import granchain_core.kernels as kernels
 
 FOLDER = Path(kernels.__file__).parent
 #: Modules in the order in which they import each other.
-MODULES = ("events", "lane_events", "wide", "lanes")
+MODULES = ("events", "lane_events", "lane_step", "lanes", "wide", "wide_run")
 #: What is left of a call of a term where its effect is absent; a, b, c, … are the call's arguments, None is no statement.
 LEFT = {
     "dissipation": {"damping": "0.0", "primitive": "0.0", "shape": "0.0", "row_velocity": "b", "lane_velocity": "d",
