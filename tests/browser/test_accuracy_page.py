@@ -66,7 +66,7 @@ def test_hovering_tells_the_point(visit: Visit) -> None:
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
     sheet.locator('.work .point[data-way="rk4-split"]').first.hover(force=True)
     tip = sheet.locator(".tip")
-    for words in ("live steps", "error", "ms", "evaluations", "order 2.5"):
+    for words in ("live steps", "error", "s, ", "evaluations", "order 3.9"):
         expect(tip).to_contain_text(words)
 
 
