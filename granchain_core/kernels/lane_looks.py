@@ -32,7 +32,7 @@ REMEMBERED, SEEN = 432, 4 * LONGEST_PERIOD + 1
 #: Orbits still to come that make an extrapolation worth it, and fewest periods between two attempts.
 _TOO_LONG, _BETWEEN = 4.0, 8
 #: A jump longer than this times change/(1 − rate) is not where the decay was leading.
-_LONGEST_JUMP = 3.0
+LONGEST_JUMP = 3.0
 #: The coarse orbit's difference is forgotten to this fraction in the finer run, in so many rounds at most.
 FORGET, _MOST_ROUNDS = 0.02, 6
 #: An orbit is disturbed by so much, relative to the motion, for so many orbits, at whose end no more than this part of
@@ -83,7 +83,7 @@ def follow(state, lane, n, rate, change):
     limit, record = state.limit, state.strobes[lane, kept - 1 - ORBITS * n : kept]
     reduced_rank(record[::n], state.basis, state.triangle, limit)
     largest_of(record, state.scale)
-    reach = _LONGEST_JUMP * change / (1.0 - rate)
+    reach = LONGEST_JUMP * change / (1.0 - rate)
     for q in range(2):
         for i in range(limit.shape[1]):
             if not abs(limit[q, i] - record[ORBITS * n, q, i]) <= reach * state.scale[q]:

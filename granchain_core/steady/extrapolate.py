@@ -12,11 +12,10 @@ import numpy as np
 
 from ..kernels import approach
 from ..kernels.approach import ORBITS
+from ..kernels.lane_looks import LONGEST_JUMP
 
 #: Successive changes used; as many slow modes less one are removed.
 ORDER = ORBITS
-#: A jump longer than this times change/(1 − rate) is not where the decay was leading.
-_LONGEST_JUMP = 3.0
 
 
 def reduced_rank(states: np.ndarray) -> np.ndarray:
@@ -31,4 +30,4 @@ def within_reach(here: np.ndarray, there: np.ndarray, change: float, rate: float
     """Whether a jump from `here` to `there` is one that the decay leads to."""
     if not np.isfinite(there).all() or not 0.0 < rate < 1.0:
         return False
-    return float(np.abs(there - here).max()) <= _LONGEST_JUMP * change / (1.0 - rate)
+    return float(np.abs(there - here).max()) <= LONGEST_JUMP * change / (1.0 - rate)

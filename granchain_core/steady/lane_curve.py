@@ -27,13 +27,10 @@ from .settle import MOST_PERIODS, SLOW_PERIODS
 #: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
 #: which is what is claimed.
 _FINER = 3
-_COARSE = 1.0
 #: Periods after which a draft gives up.
 _DRAFT = 300
 #: Blocks and periods a block for the Lyapunov exponent.
 _BLOCKS, _BLOCK = 10, 20
-#: Periods over which the largest force of an irregular motion is taken.
-_IRREGULAR_PERIODS = 100
 
 
 class _Lanes:
@@ -61,7 +58,7 @@ class _Lanes:
         """The coarse run is looked at when it has settled, the finer one when it has forgotten the coarse one."""
         if job.coarse is None:
             look = min(_DRAFT if self.draft else MOST_PERIODS, job.affordable_periods - job.run)
-            self.block.put(lane, job.lowered, job.y, _COARSE, look)
+            self.block.put(lane, job.lowered, job.y, 1, look)
             return
         regime, tops = job.coarse
         assert regime.period is not None
