@@ -15,6 +15,7 @@ import numpy as np
 from ..errors import BadInput, NumbersFailed
 from ..integrate import State
 from ..integrate.lane_block import scaled_state, state_of
+from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settle import settle
@@ -85,6 +86,13 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     x = strobe.inner(scaled_state(strobe.engine.lowered, start))
     x, flow, history = _newton(strobe, x)
     return _orbit(scene, n, strobe, x, flow, history, observer)
+
+
+def random_state(scene: Scene, seed: int) -> State:
+    """A state to start from that says nothing: normal displacements and velocities of the drive's size."""
+    scales = scales_of(scene)
+    draw = np.random.default_rng(seed).standard_normal((2, scene.N))
+    return State(draw[0] * scales.length, draw[1] * scales.velocity)
 
 
 def _newton(strobe: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, list[float]]:
