@@ -27,17 +27,20 @@ from .tangent import carry, stage_gaps
 
 
 class VelocityTangent(NamedTuple):
-    """Tangent vectors as columns: matrix (2N, columns), rows δu_1..δu_N, then δv_1..δv_N, and workspaces."""
+    """Tangent vectors as columns: matrix (2N, columns), rows δu_1..δu_N, then δv_1..δv_N, and workspaces.
+
+    `jumps` is 1, or 0 to see what comes of a forgotten saltation.
+    """
 
     matrix: np.ndarray
     gaps: np.ndarray
     slopes: np.ndarray
     state: np.ndarray
+    jumps: float
 
 
 @keep_gaps.of(VelocityTangent)
-def keep_velocity_gaps(tangent, slots, state, stage):
-    """Keep the overlaps of one stage."""
+def _(tangent, slots, state, stage):
     stage_gaps(slots, state, stage, tangent.gaps)
 
 
@@ -67,8 +70,7 @@ def velocity_slope(slots, rate, gaps, closed, T, out):
 
 
 @carry.of(VelocityTangent)
-def carry_velocity(tangent, slots, time, h, path):
-    """Carry the tangents through the accepted step."""
+def _(tangent, slots, time, h, path):
     rows, columns = tangent.matrix.shape
     for stage in range(STAGES + 1):
         for i in range(rows):
@@ -89,7 +91,9 @@ def carry_velocity(tangent, slots, time, h, path):
 @jump.of(VelocityTangent)
 def _(tangent, slots, c, closes):
     T, n = tangent.matrix, tangent.matrix.shape[0] // 2
-    shear = damping(slots.dissipation, 1.0) if closes else -damping(slots.dissipation, 1.0)
+    shear = tangent.jumps * damping(slots.dissipation, 1.0)
+    if not closes:
+        shear = -shear
     for q in range(T.shape[1]):
         d = (T[c - 1, q] if c > 0 else 0.0) - (T[c, q] if c < n else 0.0)
         if c > 0:

@@ -39,6 +39,13 @@ class Flow:
     changes: np.ndarray
 
 
+def refuse_cut(scene: Scene) -> None:
+    """`BadInput` for a scene that cuts tension."""
+    if scene.cuts_tension:
+        raise BadInput("tension = cut has contact forces whose end at F = 0 is not located, so orbits and "
+                       "multipliers are not computed; the nearest valid value is tension = allowed.")
+
+
 class StroboscopicMap:
     """x → the state n drive periods later, for scaled x = (u, w) at phase 0.
 
@@ -46,9 +53,7 @@ class StroboscopicMap:
     """
 
     def __init__(self, scene: Scene, periods: int, stop: np.ndarray | None = None) -> None:
-        if scene.cuts_tension:
-            raise BadInput("tension = cut has contact forces whose end at F = 0 is not located, so orbits and "
-                           "multipliers are not computed; the nearest valid value is tension = allowed.")
+        refuse_cut(scene)
         self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), 1, stop=stop)
         self.periods = periods
         row = self.engine.lowered.row
@@ -70,9 +75,10 @@ class StroboscopicMap:
         trace = self._run(x, tangent)
         return Flow(self.inner(self.engine.y), _columns(tangent, start.shape[1]), trace, self.changes)
 
-    def second_route(self, x: np.ndarray) -> np.ndarray:
+    def second_route(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by tangents in (u, v) with their jumps at contact events, as one of (u, w).
 
+        Without `jumps` it is wrong: what one gets who forgets the saltation, to be shown beside the right one.
         Raises `BadInput` for a damping that is not the linear dashpot's.
         """
         lo = self.engine.lowered
@@ -82,7 +88,7 @@ class StroboscopicMap:
         rows = len(x)
         before = velocity_from_w(lo, x)
         tangent = VelocityTangent(before, np.zeros((STAGES + 1, lo.row - 1)), np.zeros((STAGES, rows, rows)),
-                                  np.zeros((rows, rows)))
+                                  np.zeros((rows, rows)), float(jumps))
         self._run(x, tangent)
         return np.linalg.solve(velocity_from_w(lo, self.inner(self.engine.y)), tangent.matrix)
 

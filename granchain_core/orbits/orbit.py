@@ -19,7 +19,7 @@ from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settle import settle
-from .flow import Flow, StroboscopicMap
+from .flow import Flow, StroboscopicMap, refuse_cut
 from .krylov import leading_multipliers, newton_step
 
 #: Residual, relative to the largest displacement and w, at which an orbit is found; and Newton's iterations at most.
@@ -76,7 +76,8 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     if period is not None and not 1 <= period <= LONGEST_PERIOD:
         raise BadInput(f"period {period} is outside 1 to {LONGEST_PERIOD}; the nearest valid value is "
                        f"{min(max(period, 1), LONGEST_PERIOD)}.")
-    n, x = period, None
+    refuse_cut(scene)
+    n = period
     if start is None:
         way = settle(scene, None, stop)
         n = n or way.regime.period or 1

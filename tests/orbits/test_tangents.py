@@ -2,41 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, scene
 from granchain_core.integrate.engine import rest
-from granchain_core.kernels.flow import jump
-from granchain_core.kernels.flow_step import keep_gaps
-from granchain_core.kernels.saltation import carry_velocity, keep_velocity_gaps
-from granchain_core.kernels.tangent import carry
-from granchain_core.orbits import flow as flows
 from granchain_core.orbits import orbit as orbits
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.orbits.orbit import sorted_multipliers
-
-
-class Forgetful(NamedTuple):
-    """Tangents in (u, v) that forget the jump at contact events: the usual mistake."""
-
-    matrix: np.ndarray
-    gaps: np.ndarray
-    slopes: np.ndarray
-    state: np.ndarray
-
-
-carry.of(Forgetful)(carry_velocity)
-keep_gaps.of(Forgetful)(keep_velocity_gaps)
-
-
-@jump.of(Forgetful)
-def _(tangent, slots, c, closes):  # type: ignore[no-untyped-def]
-    pass
 
 
 @pytest.mark.parametrize("changes", [{}, {"f": 1130.0}, {"kappa": 0.001}, {"F0": 0.5}, {"wall": "rigid", "N": 3},
@@ -50,13 +25,12 @@ def test_tangents_in_w_and_tangents_in_v_with_saltation_are_one_derivative(chang
     assert np.abs(first - second).max() < 1e-9 * np.abs(first).max()
 
 
-def test_a_missing_saltation_shows_in_the_columns_and_not_in_the_determinant(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_saltation_shows_in_the_columns_and_not_in_the_determinant() -> None:
     shown = scene("sec2").evolve(N=3)
     strobe = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(4).standard_normal(6)
     right = strobe(x)
-    monkeypatch.setattr(flows, "VelocityTangent", Forgetful)
-    wrong = strobe.second_route(x)
+    wrong = strobe.second_route(x, jumps=False)
     sign, logarithm = np.linalg.slogdet(wrong)
     assert sign > 0 and logarithm == pytest.approx(right.log_determinant, abs=1e-8)  # Liouville sees nothing
     assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()  # the columns do
