@@ -31,9 +31,9 @@ def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
                  stop: np.ndarray | None = None) -> Orbit:
     """An orbit of `period` drive periods near `start` or near where its section passes one.
 
-    `strobes` (P, 2, N) are states at phase 0 in SI, the transient left out; P may be 0. Where the orbit found repeats sooner, its least period
-    is the one returned. Raises `BadInput` for a period out of range, `NumbersFailed` where no start leads to an orbit,
-    and `Cancelled`.
+    `strobes` (P, 2, N) are states at phase 0 in SI, the transient left out; P may be 0. Of an orbit that repeats sooner
+    the least period is returned. Raises `BadInput` for a period out of range, `NumbersFailed` where no start leads to
+    an orbit, and `Cancelled`.
     """
     tried = 0
     for begin in (start, *_middle(strobes, period), *_close_returns(strobes, period)):
