@@ -124,6 +124,8 @@ class StabilityPage:
         self._stop = new_stop()
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
+        self._view.display(regime=picture.regime.name, regime_period=picture.regime.period or 1,
+                           beads=picture.run.scene.N)
         if picture.regime.name == "periodic" and picture.regime.period is not None:
             self._follow(Target(picture.run.scene, picture.regime.period, picture.state, followed=True))
         else:
@@ -154,9 +156,13 @@ class StabilityPage:
 
     def _await_kernels(self, scene: Scene, stop: Stop) -> None:
         if not COMPILER.has(scene, ORBIT_PIECE):
-            self._page.later(self._say, "compiling")
+            self._page.later(self._compiling, stop)
         if not COMPILER.await_piece(scene, ORBIT_PIECE, stop):
             raise Cancelled
+
+    def _compiling(self, stop: Stop) -> None:
+        if not stop[0]:
+            self._say("compiling")
 
     # What comes back
 
@@ -183,8 +189,8 @@ class StabilityPage:
         self._view.display(
             status="done", failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
             searched=not analysis.target.followed, marks=described_multipliers(orbit), rank=self._rank,
-            observer_marks=described_multipliers(orbit, observer=True), period=orbit.period, beads=orbit.scene.N,
-            scene=orbit.scene.name, regime=self._regime())
+            observer_marks=described_multipliers(orbit, observer=True), period=orbit.period,
+            scene=orbit.scene.name)
         self._view.tell(**mode_message(analysis.mode, orbit))
         self._show_section()
 
@@ -203,15 +209,11 @@ class StabilityPage:
         """There are no multipliers to show; why is told."""
         self._analysis, self.status = None, "none"
         self._view.display(status="none", failure="", stale=False, sentence=sentence, marks=[], observer_marks=[],
-                           searched=False, beads=self._page.session.scene.N, evidence=[], regime=self._regime(),
-                           scene=self._page.session.scene.name, observer=self._observer)
+                           searched=False, evidence=[], scene=self._page.session.scene.name, observer=self._observer)
         self._view.tell(type="no-mode")
         if self._page.session.mode == "live":
             self._view.tell(type="no-section")
         self._show_evidence()
-
-    def _regime(self) -> str:
-        return "" if self._picture is None else self._picture.regime.name
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status

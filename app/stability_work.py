@@ -68,9 +68,9 @@ def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
     samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MODE_VALUES), 8)
     found = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
     if not found.closure <= _TRUSTED * max(1.0, abs(found.multiplier)):
-        why = (": the tangents leave the cut of tension out" if scene.cuts_tension else "")
-        raise NumbersFailed(f"No multipliers are shown: a small disturbance comes back {found.closure:.0e} away from "
-                            f"what they say{why}.", "contradicted")
+        why = ": the tangents leave the cut of tension out" if scene.cuts_tension else ""
+        raise NumbersFailed(f"No multipliers are shown: a small disturbance comes back {found.closure:.1g} of itself "
+                            f"away from what they say{why}.", "contradicted")
     return Analysis(target, orbit, found, orbit_section(orbit, PHASES, stop), distance, time.perf_counter() - began)
 
 

@@ -24,7 +24,10 @@ function circlePicture(host, { state, trail }, compact) {
   const points = marks.map((one) => {
     const far = one.size > reach, shrink = far ? 0.9 * reach / one.size : 1;
     const point = { one, x: X(shrink * one.re), y: Y(shrink * one.im) };
-    svg.append(multiplierMark(one, point.x, point.y, compact));
+    const drawn = multiplierMark(one, point.x, point.y, compact);
+    if (!compact && one.size >= 0.02) for (const [name, value] of [["tabindex", 0], ["role", "img"], ["aria-label", one.told.join("; ")], ["data-rank", `${one.observer ? "o" : ""}${one.rank}`]]) drawn.setAttribute(name, value);
+    point.drawn = drawn;
+    svg.append(drawn);
     if (far) words(svg, point.x, point.y + (point.y > cy ? -14 : 24), `|μ| ${round3(one.size)}`, point.x > cx + 20 ? "end" : point.x < cx - 20 ? "start" : "middle", "name");
     return point;
   });

@@ -36,13 +36,16 @@ class SectionView {
     this.phase = part("input", { type: "range", min: 0, max: 47, value: 0, step: 1 });
     this.phase.setAttribute("aria-label", "drive phase of the section");
     this.said = part("output");
+    this.close = part("input", { type: "checkbox" });
+    this.close.addEventListener("change", () => this.draw(this.state));
     this.told = part("span", { className: "soft" });
     this.host = part("div", { className: "picture" });
     const tell = () => { this.say(); send({ do: "stability-section", bead: Number(this.beads.value), phase: Number(this.phase.value) }); };
     this.beads.addEventListener("change", tell);
     this.phase.addEventListener("input", tell);
     this.root = part("section", { className: "poincare" }, part("div", { className: "row" }, part("h3", { textContent: "Poincaré section" }), this.beads),
-      part("div", { className: "row" }, part("label", {}, "drive phase ", this.phase), this.said),
+      part("div", { className: "row" }, part("label", {}, "drive phase ", this.phase), this.said,
+        part("label", { title: "the second half of the points only" }, this.close, "close up")),
       part("div", { className: "draw" }, this.host), this.told);
     this.say();
   }
@@ -61,10 +64,11 @@ class SectionView {
   }
 
   draw(state) {
+    this.state = state;
     this.host.replaceChildren();
     this.told.textContent = !this.data ? "" : `${this.data.count} drive periods, one point each`
       + (this.data.own ? `; ${state.searched ? "diamonds: the unstable orbit" : "rings: the orbit"}` : "");
-    if (this.host.clientWidth) sectionPicture(this.host, this.data, state);
+    if (this.host.clientWidth) sectionPicture(this.host, this.data, state, this.close.checked);
   }
 }
 
@@ -111,7 +115,9 @@ export function render({ model }) {
   let points = [];
   const redraw = () => {
     if (page.covered === "stability") {
+      const focused = root.getRootNode().activeElement?.dataset?.rank;
       points = circlePicture(circle, page.stability);
+      if (focused) circle.querySelector(`[data-rank="${focused}"]`)?.focus();
       section.draw(model.state);
       mode.measure();
     }
@@ -141,20 +147,22 @@ export function render({ model }) {
   };
   const pick = (event) => points.map((point) => ({ ...point, far: Math.hypot(point.x - event.clientX + circle.getBoundingClientRect().left, point.y - event.clientY + circle.getBoundingClientRect().top) }))
     .filter(({ far }) => far < 24).sort((a, b) => a.far - b.far)[0];
-  circle.addEventListener("pointermove", (event) => {
-    const point = pick(event);
+  const tell = (point) => {
     tip.hidden = !point;
     circle.style.cursor = point && !point.one.observer ? "pointer" : "";
     if (!point) return;
     tip.replaceChildren(...point.one.told.map((line) => part("div", { textContent: line })));
     tip.style.left = `${Math.min(point.x + 14, Math.max(0, circle.clientWidth - tip.offsetWidth))}px`;
     tip.style.top = `${point.y > circle.clientHeight / 2 ? point.y - tip.offsetHeight - 12 : point.y + 16}px`;
-  });
-  circle.addEventListener("pointerleave", () => { tip.hidden = true; });
-  circle.addEventListener("click", (event) => {
-    const point = pick(event);
-    if (point && !point.one.observer) send({ do: "stability-mode", value: point.one.rank });
-  });
+  };
+  const choose = (point) => { if (point && !point.one.observer) send({ do: "stability-mode", value: point.one.rank }); };
+  const drawnAs = (event) => points.find(({ drawn }) => drawn === event.target);
+  circle.addEventListener("pointermove", (event) => tell(pick(event)));
+  circle.addEventListener("pointerleave", () => tell(null));
+  circle.addEventListener("focusin", (event) => tell(drawnAs(event)));
+  circle.addEventListener("focusout", () => tell(null));
+  circle.addEventListener("click", (event) => choose(pick(event)));
+  circle.addEventListener("keydown", (event) => { if (event.key === "Enter") choose(drawnAs(event)); });
 
   let tab = "", seen = true, told = false;
   const looking = () => {

@@ -79,8 +79,10 @@ def no_multipliers(picture: Settled) -> str:
         return (f"No multipliers: the chain has not settled after {regime.periods_run} periods, and only a motion that "
                 "repeats has them.")
     mean, error = regime.lyapunov
-    return (f"No multipliers: the motion is {regime.name} and never repeats. Neighbours part by "
-            f"e^({mean:+.3f} ± {error:.3f}) per drive period (Lyapunov exponent).")
+    parts = (f"Neighbouring motions part {math.exp(mean):.2f}-fold per drive period" if regime.name == "chaotic" else
+             "Neighbouring motions neither part nor meet")
+    return (f"No multipliers: the motion is {regime.name} and never repeats. {parts} (Lyapunov exponent "
+            f"{mean:+.3f} ± {error:.3f}).")
 
 
 def described_multipliers(orbit: Orbit, observer: bool = False) -> list[dict[str, Any]]:
@@ -142,7 +144,7 @@ def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
     row("Newton's residual", " → ".join(short_error(r) for r in residuals),
         "Change over one orbit, relative to the largest displacement and w, before each Newton step and at the end.")
     if analysis.target.followed:
-        row("from the settled state", short_error(analysis.distance),
+        row("settled state", f"{short_error(analysis.distance)} away",
             "Relative distance of the orbit from the settled picture, in which Newton's method was started.")
     lost = np.abs(orbit.multipliers[-1]) < _ROUNDING * size
     row("Liouville", "the smallest multipliers are below rounding" if lost else short_error(orbit.liouville),
