@@ -15,7 +15,15 @@ import pytest
 from app import stability as module
 from app.stability import StabilityPage
 from app.stability_work import Analysis, Target, analyse, section_of, transient
-from app.views.stability import described_multipliers, evidence, modulus_words, multiplier_words, no_multipliers, section_message, verdict
+from app.views.stability import (
+    described_multipliers,
+    evidence,
+    modulus_words,
+    multiplier_words,
+    no_multipliers,
+    section_message,
+    verdict,
+)
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
 from granchain_core.integrate.engine import new_stop
 from granchain_core.steady.regime import Regime

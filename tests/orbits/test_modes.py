@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import cache
 
 import numpy as np
@@ -94,7 +95,7 @@ def test_a_section_is_the_run_looked_at_once_a_period() -> None:
 def test_a_section_grows_and_earlier_points_stay() -> None:
     pieces = list(iter_section(scene("rig").evolve(f=140.0), None, 300, seconds=0.005))
     assert len(pieces) > 1 and pieces[-1].periods == 300
-    for before, after in zip(pieces, pieces[1:], strict=False):
+    for before, after in itertools.pairwise(pieces):
         assert np.array_equal(before.displacement, after.displacement[: before.periods])
 
 
