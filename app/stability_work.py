@@ -55,7 +55,7 @@ class Analysis:
 def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
     """Multipliers, the mode at place `rank` and the points of one orbit.
 
-    Raises `NumbersFailed` where Newton's method ends elsewhere, or where a disturbance that is carried along
+    Raises `BadInput` for a scene without multipliers, `NumbersFailed` where Newton's method ends elsewhere, or where a disturbance that is carried along
     contradicts its multiplier; `Cancelled`.
     """
     began = time.perf_counter()
@@ -68,9 +68,8 @@ def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
     samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MODE_VALUES), 8)
     found = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
     if not found.closure <= _TRUSTED * max(1.0, abs(found.multiplier)):
-        why = ": the tangents leave the cut of tension out" if scene.cuts_tension else ""
         raise NumbersFailed(f"No multipliers are shown: a small disturbance comes back {found.closure:.1g} of itself "
-                            f"away from what they say{why}.", "contradicted")
+                            f"away from what they say.", "contradicted")
     return Analysis(target, orbit, found, orbit_section(orbit, PHASES, stop), distance, time.perf_counter() - began)
 
 

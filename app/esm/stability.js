@@ -6,7 +6,7 @@ const part = (tag, properties = {}, ...children) => {
   return element;
 };
 const STATUS = {
-  compiling: "compiling the tangent flow: about 10 s, only the first time for this set of effects …", computing: "computing …",
+  compiling: "compiling the tangent flow: some 20 s, only the first time for this set of effects …", computing: "computing …",
   searching: "searching …",
 };
 const KEY = [["circle", "within", "dies out"], ["diamond", "outside", "grows"], ["square", "within observer", "observer"]];

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from app import stability as module
+from app import stability_work as work
 from app.stability import StabilityPage
 from app.stability_work import Analysis, Target, analyse, section_of, transient
 from app.views.stability import (
@@ -131,16 +132,11 @@ def test_the_sections_points_are_the_computed_ones() -> None:
     assert np.abs(values[section.periods :] - expected).max() < 1e-4 * np.abs(expected).max()
 
 
-def test_multipliers_that_contradict_the_motion_are_not_shown() -> None:
-    # A tension cut has no tangents of its own: what they say is 5 per cent off (or, once it has them, agrees).
-    shown = picture(tension="cut", f=340.0)
-    assert shown.regime.period == 1
-    try:
-        found = analyse(Target(shown.run.scene, 1, shown.state, True), False, 0, new_stop())
-    except NumbersFailed as failure:
-        assert "a small disturbance comes back 0.0" in failure.sentence and "cut of tension" in failure.sentence
-    else:
-        assert found.mode.closure < 1e-4
+def test_multipliers_that_contradict_the_motion_are_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = replace(analysis().mode, closure=0.06)
+    monkeypatch.setattr(work, "mode", lambda *_: found)
+    with pytest.raises(NumbersFailed, match=r"a small disturbance comes back 0\.06 of itself away from what they say"):
+        analyse(analysis().target, False, 0, new_stop())
 
 
 def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
@@ -262,6 +258,15 @@ def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
     view.actions["stability-back"]({})
     page.work(lambda: not page.state["searched"])
     assert page.state["period"] == 4
+    view.close()
+
+
+def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> None:
+    page.session.scene = picture(tension="cut").run.scene
+    view = opened(page)
+    view.arrived(picture(tension="cut"))
+    page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.told))
+    assert "multipliers are not computed" in page.state["sentence"] and page.state["marks"] == []
     view.close()
 
 
