@@ -55,8 +55,8 @@ class Analysis:
 def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
     """Multipliers, the mode at place `rank` and the points of one orbit.
 
-    Raises `BadInput` for a scene without multipliers, `NumbersFailed` where Newton's method ends elsewhere, or where a disturbance that is carried along
-    contradicts its multiplier; `Cancelled`.
+    Raises `BadInput` for a scene without multipliers, `NumbersFailed` where Newton's method ends elsewhere, or where a
+    disturbance that is carried along contradicts its multiplier; `Cancelled`.
     """
     began = time.perf_counter()
     scene = target.scene
