@@ -79,6 +79,6 @@ def least_period(orbit: Orbit, stop: np.ndarray | None = None) -> int:
             continue
         strobe = StroboscopicMap(orbit.scene, shorter, stop)
         x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
-        if np.abs(strobe.end(x) - x).max() < _SAME * np.abs(x).max():
+        if np.abs(strobe(x).end - x).max() < _SAME * np.abs(x).max():
             return shorter
     return orbit.period
