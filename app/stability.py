@@ -79,7 +79,7 @@ class StabilityPage:
         """Another picture is asked for: what is under way here is given up, what is shown is greyed."""
         self._give_up()
         self._picture = None
-        if self._page.session.mode == "live":
+        if self._open and self._page.session.mode == "live":
             self._clear(_LIVE)
         elif self._open:
             self._view.display(stale=True)
@@ -125,7 +125,7 @@ class StabilityPage:
         self._stop = new_stop()
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
-        self._view.display(regime=picture.regime.name, regime_period=picture.regime.period or 1,
+        self._view.display(stale=True, regime=picture.regime.name, regime_period=picture.regime.period or 1,
                            beads=picture.run.scene.N)
         if picture.regime.name == "periodic" and picture.regime.period is not None:
             self._follow(Target(picture.run.scene, picture.regime.period, picture.state, followed=True))

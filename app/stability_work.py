@@ -94,10 +94,18 @@ def transient(picture: Settled, section: Section) -> int:
 
 
 def search(picture: Settled, section: Section | None, period: int, stop: Stop) -> Target:
-    """An orbit near the motion shown. Raises what `search_orbit` raises."""
+    """An orbit near the motion shown, which it does not follow.
+
+    Raises what `search_orbit` raises, and `NumbersFailed` where the search ends on the orbit that is followed.
+    """
     scene = picture.run.scene
     strobes = np.zeros((0, 2, scene.N))
     if section is not None:
         strobes = section.strobes()[min(transient(picture, section), section.periods // 2) :]
     found = search_orbit(scene, period, picture.state, strobes, stop)
+    run = picture.run
+    here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
+    if picture.regime.name == "periodic" and min(_apart(found.state, state) for state in here) < _SAME_ORBIT:
+        raise NumbersFailed(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
+                            f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
     return Target(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)

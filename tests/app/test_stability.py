@@ -15,7 +15,7 @@ import pytest
 from app import stability as module
 from app import stability_work as work
 from app.stability import StabilityPage
-from app.stability_work import Analysis, Target, analyse, section_of, transient
+from app.stability_work import Analysis, Target, analyse, search, section_of, transient
 from app.views.stability import (
     described_multipliers,
     evidence,
@@ -268,6 +268,13 @@ def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> 
     page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.told))
     assert "multipliers are not computed" in page.state["sentence"] and page.state["marks"] == []
     view.close()
+
+
+def test_the_followed_orbit_is_not_called_another_one() -> None:
+    for found, period in ((picture(), 1), (picture(f=1130.0), 3)):
+        *_, section = section_of(found, None, new_stop())
+        with pytest.raises(NumbersFailed, match=f"the orbit that the chain follows, of {period} drive period"):
+            search(found, section, period, new_stop())
 
 
 def test_a_live_run_has_no_multipliers() -> None:
