@@ -11,7 +11,7 @@ from panel.io import unlocked
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene, Settled, State
 from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits.compiled import ORBIT_PIECE
-from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.flow import refuse_cut
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
 
@@ -156,7 +156,7 @@ class StabilityPage:
         yield analyse(target, observer, rank, stop)
 
     def _await_kernels(self, scene: Scene, stop: Stop) -> None:
-        StroboscopicMap(scene, 1)  # refuses what has no multipliers before anything is compiled for it
+        refuse_cut(scene)  # before anything is compiled for it
         if not COMPILER.has(scene, ORBIT_PIECE):
             self._page.later(self._compiling, stop)
         if not COMPILER.await_piece(scene, ORBIT_PIECE, stop):

@@ -18,9 +18,6 @@ from ..stability_work import Analysis
 from ..words import duration, short_error
 from .component import Component, text
 
-_ROUNDING = 1e-14
-"""Multipliers smaller than this part of the largest are lost in the rounding of the monodromy matrix."""
-
 
 class Stability(Component):
     """The page over the pictures and, through what it shares in the browser, the small version in the corner."""
@@ -146,8 +143,9 @@ def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
     if analysis.target.followed:
         row("settled state", f"{short_error(analysis.distance)} away",
             "Relative distance of the orbit from the settled picture, in which Newton's method was started.")
-    lost = np.abs(orbit.multipliers[-1]) < _ROUNDING * size
-    row("Liouville", "the smallest multipliers are below rounding" if lost else short_error(orbit.liouville),
+    why = ("the smallest multipliers are below rounding" if len(orbit.multipliers) == 2 * orbit.scene.N
+           else f"only the {len(orbit.multipliers)} leading multipliers are computed")
+    row("Liouville", why if orbit.liouville is None else short_error(orbit.liouville),
         "Relative difference of log |product of multipliers| and the integral of the equations' trace.")
     row("disturbance carried", f"{short_error(max(analysis.mode.closure, 1e-16))} off",
         "A small disturbance along the eigenvector was run for one orbit: how far it ended from μ times itself.")

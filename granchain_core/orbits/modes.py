@@ -14,16 +14,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
-from ..errors import BadInput
+from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting
 from ..integrate.lane_block import scaled_state
 from ..steady.poincare import Section
 from .flow import TOLERANCE, StroboscopicMap
-from .orbit import Orbit
+from .krylov import derivative_at
+from .orbit import DENSE, Orbit
 
 #: Size of the carried disturbance relative to the motion.
 _SMALL = 1e-5
+#: Pairs that Arnoldi iteration looks for at least, and how exact, relative to the largest.
+_FEWEST, _EXACT = 6, 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +55,9 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: np.ndarray | None
                        f"{min(max(rank, 0), len(orbit.multipliers) - 1)}.")
     strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
     x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
-    values, vectors = np.linalg.eig(strobe(x).derivative)
-    place = np.argsort(-np.abs(values), kind="stable")[rank]
-    value, vector = values[place], vectors[:, place]
+    value, vector = _eigenpair(strobe, x, rank)
     if value.imag < 0.0:
-        value, vector = value.conj(), vector.conj()
+        value, vector = value.conjugate(), vector.conj()
     beads = len(x) // 2
     vector = vector / vector[np.argmax(np.abs(vector))]
     size = _SMALL * max(1e-300, float(np.abs(x[:beads]).max()))
@@ -65,6 +67,26 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: np.ndarray | None
         moved, end = moved + 1j * other, end + 1j * other_end
     closure = float(np.abs(end - value * vector).max() / np.abs(vector).max())
     return Mode(complex(value), orbit.period, samples, moved / np.abs(moved).max(), closure)
+
+
+def _eigenpair(strobe: StroboscopicMap, x: np.ndarray, rank: int) -> tuple[complex, np.ndarray]:
+    """The multiplier at place `rank` by modulus with its eigenvector; of a long chain by Arnoldi iteration."""
+    if len(x) <= 2 * DENSE:
+        values, vectors = np.linalg.eig(strobe(x).derivative)
+    else:
+        values, vectors = leading_pairs(strobe, x, rank + 2)
+    place = np.argsort(-np.abs(values), kind="stable")[rank]
+    return complex(values[place]), vectors[:, place]
+
+
+def leading_pairs(strobe: StroboscopicMap, x: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """At least `count` leading multipliers with their eigenvectors (2N, count). Raises `NumbersFailed`."""
+    start = np.random.default_rng(0).standard_normal(len(x))
+    try:
+        return tuple(eigs(derivative_at(strobe, x), k=max(count, _FEWEST), which="LM", v0=start, tol=_EXACT))
+    except ArpackNoConvergence:
+        raise NumbersFailed(f"The mode of multiplier {count - 1} did not converge: too many lie close together.",
+                            "no-convergence") from None
 
 
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,

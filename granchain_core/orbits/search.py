@@ -79,6 +79,7 @@ def least_period(orbit: Orbit, stop: np.ndarray | None = None) -> int:
             continue
         strobe = StroboscopicMap(orbit.scene, shorter, stop)
         x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
-        if np.abs(strobe(x).end - x).max() < _SAME * np.abs(x).max():
+        end = strobe(x, directions=np.zeros((len(x), 0))).end
+        if np.abs(end - x).max() < _SAME * np.abs(x).max():
             return shorter
     return orbit.period
