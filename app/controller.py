@@ -24,6 +24,7 @@ from .painter import Painter
 from .promptness import in_one_go, send_at_once
 from .session import LOOKS, SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
+from .stability import StabilityPage
 from .transport import Transport
 from .views.knobs import foundation_words, knob_state
 from .views.shell import Views
@@ -47,6 +48,7 @@ class Controller:
         self.exchange = Exchange(self)
         self.accuracy = AccuracyPage(self)
         self.effects = EffectsPanel(self)
+        self.stability = StabilityPage(self)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
@@ -57,6 +59,7 @@ class Controller:
             "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
             "cover": self._cover, "curve-stop": lambda _: self.curves.stop(),
             **Transport(self).actions, **self.exchange.actions, **self.accuracy.actions, **self.effects.actions,
+            **self.stability.actions,
         }
 
     # Coming in and going out
@@ -114,6 +117,7 @@ class Controller:
         self.curves.close()
         self.accuracy.close()
         self.effects.close()
+        self.stability.close()
 
     @property
     def busy(self) -> bool:
@@ -129,6 +133,7 @@ class Controller:
 
     def compute(self) -> None:
         """A new picture for the knobs as they are now."""
+        self.stability.moved()
         if self.session.mode == "live":
             if self.live is not None:
                 self.live.change(self.session.scene)
@@ -139,7 +144,8 @@ class Controller:
     def _settled(self, scene: Scene, stop: Stop) -> Iterator[Settled]:
         """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
         self._await_live_kernels(scene, stop)
-        pictures = settling(scene, start=self.session.previous_state(), samples=samples_for(scene), stop=stop)
+        self.session.began = self.session.previous_state()
+        pictures = settling(scene, start=self.session.began, samples=samples_for(scene), stop=stop)
         yield next(pictures)
         if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
             for picture in pictures:
@@ -168,6 +174,7 @@ class Controller:
         if isinstance(picture, Settled):
             self.session.picture = picture
             self.accuracy.describe()
+            self.stability.arrived(picture)
         if self.session.notice:
             self.note("")
         self._painter.offer(picture)

@@ -20,6 +20,11 @@ const TABS = {
     }
     return [list, paragraph("solid from rest, dashed sweeping up, dotted sweeping down; ● with a ring is now", "soft")];
   },
+  stability: () => {
+    const { show, content } = stabilityTab();
+    drawSmall = show;
+    return content;
+  },
   accuracy: (model) => {
     const page = window.granchain;
     const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
@@ -79,7 +84,10 @@ export function render({ model }) {
   });
   const show = () => {
     const focused = root.getRootNode().activeElement?.dataset?.name;
-    for (const tab of tabs.querySelectorAll("[role=tab]")) tab.setAttribute("aria-selected", String(tab.textContent === chosen));
+    for (const tab of tabs.querySelectorAll("[role=tab]")) {
+      tab.setAttribute("aria-selected", String(tab.textContent === chosen));
+      tab.tabIndex = tab.textContent === chosen ? 0 : -1;
+    }
     body.replaceChildren(...TABS[chosen](model));
     if (focused) body.querySelector(`[data-name="${focused}"]`)?.focus();
   };
@@ -88,9 +96,10 @@ export function render({ model }) {
   const choose = (name) => {
     const before = chosen;
     chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects"].includes(name));
+    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "stability"].includes(name));
     if (before === "effects" || name === "effects") looking();
     show();
+    window.granchain.emit("tab", name);
   };
   for (const name of Object.keys(TABS)) {
     const tab = Object.assign(document.createElement("button"), { textContent: name, type: "button" });
@@ -98,9 +107,20 @@ export function render({ model }) {
     tab.addEventListener("click", () => choose(name));
     tabs.append(tab);
   }
+  // One stop for the Tab key; arrows, Home and End go from tab to tab.
+  tabs.addEventListener("keydown", (event) => {
+    const all = [...tabs.querySelectorAll("[role=tab]")], here = all.indexOf(event.target);
+    const to = { ArrowRight: here + 1, ArrowLeft: here - 1, Home: 0, End: all.length - 1 }[event.key];
+    if (here < 0 || to === undefined) return;
+    event.preventDefault();
+    const next = all[(to + all.length) % all.length];
+    next.click();
+    next.focus();
+  });
   tabs.append(larger);
   model.on("state", show);
   window.granchain.on("accuracy", () => { if (chosen === "accuracy") drawSmall(); });
+  window.granchain.on("stability", () => { if (chosen === "stability") drawSmall(); });
   window.granchain.on("cover", () => { if (chosen === "effects") looking(); });
   show();
   return root;
