@@ -1,0 +1,163 @@
+"""Branches of periodic orbits: followed in one knob through folds, stable or not, with their special points.
+
+    branch = continue_branch(scene("sec2"), "f", 340.0, 60.0)
+
+Pseudo-arclength continuation (Keller 1977) of fixed points of the n-period stroboscopic map. The points come out one
+by one from a `Continuation`, which can be left at any time, saved, and taken up again as if it had never stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from ..integrate import State
+from ..integrate.engine import new_stop
+from ..integrate.lane_block import scaled_state
+from ..scene import Scene
+from .branch_axis import KnobAxis
+from .branch_equations import BranchEquations
+from .branch_point import BranchPoint, branch_point, state_at
+from .branch_special import SpecialPoint
+from .branch_walk import Arm, Walk
+from .orbit import periodic_orbit
+
+#: Points of one arm at most: a branch that folds without end has to stop somewhere.
+MOST_POINTS = 20_000
+#: A state that comes back this near before its period has a shorter one.
+_SHORTER = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A branch: its axis, the period of its orbits in drive periods, and one or two arms from the same seed."""
+
+    axis: KnobAxis
+    period: int
+    arms: tuple[Arm, ...]
+
+    @property
+    def points(self) -> list[BranchPoint]:
+        """All orbits in their order along the branch, from the end of the second arm to that of the first."""
+        first = self.arms[0].points
+        return first if len(self.arms) == 1 else [*reversed(self.arms[1].points[1:]), *first]
+
+    @property
+    def special(self) -> list[SpecialPoint]:
+        """All special points in the order of the points."""
+        first = self.arms[0].special
+        return first if len(self.arms) == 1 else [*reversed(self.arms[1].special), *first]
+
+    @property
+    def knob(self) -> np.ndarray:
+        """The knob at every point, SI."""
+        return self.column("knob")
+
+    def column(self, name: str) -> np.ndarray:
+        """One attribute of every point as an array."""
+        return np.array([getattr(point, name) for point in self.points])
+
+    def state(self, point: BranchPoint) -> State:
+        """The state of one of its orbits at drive phase 0 in SI."""
+        return state_at(self.axis.scene_at(point.knob), point.x)
+
+
+class Continuation(Iterator[BranchPoint]):
+    """A branch as it grows: each `next` is one more orbit; `branch` is what there is so far.
+
+    With two arms the first is followed to its end and then the second; `run` follows both at once. Iterating can be given
+    up and gone on with at any time. Where the stop flag is raised, `Cancelled` ends the present step only.
+    """
+
+    def __init__(self, branch: Branch, stop: np.ndarray | None = None) -> None:
+        self.branch = branch
+        self.stop = new_stop() if stop is None else stop
+        self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), arm) for arm in branch.arms]
+
+    def __next__(self) -> BranchPoint:
+        for walk in self._walks:
+            if not walk.arm.ended:
+                try:
+                    return next(walk)
+                except StopIteration:
+                    continue
+        raise StopIteration
+
+    def run(self, most_points: int = MOST_POINTS, on_point: Callable[[BranchPoint], None] | None = None) -> Branch:
+        """Follow all arms to their ends, each in a thread, or until one has `most_points`."""
+
+        def follow(walk: Walk) -> None:
+            while len(walk.arm.points) < most_points:
+                point = next(walk, None)
+                if point is None:
+                    return
+                if on_point is not None:
+                    on_point(point)
+
+        with ThreadPoolExecutor(len(self._walks)) as pool:
+            futures = [pool.submit(follow, walk) for walk in self._walks]
+            for future in futures:
+                future.result()
+        return self.branch
+
+
+def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
+                 start_state: State | None = None, both: bool = False, stop: np.ndarray | None = None) -> Branch:
+    """The seed of a branch, to be followed by a `Continuation`.
+
+    The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
+    rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
+    and to `end`. Raises `BadInput`, `NumbersFailed` where there is no such orbit, and `Cancelled`.
+    """
+    axis = KnobAxis.of(scene, knob, start, end)
+    seed_at = float(scene.knobs[knob]) if both else axis.start
+    if not axis.contains(seed_at):
+        nearest = min(max(seed_at, axis.low), axis.high)
+        raise BadInput(f"The scene's own {axis.said(seed_at)}, where both ways begin, is outside {axis.low:g} to "
+                       f"{axis.high:g}; the nearest valid value is {nearest:g}.")
+    shown = axis.scene_at(seed_at)
+    orbit = periodic_orbit(shown, period, start_state, stop=stop)
+    equations = BranchEquations(axis, orbit.period, stop)
+    strobe = equations.strobe(seed_at)
+    x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    _refuse_shorter(equations, x, seed_at)
+    fixed = np.zeros(equations.size + 1)
+    fixed[-1] = 1.0
+    solved = equations.solve(equations.point(x, seed_at), fixed)
+    arms = []
+    for direction in ((1, -1) if both else (1 if axis.end > axis.start else -1,)):
+        tangent = equations.tangent(solved, direction * fixed)
+        arms.append(Arm(direction, [branch_point(equations, solved, tangent, 0.0)]))
+    return Branch(axis, orbit.period, tuple(arms))
+
+
+def continue_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
+                    start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
+                    on_point: Callable[[BranchPoint], None] | None = None, stop: np.ndarray | None = None) -> Branch:
+    """The branch of periodic orbits of `period` drive periods through the one at knob = `start`, as far as `end`.
+
+    See `begin_branch` for where it starts. `on_point` is told every orbit. It ends where the knob reaches `end` or comes
+    back to `start`, where the branch closes on itself, or where it cannot be followed: `branch.arms[0].reason`.
+    """
+    if not 2 <= most_points <= MOST_POINTS:
+        raise BadInput(f"most_points = {most_points} is outside 2 to {MOST_POINTS}; the nearest valid value is "
+                       f"{min(max(most_points, 2), MOST_POINTS)}.")
+    begun = begin_branch(scene, knob, start, end, period, start_state, both, stop)
+    return Continuation(begun, stop).run(most_points, on_point)
+
+
+def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> None:
+    """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
+    n = equations.period
+    for d in range(1, n):
+        if n % d == 0:
+            end = equations.strobe(value, d)(x).end
+            if np.abs(end - x).max() < _SHORTER * np.abs(x).max():
+                raise BadInput(f"The orbit of {n} drive periods at {equations.axis.said(value)} repeats after {d} "
+                               f"already; give period {d}.")
+
+

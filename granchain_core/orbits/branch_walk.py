@@ -1,0 +1,180 @@
+"""A walk along a branch: predict along the tangent, correct by Newton's method, look at what changed in between.
+
+The step grows while Newton's method needs few iterations and the tangent hardly turns, and shrinks where not. A
+step that fails is halved; where it has shrunk to nothing the branch is said to end, with the last residuals.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..errors import NumbersFailed
+from .branch_equations import BranchEquations, Solved
+from .branch_point import BranchPoint, branch_point
+from .branch_special import SpecialPoint, special_between
+
+#: First, longest and shortest step in arclength.
+FIRST, LONGEST, SHORTEST = 0.02, 0.4, 1e-7
+#: Newton's iterations up to which a step grows, and from which it shrinks.
+_EASY, _HARD = 3, 5
+#: Turns of the tangent (cosines) up to which a step grows, and beyond which it is taken back.
+_STRAIGHT, _BENT = np.cos(np.radians(10.0)), np.cos(np.radians(30.0))
+_GROW, _SHRINK = 2.0, 0.6
+#: The corrected point may lie this part of the step from the predicted one.
+_OFF = 0.3
+#: A step passes the seed if that lies this near to it, relative to its length; it has closed if the corrected point
+#: is the seed to this.
+_PASSES, _CLOSED = 0.2, 1e-7
+#: Points from the seed on before the branch may close on itself.
+_AWAY = 4
+
+
+@dataclass
+class Arm:
+    """One direction of a branch from its seed: points (the seed first), special points, and how it ended.
+
+    `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` says it in a
+    sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if never stopped.
+    """
+
+    direction: int
+    points: list[BranchPoint]
+    special: list[SpecialPoint] = field(default_factory=list)
+    step: float = FIRST
+    ended: str = ""
+    reason: str = ""
+
+
+class Walk(Iterator[BranchPoint]):
+    """The points of one arm, one after the other; each `next` adds one to the arm, with the special points before it.
+
+    A walk that is left alone is paused; one whose stop flag is raised throws `Cancelled` and can go on later.
+    """
+
+    def __init__(self, equations: BranchEquations, arm: Arm) -> None:
+        self.equations, self.arm = equations, arm
+        self._seeds = _images(equations, arm.points[0])
+
+    def __next__(self) -> BranchPoint:
+        arm = self.arm
+        if arm.ended:
+            raise StopIteration
+        last = arm.points[-1]
+        point = self._step(last)
+        if point is None:
+            raise StopIteration
+        ended, reason = "", ""
+        closing = self._closing(last, point)
+        if closing is not None:
+            point, ended = closing, "closed"
+            reason = (f"the branch closed on itself at {self.equations.axis.said(point.knob)} after "
+                      f"{point.arclength:.3g} of arclength: the orbit there is the seed's")
+        elif not self.equations.axis.contains(point.knob):
+            point = self._landed(last, point)
+            first = arm.points[0].knob
+            at_start = len(arm.points) > 1 and abs(point.knob - first) < 1e-12 * abs(first)
+            ended = "returned" if at_start else "reached"
+            reason = f"{'came back to' if at_start else 'reached'} {self.equations.axis.said(point.knob)}"
+        special = special_between(self.equations.axis, last, point, self.between)
+        arm.special.extend(special)
+        arm.points.append(point)
+        arm.ended, arm.reason = ended, reason
+        return point
+
+    # --- one step ------------------------------------------------------------------------------------------
+
+    def _step(self, last: BranchPoint) -> BranchPoint | None:
+        """The next point, however small the step to it has to be; None where there is none."""
+        arm, equations, failure = self.arm, self.equations, ""
+        z = self._z(last)
+        while arm.step >= SHORTEST:
+            try:
+                solved = equations.solve(z + arm.step * last.tangent, last.tangent, _OFF * arm.step)
+                tangent = equations.tangent(solved, last.tangent)
+                cosine = float(tangent @ last.tangent)
+                if cosine >= _BENT:
+                    way = float(np.linalg.norm(solved.z - z))
+                    point = branch_point(equations, solved, tangent, last.arclength + way)
+                    self._adapt(solved, cosine)
+                    return point
+                failure = f"the branch turned by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step"
+            except NumbersFailed as problem:
+                failure = problem.sentence
+            except np.linalg.LinAlgError:
+                failure = "the equations became singular"
+            arm.step *= 0.5
+        arm.ended = "lost"
+        arm.reason = (f"the branch could not be followed beyond {equations.axis.said(last.knob)} although steps were "
+                      f"shortened to {SHORTEST:g}; the last try: {failure.rstrip('.')}; residuals at the last orbit: "
+                      f"{last.residual:.1e}")
+        return None
+
+    def _adapt(self, solved: Solved, cosine: float) -> None:
+        iterations = len(solved.residuals) - 1
+        if iterations <= _EASY and cosine >= _STRAIGHT:
+            self.arm.step = min(LONGEST, _GROW * self.arm.step)
+        elif iterations >= _HARD or cosine < _STRAIGHT:
+            self.arm.step *= _SHRINK
+
+    def _z(self, point: BranchPoint) -> np.ndarray:
+        return self.equations.point(point.x, point.knob)
+
+    def between(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
+        """The orbit at a fraction of the way from a to b, near the cubic through both with their tangents."""
+        za, zb = self._z(a), self._z(b)
+        way = float(np.linalg.norm(zb - za))
+        return self._corrected(_cubic(za, zb, way * a.tangent, way * b.tangent, fraction), (zb - za) / way, a)
+
+    def _corrected(self, guess: np.ndarray, normal: np.ndarray, a: BranchPoint) -> BranchPoint:
+        solved = self.equations.solve(guess, normal)
+        tangent = self.equations.tangent(solved, a.tangent)
+        return branch_point(self.equations, solved, tangent, a.arclength + float(np.linalg.norm(solved.z - self._z(a))))
+
+    # --- ends ----------------------------------------------------------------------------------------------
+
+    def _landed(self, last: BranchPoint, beyond: BranchPoint) -> BranchPoint:
+        """The orbit exactly at the end of the axis that was passed."""
+        axis = self.equations.axis
+        end = axis.high if beyond.knob > axis.high else axis.low
+        za, zb = self._z(last), self._z(beyond)
+        fraction = (axis.coordinate(end) - za[-1]) / (zb[-1] - za[-1])
+        way = float(np.linalg.norm(zb - za))
+        guess = _cubic(za, zb, way * last.tangent, way * beyond.tangent, fraction)
+        guess[-1] = axis.coordinate(end)
+        fixed = np.zeros(len(guess))
+        fixed[-1] = 1.0
+        point = self._corrected(guess, fixed, last)
+        return replace(point, knob=end)
+
+    def _closing(self, last: BranchPoint, point: BranchPoint) -> BranchPoint | None:
+        """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
+        if len(self.arm.points) < _AWAY:
+            return None
+        za, zb = self._z(last), self._z(point)
+        way = zb - za
+        length = float(np.linalg.norm(way))
+        for seed in self._seeds:
+            along = float((seed - za) @ way) / length**2
+            if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSES * length:
+                found = self.between(last, point, along)
+                if np.linalg.norm(self._z(found) - seed) < _CLOSED:
+                    return found
+        return None
+
+
+def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
+    """The seed seen at each of its drive periods: the same orbit."""
+    x, images = seed.x, []
+    for _ in range(equations.period):
+        images.append(equations.point(x, seed.knob))
+        x = equations.strobe(seed.knob, 1)(x).end
+    return images
+
+
+def _cubic(za: np.ndarray, zb: np.ndarray, ta: np.ndarray, tb: np.ndarray, s: float) -> np.ndarray:
+    """Hermite's cubic between two points with their derivatives."""
+    r = 1.0 - s
+    return (1 + 2 * s) * r * r * za + s * r * r * ta + s * s * (3 - 2 * s) * zb - s * s * r * tb
