@@ -1,4 +1,4 @@
-"""One run along an orbit that keeps what tells orbits apart: contact changes, turning points of overlaps, largest forces.
+"""A run along an orbit that keeps what tells orbits apart: contact changes, turning points of overlaps, largest forces.
 
 Each accepted step of the certified method is looked at on its dense output. A contact's overlap has a turning point
 where its bodies move equally fast; the smallest of these are the touches and separations about to appear or vanish. The

@@ -52,13 +52,8 @@ class Branch:
         first = self.arms[0].special
         return first if len(self.arms) == 1 else [*reversed(self.arms[1].special), *first]
 
-    @property
-    def knob(self) -> np.ndarray:
-        """The knob at every point, SI."""
-        return self.column("knob")
-
     def column(self, name: str) -> np.ndarray:
-        """One attribute of every point as an array."""
+        """One attribute of every point as an array, for example "knob" or "stable"."""
         return np.array([getattr(point, name) for point in self.points])
 
     def state(self, point: BranchPoint) -> State:
@@ -69,8 +64,8 @@ class Branch:
 class Continuation(Iterator[BranchPoint]):
     """A branch as it grows: each `next` is one more orbit; `branch` is what there is so far.
 
-    With two arms the first is followed to its end and then the second; `run` follows both at once. Iterating can be given
-    up and gone on with at any time. Where the stop flag is raised, `Cancelled` ends the present step only.
+    With two arms the first is followed to its end and then the second; `run` follows both at once. One may stop asking
+    and go on at any time. Where the stop flag is raised, `Cancelled` ends the present step only.
     """
 
     def __init__(self, branch: Branch, stop: np.ndarray | None = None) -> None:
@@ -81,26 +76,21 @@ class Continuation(Iterator[BranchPoint]):
     def __next__(self) -> BranchPoint:
         for walk in self._walks:
             if not walk.arm.ended:
-                try:
-                    return next(walk)
-                except StopIteration:
-                    continue
+                point = next(walk, None)
+                if point is not None:
+                    return point
         raise StopIteration
 
-    def run(self, most_points: int = MOST_POINTS, on_point: Callable[[BranchPoint], None] | None = None) -> Branch:
+    def run(self, most_points: int = MOST_POINTS, on_point: Callable[[Arm], None] | None = None) -> Branch:
         """Follow all arms to their ends, each in a thread, or until one has `most_points`."""
 
         def follow(walk: Walk) -> None:
-            while len(walk.arm.points) < most_points:
-                point = next(walk, None)
-                if point is None:
-                    return
+            while len(walk.arm.points) < most_points and next(walk, None) is not None:
                 if on_point is not None:
-                    on_point(point)
+                    on_point(walk.arm)
 
         with ThreadPoolExecutor(len(self._walks)) as pool:
-            futures = [pool.submit(follow, walk) for walk in self._walks]
-            for future in futures:
+            for future in [pool.submit(follow, walk) for walk in self._walks]:
                 future.result()
         return self.branch
 
@@ -117,31 +107,33 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
     seed_at = float(scene.knobs[knob]) if both else axis.start
     if not axis.contains(seed_at):
         nearest = min(max(seed_at, axis.low), axis.high)
-        raise BadInput(f"The scene's own {axis.said(seed_at)}, where both ways begin, is outside {axis.low:g} to "
+        raise BadInput(f"Both ways begin at the scene's own {axis.said(seed_at)}, which is outside {axis.low:g} to "
                        f"{axis.high:g}; the nearest valid value is {nearest:g}.")
-    shown = axis.scene_at(seed_at)
-    orbit = periodic_orbit(shown, period, start_state, stop=stop)
+    orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
     equations = BranchEquations(axis, orbit.period, stop)
     strobe = equations.strobe(seed_at)
     x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
     _refuse_shorter(equations, x, seed_at)
+    return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
+
+
+def arms_from(equations: BranchEquations, x: np.ndarray, value: float, directions: tuple[int, ...]) -> tuple[Arm, ...]:
+    """Arms with their seed only, the orbit at the knob's `value` near the scaled state x."""
     fixed = np.zeros(equations.size + 1)
     fixed[-1] = 1.0
-    solved = equations.solve(equations.point(x, seed_at), fixed)
-    arms = []
-    for direction in ((1, -1) if both else (1 if axis.end > axis.start else -1,)):
-        tangent = equations.tangent(solved, direction * fixed)
-        arms.append(Arm(direction, [branch_point(equations, solved, tangent, 0.0)]))
-    return Branch(axis, orbit.period, tuple(arms))
+    solved = equations.solve(equations.point(x, value), fixed)
+    return tuple(Arm(direction, [branch_point(equations, solved, equations.tangent(solved, direction * fixed), 0.0)])
+                 for direction in directions)
 
 
 def continue_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                     start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
-                    on_point: Callable[[BranchPoint], None] | None = None, stop: np.ndarray | None = None) -> Branch:
+                    on_point: Callable[[Arm], None] | None = None, stop: np.ndarray | None = None) -> Branch:
     """The branch of periodic orbits of `period` drive periods through the one at knob = `start`, as far as `end`.
 
-    See `begin_branch` for where it starts. `on_point` is told every orbit. It ends where the knob reaches `end` or comes
-    back to `start`, where the branch closes on itself, or where it cannot be followed: `branch.arms[0].reason`.
+    See `begin_branch` for its seed. `on_point` is told the arm that has grown. An arm ends where the knob reaches `end`
+    or comes back to `start`, where the branch closes on itself or merges with one of half the period, or where it
+    cannot be followed; `branch.arms[0].reason` says which.
     """
     if not 2 <= most_points <= MOST_POINTS:
         raise BadInput(f"most_points = {most_points} is outside 2 to {MOST_POINTS}; the nearest valid value is "
@@ -157,7 +149,5 @@ def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> 
         if n % d == 0:
             end = equations.strobe(value, d)(x).end
             if np.abs(end - x).max() < _SHORTER * np.abs(x).max():
-                raise BadInput(f"The orbit of {n} drive periods at {equations.axis.said(value)} repeats after {d} "
-                               f"already; give period {d}.")
-
-
+                raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after "
+                               f"{d} already; give period {d}.")

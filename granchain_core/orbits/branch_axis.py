@@ -50,6 +50,11 @@ class KnobAxis:
         return QUANTITIES[self.knob].scale == "log"
 
     @property
+    def direction(self) -> int:
+        """+1 where the knob grows from start to end, −1 where it falls."""
+        return 1 if self.end > self.start else -1
+
+    @property
     def low(self) -> float:
         """The smaller end."""
         return min(self.start, self.end)

@@ -62,7 +62,7 @@ class BranchEquations:
 
         Raises `NumbersFailed` with the residuals where Newton's method does not get there.
         """
-        start, residuals = z, []
+        start, residuals, slope = z, list[float](), np.zeros(self.size)
         for _ in range(_MOST):
             value, x = self.value(z), self.state(z)
             flow = self.strobe(value)(x)
@@ -71,7 +71,8 @@ class BranchEquations:
                 break
             if len(residuals) > 2 and residuals[-1] > 0.3 * residuals[-2]:
                 break
-            slope = self._knob_slope(x, value, flow) if len(residuals) == 1 else slope
+            if len(residuals) == 1:
+                slope = self._knob_slope(x, value, flow)
             z = z - np.linalg.solve(self._matrix(flow, slope, normal), np.append(flow.end - x, (z - start) @ normal))
             if not np.linalg.norm(z - start) <= farthest:
                 raise NumbersFailed(f"Newton's method went {np.linalg.norm(z - start):.1e} away after residuals "

@@ -21,6 +21,9 @@ from .branch_point import BranchPoint
 
 #: An interval is narrow enough at this width relative to the knob.
 WIDTH = 1e-5
+#: The tangents at both ends of a bracket meet at most so many times its length away from them: they turn by no more
+#: than 30° (branch_walk.py).
+_SIDE = 1.25
 #: A guess is put so far behind where the test function vanishes, relative to the bracket, that it brackets it at once.
 _BEHIND = 0.02
 #: Orbits between two neighbours at most before what is found is taken as it is.
@@ -34,7 +37,8 @@ Between = Callable[[BranchPoint, BranchPoint, float], BranchPoint]
 class SpecialPoint:
     """A special point: its kind, the knob there, the interval that holds it, and the two orbits around it.
 
-    `contact` and `event` ("touch" or "separation") say what grazes; `multiplier` is the one that passes the unit circle.
+    `contact` and `event` ("touch" or "separation") say what grazes; `multiplier` is the one that passes the unit
+    circle.
     """
 
     kind: str
@@ -76,12 +80,17 @@ def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, fl
     """
     low, high = min(a.knob, b.knob), max(a.knob, b.knob)
     if a.turning != b.turning:
-        way = abs(b.arclength - a.arclength)
-        reach = way * min(abs(a.tangent[-1]), abs(b.tangent[-1])) * axis.slope(high)
+        reach = _SIDE * _distance(axis, a, b) * min(abs(a.tangent[-1]), abs(b.tangent[-1])) * axis.slope(high)
         if a.turning > 0:
             return high, high + reach
         return low - reach, low
     return low, high
+
+
+def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
+    """Length of the straight line between two points of the branch."""
+    moved = axis.coordinate(b.knob) - axis.coordinate(a.knob)
+    return float(np.hypot(np.linalg.norm(b.x - a.x) / np.sqrt(len(a.x)), moved))
 
 
 def _fraction(a: BranchPoint, b: BranchPoint, depth: int) -> float:

@@ -36,8 +36,9 @@ _AWAY = 4
 class Arm:
     """One direction of a branch from its seed: points (the seed first), special points, and how it ended.
 
-    `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` says it in a
-    sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if never stopped.
+    `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` says
+    it in a sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if it had
+    never stopped.
     """
 
     direction: int
@@ -79,6 +80,14 @@ class Walk(Iterator[BranchPoint]):
             ended = "returned" if at_start else "reached"
             reason = f"{'came back to' if at_start else 'reached'} {self.equations.axis.said(point.knob)}"
         special = special_between(self.equations.axis, last, point, self.between)
+        merging = self._merging(special)
+        if merging is not None:
+            special, point = special[: merging + 1], special[merging].before
+            special[merging] = replace(special[merging], kind="period_doubling")
+            ended = "merged"
+            reason = (f"merged with the branch of period {self.equations.period // 2}, whose period doubles at "
+                      f"{self.equations.axis.said(special[merging].knob)}: beyond it are the same orbits, half a "
+                      "period later")
         arm.special.extend(special)
         arm.points.append(point)
         arm.ended, arm.reason = ended, reason
@@ -126,12 +135,14 @@ class Walk(Iterator[BranchPoint]):
         """The orbit at a fraction of the way from a to b, near the cubic through both with their tangents."""
         za, zb = self._z(a), self._z(b)
         way = float(np.linalg.norm(zb - za))
-        return self._corrected(_cubic(za, zb, way * a.tangent, way * b.tangent, fraction), (zb - za) / way, a)
+        normal = (zb - za) / way
+        guess = za + fraction * (zb - za)  # in the plane that the corrected orbit stays in
+        guess += _across(_cubic(za, zb, way * a.tangent, way * b.tangent, fraction) - guess, normal)
+        return self._corrected(guess, normal, a, a.arclength + fraction * (b.arclength - a.arclength))
 
-    def _corrected(self, guess: np.ndarray, normal: np.ndarray, a: BranchPoint) -> BranchPoint:
+    def _corrected(self, guess: np.ndarray, normal: np.ndarray, a: BranchPoint, arclength: float) -> BranchPoint:
         solved = self.equations.solve(guess, normal)
-        tangent = self.equations.tangent(solved, a.tangent)
-        return branch_point(self.equations, solved, tangent, a.arclength + float(np.linalg.norm(solved.z - self._z(a))))
+        return branch_point(self.equations, solved, self.equations.tangent(solved, a.tangent), arclength)
 
     # --- ends ----------------------------------------------------------------------------------------------
 
@@ -146,8 +157,21 @@ class Walk(Iterator[BranchPoint]):
         guess[-1] = axis.coordinate(end)
         fixed = np.zeros(len(guess))
         fixed[-1] = 1.0
-        point = self._corrected(guess, fixed, last)
+        point = self._corrected(guess, fixed, last, last.arclength + fraction * (beyond.arclength - last.arclength))
         return replace(point, knob=end)
+
+    def _merging(self, special: list[SpecialPoint]) -> int | None:
+        """Which fold is none: there the difference of an orbit's two halves changes sign, so it vanishes in between."""
+        if self.equations.period % 2:
+            return None
+        for place, one in enumerate(special):
+            if one.kind == "fold" and self._halves(one.before) @ self._halves(one.after) < 0.0:
+                return place
+        return None
+
+    def _halves(self, point: BranchPoint) -> np.ndarray:
+        """How far the state half an orbit later is from the state now."""
+        return self.equations.strobe(point.knob, self.equations.period // 2)(point.x).end - point.x
 
     def _closing(self, last: BranchPoint, point: BranchPoint) -> BranchPoint | None:
         """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
@@ -172,6 +196,11 @@ def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
         images.append(equations.point(x, seed.knob))
         x = equations.strobe(seed.knob, 1)(x).end
     return images
+
+
+def _across(vector: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """The part of a vector across a unit normal."""
+    return vector - (vector @ normal) * normal
 
 
 def _cubic(za: np.ndarray, zb: np.ndarray, ta: np.ndarray, tb: np.ndarray, s: float) -> np.ndarray:
