@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,7 +65,8 @@ class Continuation(Iterator[BranchPoint]):
     """A branch as it grows: each `next` is one more orbit; `branch` is what there is so far.
 
     With two arms the first is followed to its end and then the second; `run` follows both at once. One may stop asking
-    and go on at any time. Where the stop flag is raised, `Cancelled` ends the present step only.
+    and go on at any time. Where the stop flag is raised, `Cancelled` ends the present step only. An arm that closes on
+    itself is the whole branch: the other is dropped.
     """
 
     def __init__(self, branch: Branch, stop: np.ndarray | None = None) -> None:
@@ -75,9 +76,10 @@ class Continuation(Iterator[BranchPoint]):
 
     def __next__(self) -> BranchPoint:
         for walk in self._walks:
-            if not walk.arm.ended:
+            if not self._closed and not walk.arm.ended:
                 point = next(walk, None)
                 if point is not None:
+                    self._drop_double()
                     return point
         raise StopIteration
 
@@ -85,14 +87,24 @@ class Continuation(Iterator[BranchPoint]):
         """Follow all arms to their ends, each in a thread, or until one has `most_points`."""
 
         def follow(walk: Walk) -> None:
-            while len(walk.arm.points) < most_points and next(walk, None) is not None:
+            while not self._closed and len(walk.arm.points) < most_points and next(walk, None) is not None:
                 if on_point is not None:
                     on_point(walk.arm)
 
         with ThreadPoolExecutor(len(self._walks)) as pool:
             for future in [pool.submit(follow, walk) for walk in self._walks]:
                 future.result()
+        self._drop_double()
         return self.branch
+
+    @property
+    def _closed(self) -> bool:
+        return any(walk.arm.ended == "closed" for walk in self._walks)
+
+    def _drop_double(self) -> None:
+        closed = next((arm for arm in self.branch.arms if arm.ended == "closed"), None)
+        if closed is not None:
+            self.branch = replace(self.branch, arms=(closed,))
 
 
 def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
