@@ -1,4 +1,4 @@
-"""A run along an orbit that keeps what tells orbits apart: contact changes, turning points of overlaps, largest forces.
+"""A run along an orbit that keeps the turning points of all overlaps and the largest forces.
 
 Each accepted step of the certified method is looked at on its dense output. A contact's overlap has a turning point
 where its bodies move equally fast; the smallest of these are the touches and separations about to appear or vanish. The
@@ -31,13 +31,11 @@ _WORTH = 0.98
 class OrbitRecord(NamedTuple):
     """What is kept of an orbit.
 
-    `closings` and `openings` (N+1,) count the changes of every contact. Turning points are rows of `turns` (T, 4):
-    contact, +1 for a largest and −1 for a smallest overlap, scaled time since the orbit's phase 0, overlap.
+    Turning points are rows of `turns` (T, 4): contact, +1 for a largest and −1 for a smallest overlap, scaled time
+    since the orbit's phase 0, overlap.
     `tops` (3,) are the largest input, output and elastic output force.
     """
 
-    closings: np.ndarray
-    openings: np.ndarray
     turns: np.ndarray
     tops: np.ndarray
 
@@ -91,18 +89,13 @@ def follow_forces(slots, beta, t, h, y, work, tops):
 
 
 @kernel
-def follow_contacts(slots, beta, t, h, y, work, since, record, row):
-    """Count contact changes of the step and keep the turning points of all overlaps; returns the next free row.
+def follow_turns(slots, beta, t, h, y, work, since, record, row):
+    """Keep the turning points of all overlaps inside the step; returns the next free row.
 
     The step has work.k[0] and work.k[12] as slopes at its ends; `since` is the time from the orbit's start to t.
     """
     k = work.k
     for c in range(slots.chain.stiffness.size):
-        before, after = overlap(slots.preload, y, c), overlap(slots.preload, work.end, c)
-        if before <= 0.0 and after > 0.0:
-            record.closings[c] += 1
-        elif before > 0.0 and after <= 0.0:
-            record.openings[c] += 1
         s0, s1 = k[0, c] - k[0, c + 1], k[STAGES, c] - k[STAGES, c + 1]
         if (s0 > 0.0) != (s1 > 0.0):
             if row < record.turns.shape[0]:
@@ -127,7 +120,7 @@ def record_orbit(method, slots, beta, period, periods, y, work, clock, record, c
             if status != DONE:
                 return status, p, row
             prepare_dense(slots, beta, t, h, y, work)
-            row = follow_contacts(slots, beta, t, h, y, work, p * period + t, record, row)
+            row = follow_turns(slots, beta, t, h, y, work, p * period + t, record, row)
             follow_forces(slots, beta, t, h, y, work, record.tops)
             copy(work.end, y)
             new_scale(y, work, m)

@@ -159,7 +159,7 @@ def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> 
     n = equations.period
     for d in range(1, n):
         if n % d == 0:
-            end = equations.strobe(value, d)(x).end
+            end = equations.strobe(value, d).end(x)
             if np.abs(end - x).max() < _SHORTER * np.abs(x).max():
                 raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after "
                                f"{d} already; give period {d}.")

@@ -17,8 +17,9 @@ from .flow import Flow, StroboscopicMap
 
 #: Residual at which a point is good, and the most that is accepted where rounding does not let it fall so far.
 GOOD, ACCEPTED = 1e-11, 1e-10
-#: Newton's iterations at most.
-_MOST = 8
+#: Newton's iterations at most; below the residual _LAST the next is the last, and below _NEAR the last derivative
+#: serves once more.
+_MOST, _LAST, _NEAR = 8, 1e-6, 1e-4
 #: Difference in p: between the curvature of the map and its rounding (1e-13).
 _DIFFERENCE = 1e-6
 
@@ -57,26 +58,31 @@ class BranchEquations:
         """The map at a knob value, always a new one, so that the same question has the same answer to the bit."""
         return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop)
 
-    def solve(self, z: np.ndarray, normal: np.ndarray, farthest: float = np.inf) -> Solved:
+    def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
+              farthest: float = np.inf) -> Solved:
         """The branch's point in the plane through z across `normal`, at most `farthest` from z.
 
-        Raises `NumbersFailed` with the residuals where Newton's method does not get there.
+        `slope` is P_p nearby, where it is known. A step with the last derivative follows each of Newton's that is not
+        the last, since the map alone costs a third of it. Raises `NumbersFailed` with the residuals where it does not
+        get there.
         """
-        start, residuals, slope = z, list[float](), np.zeros(self.size)
+        start, residuals = z, list[float]()
         for _ in range(_MOST):
             value, x = self.value(z), self.state(z)
             flow = self.strobe(value)(x)
             residuals.append(relative_change(flow.end - x, x))
-            if residuals[-1] <= GOOD:
+            if residuals[-1] <= GOOD or (len(residuals) > 2 and residuals[-1] > 0.3 * residuals[-2]):
                 break
-            if len(residuals) > 2 and residuals[-1] > 0.3 * residuals[-2]:
-                break
-            if len(residuals) == 1:
-                slope = self._knob_slope(x, value, flow)
-            z = z - np.linalg.solve(self._matrix(flow, slope, normal), np.append(flow.end - x, (z - start) @ normal))
+            slope = self._knob_slope(x, value, flow) if slope is None else slope
+            matrix = self._matrix(flow, slope, normal)
+            z = z - np.linalg.solve(matrix, np.append(flow.end - x, (z - start) @ normal))
             if not np.linalg.norm(z - start) <= farthest:
                 raise NumbersFailed(f"Newton's method went {np.linalg.norm(z - start):.1e} away after residuals "
                                     f"{said(residuals)}.", "no-convergence")
+            if residuals[-1] > _LAST:
+                change = self.strobe(self.value(z)).end(self.state(z)) - self.state(z)
+                if relative_change(change, self.state(z)) < _NEAR:
+                    z = z - np.linalg.solve(matrix, np.append(change, (z - start) @ normal))
         if not residuals[-1] <= ACCEPTED:
             raise NumbersFailed(f"Newton's residuals were {said(residuals)}.", "no-convergence")
         return Solved(z, flow, self._knob_slope(self.state(z), self.value(z), flow), tuple(residuals))
@@ -101,7 +107,7 @@ class BranchEquations:
         moved = self.axis.value(p + _DIFFERENCE)
         if moved == value:  # at the knob's largest value the difference is taken downwards
             moved = self.axis.value(p - _DIFFERENCE)
-        return (self.strobe(moved)(x).end - flow.end) / (self.axis.coordinate(moved) - p)
+        return (self.strobe(moved).end(x) - flow.end) / (self.axis.coordinate(moved) - p)
 
 
 def relative_change(change: np.ndarray, x: np.ndarray) -> float:

@@ -14,8 +14,8 @@ from ..scene import Scene
 from .branch_equations import BranchEquations, Solved
 from .orbit import sorted_multipliers
 
-#: Tolerance of one step of the run that records forces and contacts: they are then good to about 1e-10.
-_TOLERANCE = 1e-13
+#: Tolerance of one step of the run that records forces and contacts: they are then good to about 1e-9.
+_TOLERANCE = 1e-11
 #: Turning points of overlaps there is room for at first, for each contact and period.
 _ROOM = 32
 #: Contact counts of a contact that never changes: always open, always closed.
@@ -29,8 +29,9 @@ class BranchPoint:
     `knob` in SI; `x` (2N,) is the scaled state (u, w) at phase 0; `tangent` (2N + 1,) the branch's unit tangent in
     (x/√(2N), p); `arclength` counts from the seed. `multipliers` (2N,) come largest modulus first. The three largest
     forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
-    open, −1 if it is always closed. `residual` is the map's remaining change, `residuals` its history, `liouville`
-    how far ln |det| of the monodromy matrix is from ∫ trace.
+    open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
+    the last being the orbit's; `liouville` is how far ln |det| of the monodromy matrix is from ∫ trace. `turns` are the
+    turning points of all overlaps (kernels/orbit_record.py).
     """
 
     knob: float
@@ -42,6 +43,7 @@ class BranchPoint:
     max_output_force: float
     max_output_force_elastic: float
     closings: np.ndarray
+    slope: np.ndarray
     residuals: tuple[float, ...]
     liouville: float
     turns: np.ndarray
@@ -81,7 +83,8 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
         max_input_force=float(tops[0]), max_output_force=float(tops[1]), max_output_force_elastic=float(tops[2]),
-        closings=_counts(record, engine.y), residuals=solved.residuals,
+        closings=_counts(len(x) // 2 + 1, record, solved.flow.changes), slope=solved.knob_slope,
+        residuals=solved.residuals,
         liouville=_liouville(multipliers, solved.flow.log_determinant), turns=record.turns)
 
 
@@ -96,12 +99,10 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
 
 def _record(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:
     engine = Engine(equations.axis.scene_at(value), Setting("dop853", tolerance=_TOLERANCE), 1, stop=equations.stop)
-    contacts, lo = equations.size // 2 + 1, engine.lowered
-    room = _ROOM * contacts * equations.period
+    lo, room = engine.lowered, _ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)
-        record = OrbitRecord(np.zeros(contacts, dtype=np.int64), np.zeros(contacts, dtype=np.int64),
-                             np.zeros((room, 4)), np.zeros(3))
+        record = OrbitRecord(np.zeros((room, 4)), np.zeros(3))
         status, done, found = record_orbit(engine.method, lo.slots, lo.beta, lo.period, equations.period, engine.y,
                                            engine.work, engine.clock, record, engine.counts.array, engine.stop)
         if status != FULL:
@@ -110,13 +111,17 @@ def _record(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[En
         room = found
 
 
-def _counts(record: OrbitRecord, y: np.ndarray) -> np.ndarray:
-    """Changes of every contact; the two ways of having none are told apart by how the orbit ends."""
-    if not np.array_equal(record.closings, record.openings):
+def _counts(contacts: int, record: OrbitRecord, changes: np.ndarray) -> np.ndarray:
+    """Closings of every contact; the two ways of having none are told apart by the overlap's turning points."""
+    numbers = changes[:, 0].astype(int)
+    closings = np.bincount(numbers[numbers > 0] - 1, minlength=contacts)
+    if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):
         raise NumbersFailed("A contact closed more often than it opened along a closed orbit.", "contacts")
-    row = len(record.closings) + 1
-    closed = y[: row - 1] > y[1:row]
-    return np.where((record.closings == 0) & closed, _CLOSED, record.closings)
+    for contact in np.flatnonzero(closings == 0):
+        overlaps = record.turns[record.turns[:, 0] == contact, 3]
+        if len(overlaps) and overlaps.max() > 0.0:
+            closings[contact] = _CLOSED
+    return closings
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float:

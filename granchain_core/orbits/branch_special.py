@@ -148,14 +148,15 @@ def _changes(point: BranchPoint, contact: int) -> int:
 
 def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialPoint]:
     """What happens inside a narrow bracket; most often one thing."""
-    interval = _interval(axis, a, b)
-    knob = 0.5 * (interval[0] + interval[1])
+    low, high = _interval(axis, a, b)
     found = []
     left = _passing(a, b)
     if a.turning != b.turning:
         mine = next((mu for mu in left if mu.imag == 0.0 and mu.real > 0.0), None)
         left = [mu for mu in left if mu is not mine]
-        found.append(SpecialPoint("fold", knob, interval, a, b, multiplier=mine))
+        found.append(SpecialPoint("fold", 0.5 * (low + high), (low, high), a, b, multiplier=mine))
+    interval = min(low, a.knob, b.knob), max(high, a.knob, b.knob)
+    knob = 0.5 * (interval[0] + interval[1])
     for mu in left:
         kind = "neimark_sacker" if mu.imag != 0.0 else "fold" if mu.real > 0.0 else "period_doubling"
         found.append(SpecialPoint(kind, knob, interval, a, b, multiplier=mu))

@@ -36,12 +36,12 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: np.ndarray | 
     tried = []
     for distance in _DISTANCES:
         try:
-            solved = twice.solve(z + distance * direction, direction, 0.5 * distance)
+            solved = twice.solve(z + distance * direction, direction, farthest=0.5 * distance)
         except NumbersFailed as problem:
             tried.append(problem.sentence)
             continue
         x = twice.state(solved.z)
-        halves = once.strobe(twice.value(solved.z))(x).end - x
+        halves = once.strobe(twice.value(solved.z)).end(x) - x
         if np.linalg.norm(halves) / once.weight > _DOUBLED * 2.0 * distance:
             return Branch(branch.axis, 2 * branch.period, (_arm(twice, solved, direction),))
         tried.append("the orbit found repeats after half of its period.")

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import NumbersFailed
-from .branch_equations import BranchEquations, Solved
+from .branch_equations import BranchEquations, Solved, said
 from .branch_point import BranchPoint, branch_point
 from .branch_special import SpecialPoint, special_between
 
@@ -61,65 +61,62 @@ class Walk(Iterator[BranchPoint]):
 
     def __next__(self) -> BranchPoint:
         arm = self.arm
-        if arm.ended:
-            raise StopIteration
-        last = arm.points[-1]
-        point = self._step(last)
-        if point is None:
-            raise StopIteration
-        ended, reason = "", ""
-        closing = self._closing(last, point)
-        if closing is not None:
-            point, ended = closing, "closed"
-            reason = (f"the branch closed on itself at {self.equations.axis.said(point.knob)} after "
-                      f"{point.arclength:.3g} of arclength: the orbit there is the seed's")
-        elif not self.equations.axis.contains(point.knob):
-            point = self._landed(last, point)
-            first = arm.points[0].knob
-            at_start = len(arm.points) > 1 and abs(point.knob - first) < 1e-12 * abs(first)
-            ended = "returned" if at_start else "reached"
-            reason = f"{'came back to' if at_start else 'reached'} {self.equations.axis.said(point.knob)}"
-        special = special_between(self.equations.axis, last, point, self.between)
-        merging = self._merging(special)
-        if merging is not None:
-            special, point = special[: merging + 1], special[merging].before
-            special[merging] = replace(special[merging], kind="period_doubling")
-            ended = "merged"
-            reason = (f"merged with the branch of period {self.equations.period // 2}, whose period doubles at "
-                      f"{self.equations.axis.said(special[merging].knob)}: beyond it are the same orbits, half a "
-                      "period later")
-        arm.special.extend(special)
-        arm.points.append(point)
-        arm.ended, arm.reason = ended, reason
-        return point
-
-    # --- one step ------------------------------------------------------------------------------------------
-
-    def _step(self, last: BranchPoint) -> BranchPoint | None:
-        """The next point, however small the step to it has to be; None where there is none."""
-        arm, equations, failure = self.arm, self.equations, ""
-        z = self._z(last)
-        while arm.step >= SHORTEST:
+        failure = ""
+        while not arm.ended and arm.step >= SHORTEST:
             try:
-                solved = equations.solve(z + arm.step * last.tangent, last.tangent, _OFF * arm.step)
-                tangent = equations.tangent(solved, last.tangent)
-                cosine = float(tangent @ last.tangent)
-                if cosine >= _BENT:
-                    way = float(np.linalg.norm(solved.z - z))
-                    point = branch_point(equations, solved, tangent, last.arclength + way)
-                    self._adapt(solved, cosine)
-                    return point
-                failure = f"the branch turned by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step"
+                return self._step(arm.points[-1])
             except NumbersFailed as problem:
                 failure = problem.sentence
             except np.linalg.LinAlgError:
                 failure = "the equations became singular"
             arm.step *= 0.5
-        arm.ended = "lost"
-        arm.reason = (f"the branch could not be followed beyond {equations.axis.said(last.knob)} although steps were "
-                      f"shortened to {SHORTEST:g}; the last try: {failure.rstrip('.')}; residuals at the last orbit: "
-                      f"{last.residual:.1e}")
-        return None
+        if not arm.ended:
+            last = arm.points[-1]
+            arm.ended = "lost"
+            arm.reason = (f"the branch could not be followed beyond {self.equations.axis.said(last.knob)} although "
+                          f"steps were shortened to {SHORTEST:g}: {failure.rstrip('.')}; residuals at the last orbit: "
+                          f"{said(last.residuals)}")
+        raise StopIteration
+
+    # --- one step ------------------------------------------------------------------------------------------
+
+    def _step(self, last: BranchPoint) -> BranchPoint:
+        """The next orbit, with what is special before it; `NumbersFailed` where the step is too long."""
+        arm, equations = self.arm, self.equations
+        solved = equations.solve(self._predicted(last), last.tangent, last.slope, _OFF * arm.step)
+        tangent = equations.tangent(solved, last.tangent)
+        cosine = float(tangent @ last.tangent)
+        if cosine < _BENT:
+            raise NumbersFailed(f"the branch turns by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step",
+                                "no-convergence")
+        way = float(np.linalg.norm(solved.z - self._z(last)))
+        point, ended, reason = self._end(last, branch_point(equations, solved, tangent, last.arclength + way))
+        special = special_between(equations.axis, last, point, self.between)
+        merging = self._merging(special)
+        if merging is not None:
+            special, point = special[: merging + 1], special[merging].before
+            special[merging] = replace(special[merging], kind="period_doubling")
+            ended = "merged"
+            reason = (f"merged with the branch of period {equations.period // 2}, whose period doubles at "
+                      f"{equations.axis.said(special[merging].knob)}: beyond it are the same orbits, half a period "
+                      "later")
+        arm.special.extend(special)
+        arm.points.append(point)
+        arm.ended, arm.reason = ended, reason
+        self._adapt(solved, cosine)
+        return point
+
+    def _predicted(self, last: BranchPoint) -> np.ndarray:
+        """A step along the tangent, bent as the branch has bent since the point before."""
+        step, z = self.arm.step, self._z(last)
+        guess = z + step * last.tangent
+        if len(self.arm.points) > 1:
+            before = self.arm.points[-2]
+            bend = _across(last.tangent - before.tangent, last.tangent) / (last.arclength - before.arclength)
+            sideways = 0.5 * step**2 * bend
+            if np.linalg.norm(sideways) < _OFF * step:
+                guess += sideways
+        return guess
 
     def _adapt(self, solved: Solved, cosine: float) -> None:
         iterations = len(solved.residuals) - 1
@@ -141,10 +138,24 @@ class Walk(Iterator[BranchPoint]):
         return self._corrected(guess, normal, a, a.arclength + fraction * (b.arclength - a.arclength))
 
     def _corrected(self, guess: np.ndarray, normal: np.ndarray, a: BranchPoint, arclength: float) -> BranchPoint:
-        solved = self.equations.solve(guess, normal)
+        solved = self.equations.solve(guess, normal, a.slope)
         return branch_point(self.equations, solved, self.equations.tangent(solved, a.tangent), arclength)
 
     # --- ends ----------------------------------------------------------------------------------------------
+
+    def _end(self, last: BranchPoint, point: BranchPoint) -> tuple[BranchPoint, str, str]:
+        """The step's last point, and how and why the branch ends there, if it does."""
+        axis = self.equations.axis
+        closing = self._closing(last, point)
+        if closing is not None:
+            return closing, "closed", (f"closed on itself at {axis.said(closing.knob)} after {closing.arclength:.3g} "
+                                       "of arclength: the orbit there is the seed's")
+        if axis.contains(point.knob):
+            return point, "", ""
+        landed, first = self._landed(last, point), self.arm.points[0].knob
+        if landed.knob == first:
+            return landed, "returned", f"came back to {axis.said(first)}"
+        return landed, "reached", f"reached {axis.said(landed.knob)}"
 
     def _landed(self, last: BranchPoint, beyond: BranchPoint) -> BranchPoint:
         """The orbit exactly at the end of the axis that was passed."""
@@ -171,7 +182,7 @@ class Walk(Iterator[BranchPoint]):
 
     def _halves(self, point: BranchPoint) -> np.ndarray:
         """How far the state half an orbit later is from the state now."""
-        return self.equations.strobe(point.knob, self.equations.period // 2)(point.x).end - point.x
+        return self.equations.strobe(point.knob, self.equations.period // 2).end(point.x) - point.x
 
     def _closing(self, last: BranchPoint, point: BranchPoint) -> BranchPoint | None:
         """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
@@ -194,7 +205,7 @@ def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
     x, images = seed.x, []
     for _ in range(equations.period):
         images.append(equations.point(x, seed.knob))
-        x = equations.strobe(seed.knob, 1)(x).end
+        x = equations.strobe(seed.knob, 1).end(x)
     return images
 
 

@@ -100,6 +100,7 @@ def _orbits(file: h5py.File, name: str, branch: Branch, points: list[BranchPoint
     _variable(group, "residual", residuals, ("point", "iteration"), "1", "residuals of Newton's method")
     _variable(group, "state", table("x", 2 * n, float), ("point", "component"), "1", "scaled state at phase 0")
     _variable(group, "tangent", table("tangent", 2 * n + 1, float), ("point", "coordinate"), "1", "unit tangent")
+    _variable(group, "slope", table("slope", 2 * n, float), ("point", "component"), "1", "change of the map with p")
     _variable(group, "multiplier_real", multipliers.real, ("point", "component"), "1", "multipliers, real part")
     _variable(group, "multiplier_imag", multipliers.imag, ("point", "component"), "1", "multipliers, imaginary part")
     _variable(group, "closings", table("closings", n + 1, int), ("point", "contact"), "1",
@@ -149,10 +150,10 @@ def _read(file: h5py.File) -> Branch:
 
 def _read_orbits(group: h5py.Group) -> list[BranchPoint]:
     read = {name: group[name][()] for name in (
-        "knob", "state", "tangent", "arclength", "multiplier_real", "multiplier_imag", *_FORCES, "closings",
+        "knob", "state", "tangent", "slope", "arclength", "multiplier_real", "multiplier_imag", *_FORCES, "closings",
         "residual", "liouville")}
     return [BranchPoint(
-        knob=float(read["knob"][i]), x=read["state"][i], tangent=read["tangent"][i],
+        knob=float(read["knob"][i]), x=read["state"][i], tangent=read["tangent"][i], slope=read["slope"][i],
         arclength=float(read["arclength"][i]),
         multipliers=read["multiplier_real"][i] + 1j * read["multiplier_imag"][i],
         **{force: float(read[force][i]) for force in _FORCES}, closings=read["closings"][i],
