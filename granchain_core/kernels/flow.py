@@ -18,7 +18,7 @@ from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, first_not_finite
 from .tangent import carry
 
 #: Overlaps below this, in units of the largest displacement, are those of contacts that change at the same moment.
-_SAME = 4e-15
+_SAME = 2e-14
 
 
 @kernel
@@ -45,10 +45,11 @@ def change(slots, y, work, path, c, t):
     closed = note(path, c, t)
     nearest = _SAME * max(1.0, work.scale[0])
     for other in range(path.closed.size):
+        if other == c or abs(overlap(slots.preload, y, other)) > nearest or path.logged[0] >= path.log.shape[0]:
+            continue
         speed = work.slope[other] - work.slope[other + 1]
-        if other != c and abs(overlap(slots.preload, y, other)) <= nearest and path.logged[0] < path.log.shape[0]:
-            if (path.closed[other] == 0 and speed > 0.0) or (path.closed[other] != 0 and speed < 0.0):
-                closed = note(path, other, t) or closed
+        if (path.closed[other] == 0 and speed > 0.0) or (path.closed[other] != 0 and speed < 0.0):
+            closed = note(path, other, t) or closed
     return closed
 
 
@@ -79,6 +80,7 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
             if contact >= 0:
                 if path.logged[0] >= path.log.shape[0]:
                     return CHATTER, p, trace
+                held_slope(slots, beta, t, path.closed, y, work.slope, work.forces)
                 if change(slots, y, work, path, contact, p * period + t):
                     onset = t
                 counts[2] += 1
