@@ -121,6 +121,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
         nearest = min(max(seed_at, axis.low), axis.high)
         raise BadInput(f"Both ways begin at the scene's own {axis.said(seed_at)}, which is outside {axis.low:g} to "
                        f"{axis.high:g}; the nearest valid value is {nearest:g}.")
+    BranchEquations(axis, 1).strobe(seed_at)  # a scene whose orbits are not computed is refused before it settles
     orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
     equations = BranchEquations(axis, orbit.period, stop)
     strobe = equations.strobe(seed_at)

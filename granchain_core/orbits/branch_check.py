@@ -70,6 +70,6 @@ def _special_wrong(branch: Branch, arm: Arm) -> list[str]:
         if s.before.signature == s.after.signature:
             found.append(f"{where} lies between orbits that are alike")
         inside = [low - 1e-12 * abs(low) <= p.knob <= high + 1e-12 * abs(high) for p in (s.before, s.after)]
-        if s.kind != "fold" and not all(inside):
+        if s.before.turning == s.after.turning and not all(inside):
             found.append(f"{where} has orbits outside its interval")
     return found

@@ -64,7 +64,8 @@ class Walk(Iterator[BranchPoint]):
         failure = ""
         while not arm.ended and arm.step >= SHORTEST:
             try:
-                return self._step(arm.points[-1])
+                self._step(arm.points[-1])
+                return arm.points[-1]
             except NumbersFailed as problem:
                 failure = problem.sentence
             except np.linalg.LinAlgError:
@@ -80,8 +81,8 @@ class Walk(Iterator[BranchPoint]):
 
     # --- one step ------------------------------------------------------------------------------------------
 
-    def _step(self, last: BranchPoint) -> BranchPoint:
-        """The next orbit, with what is special before it; `NumbersFailed` where the step is too long."""
+    def _step(self, last: BranchPoint) -> None:
+        """Add the next orbit and what is special before it; `NumbersFailed` where the step is too long."""
         arm, equations = self.arm, self.equations
         solved = equations.solve(self._predicted(last), last.tangent, last.slope, _OFF * arm.step)
         tangent = equations.tangent(solved, last.tangent)
@@ -101,10 +102,10 @@ class Walk(Iterator[BranchPoint]):
                       f"{equations.axis.said(special[merging].knob)}: beyond it are the same orbits, half a period "
                       "later")
         arm.special.extend(special)
-        arm.points.append(point)
+        if point is not last:
+            arm.points.append(point)
         arm.ended, arm.reason = ended, reason
         self._adapt(solved, cosine)
-        return point
 
     def _predicted(self, last: BranchPoint) -> np.ndarray:
         """A step along the tangent, bent as the branch has bent since the point before."""
