@@ -20,16 +20,14 @@ from ..integrate.engine import new_stop
 from ..integrate.lane_block import scaled_state
 from ..scene import Scene
 from .branch_axis import KnobAxis
-from .branch_equations import BranchEquations
+from .branch_equations import BranchEquations, relative_change
 from .branch_point import BranchPoint, branch_point, state_at
 from .branch_special import SpecialPoint
-from .branch_walk import Arm, Walk
+from .branch_walk import SHORTER, Arm, Walk
 from .orbit import periodic_orbit
 
 #: Points of one arm at most: a branch that folds without end has to stop somewhere.
 MOST_POINTS = 20_000
-#: A state that comes back this near before its period has a shorter one.
-_SHORTER = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,6 +159,6 @@ def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> 
     for d in range(1, n):
         if n % d == 0:
             end = equations.strobe(value, d).end(x)
-            if np.abs(end - x).max() < _SHORTER * np.abs(x).max():
+            if relative_change(end - x, x) < SHORTER:
                 raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after "
                                f"{d} already; give period {d}.")

@@ -81,9 +81,7 @@ def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, fl
     low, high = min(a.knob, b.knob), max(a.knob, b.knob)
     if a.turning != b.turning:
         reach = _SIDE * _distance(axis, a, b) * min(abs(a.tangent[-1]), abs(b.tangent[-1])) * axis.slope(high)
-        if a.turning > 0:
-            return high, high + reach
-        return low - reach, low
+        return (high, float(high + reach)) if a.turning > 0 else (float(low - reach), low)
     return low, high
 
 

@@ -17,6 +17,8 @@ from .branch_walk import Arm
 
 #: Distances ε along the eigenvector that are tried, in arclength.
 _DISTANCES = (0.02, 0.005, 0.05, 0.001)
+#: The knob may move so far for it: with ε², but that may have a large factor.
+_FARTHEST = 0.3
 #: The orbit's halves have to differ by this part of what ε makes them differ.
 _DOUBLED = 0.5
 
@@ -36,7 +38,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: np.ndarray | 
     tried = []
     for distance in _DISTANCES:
         try:
-            solved = twice.solve(z + distance * direction, direction, farthest=0.5 * distance)
+            solved = twice.solve(z + distance * direction, direction, farthest=_FARTHEST)
         except NumbersFailed as problem:
             tried.append(problem.sentence)
             continue

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import NumbersFailed
-from .branch_equations import BranchEquations, Solved, said
+from .branch_equations import BranchEquations, Solved, relative_change, said
 from .branch_point import BranchPoint, branch_point
 from .branch_special import SpecialPoint, special_between
 
@@ -28,6 +28,8 @@ _OFF = 0.3
 #: A step passes the seed if that lies this near to it, relative to its length; it has closed if the corrected point
 #: is the seed to this.
 _PASSES, _CLOSED = 0.2, 1e-7
+#: A state that comes back this near, relative to its largest entry, before its period has a shorter one.
+SHORTER = 1e-8
 #: Points from the seed on before the branch may close on itself.
 _AWAY = 4
 
@@ -85,6 +87,7 @@ class Walk(Iterator[BranchPoint]):
         """Add the next orbit and what is special before it; `NumbersFailed` where the step is too long."""
         arm, equations = self.arm, self.equations
         solved = equations.solve(self._predicted(last), last.tangent, last.slope, _OFF * arm.step)
+        self._refuse_shorter(solved)
         tangent = equations.tangent(solved, last.tangent)
         cosine = float(tangent @ last.tangent)
         if cosine < _BENT:
@@ -106,6 +109,14 @@ class Walk(Iterator[BranchPoint]):
             arm.points.append(point)
         arm.ended, arm.reason = ended, reason
         self._adapt(solved, cosine)
+
+    def _refuse_shorter(self, solved: Solved) -> None:
+        """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
+        x, value, n = self.equations.state(solved.z), self.equations.value(solved.z), self.equations.period
+        for d in range(1, n):
+            if n % d == 0 and relative_change(self.equations.strobe(value, d).end(x) - x, x) < SHORTER:
+                raise NumbersFailed(f"the step leads to an orbit that repeats after {d} of {n} drive periods",
+                                    "no-convergence")
 
     def _predicted(self, last: BranchPoint) -> np.ndarray:
         """A step along the tangent, bent as the branch has bent since the point before."""

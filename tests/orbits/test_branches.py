@@ -34,8 +34,8 @@ def folded() -> Branch:
 
 @pytest.fixture(scope="module")
 def doubling() -> Branch:
-    """sec2 across the period doubling near 1557 Hz, stable above and unstable below."""
-    return continue_branch(scene("sec2"), "f", 1500.0, 1600.0, 1)
+    """sec2 downwards across two period doublings: between them, at 255.8 and 233.5 Hz, the chain alternates."""
+    return continue_branch(scene("sec2"), "f", 262.0, 225.0, 1)
 
 
 def the(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
@@ -105,28 +105,30 @@ def test_forces_along_an_orbit_are_those_of_a_run(doubling: Branch) -> None:
             assert getattr(point, name) == pytest.approx(getattr(found, name), rel=2e-6)  # the run's own peaks: 1e-6
 
 
-def test_a_doubling_has_a_doubled_branch_that_leads_back_to_it(doubling: Branch) -> None:
-    parting = the(doubling, "period_doubling")
-    assert 1557.0 < parting.knob < 1558.0
+def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Branch) -> None:
+    parting, meeting = the(doubling, "period_doubling"), the(doubling, "period_doubling", 1)
     begun = switch_to_doubled(doubling, parting)
-    assert begun.period == 2
     seed = begun.points[0]
-    once = begin_branch(begun.axis.scene, "f", seed.knob, 1600.0, 1, begun.state(seed)).points[0]
-    # two orbits at one frequency: that of one period, and one that alternates about it
+    once = begin_branch(begun.axis.scene, "f", seed.knob, 225.0, 1, begun.state(seed)).points[0]
+    # two orbits at one frequency: that of one period, unstable, and one that alternates about it
+    assert begun.period == 2 and seed.stable and not once.stable
     assert np.abs(once.x - seed.x).max() > 1e-3 * np.abs(seed.x).max()
-    assert seed.max_output_force_elastic > once.max_output_force_elastic
-    # and the other way it ends in the doubling it came from
-    back = continue_branch(begun.axis.scene, "f", seed.knob, 1600.0, 2, begun.state(seed))
-    assert back.arms[0].ended == "merged" and check_branch(back) == []
-    last = back.special[-1]
-    assert last.kind == "period_doubling" and "half a period later" in back.arms[0].reason
-    assert last.knob == pytest.approx(parting.knob, abs=0.5 * sum(w[1] - w[0] for w in (last.interval, parting.interval)))
+    found = Continuation(begun).run()
+    assert found.arms[0].ended == "merged" and "half a period later" in found.arms[0].reason
+    assert check_branch(found) == [] and all(p.stable for p in found.points)
+    last = found.special[-1]
+    widths = [s.interval[1] - s.interval[0] for s in (last, meeting)]
+    assert last.kind == "period_doubling" and last.knob == pytest.approx(meeting.knob, abs=sum(widths))
+    middle = min(found.points, key=lambda p: abs(p.knob - 247.0))
+    settled_there = settled(found.axis.scene_at(middle.knob).evolve(accuracy=_ASKED))
+    assert settled_there.regime.period == 2
+    assert settled_there.run.max_output_force_elastic == pytest.approx(middle.max_output_force_elastic, rel=1e-5)
 
 
-def test_below_a_doubling_the_disturbed_chain_alternates(doubling: Branch) -> None:
-    below = next(p for p in doubling.points if not p.stable)
-    above = doubling.points[-1]
-    assert came_to(doubling, above)[0] < 1e-4 and came_to(doubling, below)[0] > 1e-2
+def test_between_doublings_the_disturbed_chain_leaves_its_orbit(doubling: Branch) -> None:
+    for point in doubling.points:
+        distance, mu = came_to(doubling, point)
+        assert distance < 1e-5 if mu < 1.0 else distance > 1e-4
 
 
 def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
@@ -136,7 +138,7 @@ def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
     first = doubling.points[0]
     state = doubling.state(first)
     start = State(s * state.displacement, s**1.25 * state.velocity)
-    other = continue_branch(scaled, "f", s**0.25 * first.knob, s**0.25 * 1580.0, 1, start)
+    other = continue_branch(scaled, "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
     mine, its = the(doubling, "period_doubling"), the(other, "period_doubling")
     assert its.knob / s**0.25 == pytest.approx(mine.knob, rel=1.1e-5)  # the half widths of both intervals
 
