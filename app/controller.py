@@ -9,10 +9,11 @@ from typing import Any
 
 from bokeh.document import Document
 
-from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settling
+from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, State, settling
 
 from .account import with_account
 from .accuracy import AccuracyPage
+from .branches import BranchesPage
 from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
 from .curves import Curves
 from .effects import EffectsPanel
@@ -46,6 +47,7 @@ class Controller:
         self.curves = Curves(self.views, self.later, self.after, lambda: self.busy)
         self.exchange = Exchange(self)
         self.accuracy = AccuracyPage(self)
+        self.branches = BranchesPage(self)
         self.effects = EffectsPanel(self)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
@@ -57,6 +59,7 @@ class Controller:
             "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
             "cover": self._cover, "curve-stop": lambda _: self.curves.stop(),
             **Transport(self).actions, **self.exchange.actions, **self.accuracy.actions, **self.effects.actions,
+            **self.branches.actions,
         }
 
     # Coming in and going out
@@ -110,10 +113,8 @@ class Controller:
 
     def close(self, session_context: object) -> None:
         """The visitor left."""
-        self.jobs.close()
-        self.curves.close()
-        self.accuracy.close()
-        self.effects.close()
+        for part in (self.jobs, self.curves, self.accuracy, self.branches, self.effects):
+            part.close()
 
     @property
     def busy(self) -> bool:
@@ -127,19 +128,19 @@ class Controller:
 
     # Computing and painting
 
-    def compute(self) -> None:
-        """A new picture for the knobs as they are now."""
+    def compute(self, start: State | None = None) -> None:
+        """A new picture for the knobs as they are now, from `start` or from where the visitor chose."""
         if self.session.mode == "live":
             if self.live is not None:
                 self.live.change(self.session.scene)
             self.idle()
         else:
-            self.jobs.submit(partial(self._settled, self.session.scene))
+            self.jobs.submit(partial(self._settled, self.session.scene, start))
 
-    def _settled(self, scene: Scene, stop: Stop) -> Iterator[Settled]:
+    def _settled(self, scene: Scene, start: State | None, stop: Stop) -> Iterator[Settled]:
         """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
         self._await_live_kernels(scene, stop)
-        pictures = settling(scene, start=self.session.previous_state(), samples=samples_for(scene), stop=stop)
+        pictures = settling(scene, start=start or self.session.previous_state(), samples=samples_for(scene), stop=stop)
         yield next(pictures)
         if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
             for picture in pictures:
@@ -218,6 +219,7 @@ class Controller:
     def _describe(self) -> None:
         scene = self.session.scene
         self.accuracy.describe()
+        self.branches.describe()
         self.effects.changed()
         self.views.equation.display(latex=scene.equation_latex())
         self.views.corner.display(validity=list(scene.validity()))
@@ -253,6 +255,13 @@ class Controller:
         self.session.switch(name, on)
         self._echo()
         self._turned(name)
+
+    def turn_to(self, scene: Scene, start: State) -> None:
+        """The same chain with several knobs turned at once, from a given state."""
+        self.session.scene = scene
+        self._echo()
+        self._describe()
+        self.compute(start)
 
     def _cover(self, message: dict[str, Any]) -> None:
         """A page over the pictures was opened or closed."""

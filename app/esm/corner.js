@@ -41,6 +41,7 @@ const TABS = {
     return [row, host];
   },
   effects: effectsTab,
+  branches: branchesTab,
   data: (model) => {
     const row = document.createElement("div");
     row.className = "row";
@@ -88,7 +89,7 @@ export function render({ model }) {
   const choose = (name) => {
     const before = chosen;
     chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects"].includes(name));
+    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "branches"].includes(name));
     if (before === "effects" || name === "effects") looking();
     show();
   };

@@ -32,6 +32,7 @@ window.granchain = (() => {
   const cover = (name) => {
     covered = name;
     document.getElementById("page").classList.toggle("covered", name !== null);
+    document.getElementById("page").dataset.cover = name ?? "";
     emit("cover", name);
   };
   document.addEventListener("keydown", (event) => { if (event.key === "Escape" && covered) cover(null); });

@@ -78,7 +78,7 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
     """The point with its multipliers, forces and contacts, from a run along the orbit."""
     x, value = equations.state(solved.z), equations.value(solved.z)
     multipliers = sorted_multipliers(solved.flow.derivative)
-    engine, record = _record(equations, x, value)
+    engine, record = record_along(equations, x, value)
     tops = record.tops * engine.lowered.scales.force
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
@@ -97,7 +97,8 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
     return state_of(lowered, y)
 
 
-def _record(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:
+def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:
+    """Largest forces and turning points of all overlaps along the way from the scaled state x."""
     engine = Engine(equations.axis.scene_at(value), Setting("dop853", tolerance=_TOLERANCE), 1, stop=equations.stop)
     lo, room = engine.lowered, _ROOM * (equations.size // 2 + 1) * equations.period
     while True:

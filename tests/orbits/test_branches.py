@@ -179,7 +179,7 @@ def test_beyond_a_torus_point_the_chain_leaves_its_orbit() -> None:
 
 def closed_loop() -> tuple[Scene, float, int]:
     """A chain with an isola: frequency and period of an orbit on it."""
-    return scene("sec2").evolve(N=2, D=30.0), 720.0, 3
+    return scene("sec2").evolve(N=3, D=40.0), 720.0, 3
 
 
 def test_an_isola_closes_on_itself() -> None:
