@@ -5,7 +5,6 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -32,8 +31,8 @@ _OFTEN = 0.08
 """Seconds between two messages to a page on which a branch grows."""
 _LONGEST_PERIOD = 8
 """Drive periods of an orbit that can be asked for here."""
-_FOLLOWERS = ThreadPoolExecutor(max_workers=2, thread_name_prefix="branch")
-"""What follows branches, for all visitors."""
+_TURNS = threading.Semaphore(2)
+"""So many branches are followed at once, for all visitors."""
 
 
 @dataclass
@@ -54,7 +53,6 @@ class BranchesPage:
         self._page = page
         self._view = page.views.branches
         self._stop: Stop = new_stop()
-        self._lock = threading.Lock()
         self._followed: list[Continuation] = []
         self._drawn: list[_Drawn] = []
         self._special: list[tuple[Branch, Any]] = []
@@ -151,18 +149,13 @@ class BranchesPage:
         self._stop[0] = 1
         self._stop = stop = new_stop()
         self._say("waiting")
-        _FOLLOWERS.submit(self._work, begin, scene, stop)
+        # a daemon: a branch lasts minutes, and a server that ends does not wait for it
+        threading.Thread(target=self._work, args=(begin, scene, stop), name="branch", daemon=True).start()
 
     def _work(self, begin: Callable[[Stop], list[Branch]], scene: Scene, stop: Stop) -> None:
         try:
-            if not all(self._ready(scene, piece, stop) for piece in (LIVE, CERTIFIED, BRANCH_PIECE)):
-                return
-            self._later(stop, self._say, "settling")
-            for branch in begin(stop):
-                continuation = Continuation(branch, stop)
-                self._later(stop, self._add, continuation)
-                continuation.run(on_point=lambda arm: self._grown(stop))
-            self._later(stop, self._finish)
+            with _TURNS:
+                self._follow(begin, scene, stop)
         except Cancelled:
             pass
         except (NumbersFailed, BadInput) as problem:
@@ -170,6 +163,17 @@ class BranchesPage:
         except Exception as error:
             self._later(stop, self._say, "failed", "Following the branch stopped by a fault inside granchain.")
             self._page.later(self._page.failed, error)
+
+    def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, stop: Stop) -> None:
+        if stop[0] or not all(self._ready(scene, piece, stop) for piece in (LIVE, CERTIFIED, BRANCH_PIECE)):
+            return
+        self._later(stop, self._say, "settling")
+        for branch in begin(stop):
+            continuation = Continuation(branch, stop)
+            self._later(stop, self._add, continuation)
+            for _ in continuation:
+                self._grown(stop)
+        self._later(stop, self._finish)
 
     def _ready(self, scene: Scene, piece: str, stop: Stop) -> bool:
         """Wait for one piece of the kernels, saying so; False when cancelled before."""
@@ -181,12 +185,9 @@ class BranchesPage:
         return True
 
     def _grown(self, stop: Stop) -> None:
-        """From the arms' threads: an orbit more. The page is told now and then; the picture in front comes first."""
-        with self._lock:
-            due = time.monotonic() - self._sent > _OFTEN
-            if due:
-                self._sent = time.monotonic()
-        if due:
+        """An orbit more: the page is told now and then; the picture in front comes first."""
+        if time.monotonic() - self._sent > _OFTEN:
+            self._sent = time.monotonic()
             self._later(stop, self._draw)
         while self._page.unsettled and not stop[0]:
             time.sleep(_PATIENCE)

@@ -63,7 +63,11 @@ function branchPicture(host, { arms, special, now, grazing, zoom, compact }) {
       const d = piece.orbits.map(([x, y]) => `${X(x).toFixed(1)} ${Y(y).toFixed(1)}`).join("L");
       view.append(draw("path", { d: `M${d}`, class: piece.stable ? "branch stable" : "branch unstable", "data-period": arm.period }));
     }
-    arm.orbits.forEach((orbit, place) => points.push({ orbit, arm: number, place, period: arm.period, x: X(orbit[0]), y: Y(orbit[1]) }));
+    arm.orbits.forEach((orbit, place) => {
+      const x = X(orbit[0]), y = Y(orbit[1]);
+      points.push({ orbit, arm: number, place, period: arm.period, x, y });
+      if (!small) view.append(draw("circle", { cx: x.toFixed(1), cy: y.toFixed(1), r: 2.2, class: "orbit", "data-arm": number, "data-place": place }));
+    });
   });
   if (now >= low && now <= high) view.append(draw("line", { x1: X(now), x2: X(now), y1: f.y0, y2: f.y1, class: "now-line" }));
   for (const one of special) {

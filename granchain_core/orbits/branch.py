@@ -62,8 +62,8 @@ class Branch:
 class Continuation(Iterator[BranchPoint]):
     """A branch as it grows: each `next` is one more orbit; `branch` is what there is so far.
 
-    With two arms the first is followed to its end and then the second; `run` follows both at once. One may stop asking
-    and go on at any time. Where the stop flag is raised, `Cancelled` ends the present step only. An arm that closes on
+    Of two arms the shorter one grows, so both go on by turns; `run` follows both at once. One may stop asking and go
+    on at any time. Where the stop flag is raised, `Cancelled` ends the present step only. An arm that closes on
     itself is the whole branch: the other is dropped.
     """
 
@@ -73,12 +73,12 @@ class Continuation(Iterator[BranchPoint]):
         self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), arm) for arm in branch.arms]
 
     def __next__(self) -> BranchPoint:
-        for walk in self._walks:
-            if not self._closed and not walk.arm.ended:
-                point = next(walk, None)
-                if point is not None:
-                    self._drop_double()
-                    return point
+        while left := [walk for walk in self._walks if not self._closed and not walk.arm.ended]:
+            shorter: Walk = min(left, key=lambda walk: len(walk.arm.points))
+            point = next(shorter, None)
+            if point is not None:
+                self._drop_double()
+                return point
         raise StopIteration
 
     def run(self, most_points: int = MOST_POINTS, on_point: Callable[[Arm], None] | None = None) -> Branch:
