@@ -24,8 +24,9 @@ WIDTH = 1e-5
 #: The tangents at both ends of a bracket meet at most so many times its length away from them: they turn by no more
 #: than 30° (branch_walk.py).
 _SIDE = 1.25
-#: A guess is put so far behind where the test function vanishes, relative to the bracket, that it brackets it at once.
-_BEHIND = 0.02
+#: A guess is put so far beside where the test function vanishes, relative to the bracket, first on one side and then on
+#: the other; a narrower bracket is straighter, so the second two are nearer. Then come halves, by turns.
+_BESIDE = (0.02, -0.02, 0.003, -0.003, None, 0.02, -0.02)
 #: Orbits between two neighbours at most before what is found is taken as it is.
 _DEEPEST = 60
 
@@ -92,14 +93,11 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 
 def _fraction(a: BranchPoint, b: BranchPoint, depth: int) -> float:
-    """Where to look next: the middle, or by turns a little on either side of where a test function vanishes."""
-    if depth % 3 == 2:
+    """Where to look next: beside where a test function vanishes, or the middle."""
+    beside, root = _BESIDE[depth % len(_BESIDE)], _root(a, b)
+    if beside is None or root is None:
         return 0.5
-    root = _root(a, b)
-    if root is None:
-        return 0.5
-    behind = _BEHIND if depth % 3 == 0 else -_BEHIND
-    return min(max(root + behind, 0.02), 0.98)
+    return min(max(root + beside, 0.5 * abs(beside)), 1.0 - 0.5 * abs(beside))
 
 
 def _root(a: BranchPoint, b: BranchPoint) -> float | None:
