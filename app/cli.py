@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import branch_command, commands
+from app import branch_command, commands, orbit_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import unknown_name
 
@@ -53,6 +53,9 @@ def _parser() -> _Parser:
     orbit.add_argument("scene", metavar="SCENE")
     orbit.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     orbit.add_argument("--period", type=int, metavar="n", help="drive periods; else those of the settled motion")
+    orbit.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
+                       help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
+    orbit.add_argument("--seed", type=int, default=0, help="of the random start")
     orbit.add_argument("--observer", action="store_true", help="multipliers of the observer of model (4) too")
     orbit.add_argument("--json", action="store_true", help="print one JSON object on stdout")
     branch_command.add_options(_scene_command(command("branch", "branch of periodic orbits and its special points")))
@@ -79,7 +82,8 @@ def _scene_command(parser: _Parser) -> _Parser:
 
 _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
-    "curve": commands.curve, "orbit": commands.orbit, "branch": branch_command.branch, "accuracy": commands.accuracy,
+    "curve": commands.curve, "orbit": orbit_command.orbit, "branch": branch_command.branch,
+    "accuracy": commands.accuracy,
 }
 
 

@@ -7,9 +7,9 @@ from .branch_point import BranchPoint
 from .branch_special import SpecialPoint
 from .branch_switch import switch_to_doubled
 from .branch_walk import Arm
-from .orbit import Orbit, periodic_orbit
+from .orbit import Orbit, periodic_orbit, random_state
 
 __all__ = [
     "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "KnobAxis", "Orbit", "SpecialPoint", "begin_branch",
-    "check_branch", "continue_branch", "periodic_orbit", "switch_to_doubled",
+    "check_branch", "continue_branch", "periodic_orbit", "random_state", "switch_to_doubled",
 ]

@@ -71,7 +71,8 @@ def _brackets(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between,
 
 def _narrow(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> bool:
     low, high = _interval(axis, a, b)
-    return high - low <= WIDTH * max(abs(a.knob), abs(b.knob), 1e-3 * axis.high)
+    width = max(high, a.knob, b.knob) - min(low, a.knob, b.knob)
+    return width <= WIDTH * max(abs(a.knob), abs(b.knob), 1e-3 * axis.high)
 
 
 def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, float]:
@@ -188,8 +189,7 @@ def _merged(found: list[SpecialPoint]) -> list[SpecialPoint]:
         if last is not None and one.kind == last.kind == "fold" and one.before is last.after \
                 and (one.multiplier is None) != (last.multiplier is None):
             turn = one if one.before.turning != one.after.turning else last
-            low, high = min(last.interval[0], one.interval[0]), max(last.interval[1], one.interval[1])
-            merged[-1] = SpecialPoint("fold", turn.knob, (low, high), last.before, one.after,
+            merged[-1] = SpecialPoint("fold", turn.knob, turn.interval, last.before, one.after,
                                       multiplier=one.multiplier or last.multiplier)
         else:
             merged.append(one)
