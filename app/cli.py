@@ -1,4 +1,4 @@
-"""The command line: serve, scenes, warm, run, curve, orbit, accuracy.
+"""The command line: serve, scenes, warm, run, curve, orbit, branch, accuracy.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled. With --json one object goes to stdout and nothing else; progress goes to stderr.
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import commands, orbit_command
+from app import branch_command, commands, orbit_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import unknown_name
 
@@ -58,6 +58,7 @@ def _parser() -> _Parser:
     orbit.add_argument("--seed", type=int, default=0, help="of the random start")
     orbit.add_argument("--observer", action="store_true", help="multipliers of the observer of model (4) too")
     orbit.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    branch_command.add_options(_scene_command(command("branch", "branch of periodic orbits and its special points")))
     accuracy = command("accuracy", "what accuracy costs: error against time for every method")
     accuracy.add_argument("scene", metavar="SCENE")
     accuracy.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
@@ -81,7 +82,8 @@ def _scene_command(parser: _Parser) -> _Parser:
 
 _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
-    "curve": commands.curve, "orbit": orbit_command.orbit, "accuracy": commands.accuracy,
+    "curve": commands.curve, "orbit": orbit_command.orbit, "branch": branch_command.branch,
+    "accuracy": commands.accuracy,
 }
 
 

@@ -46,6 +46,7 @@ const TABS = {
     return [row, host];
   },
   effects: effectsTab,
+  branches: branchesTab,
   data: (model) => {
     const row = document.createElement("div");
     row.className = "row";
@@ -96,7 +97,7 @@ export function render({ model }) {
   const choose = (name) => {
     const before = chosen;
     chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "stability"].includes(name));
+    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "stability", "branches"].includes(name));
     if (before === "effects" || name === "effects") looking();
     show();
     window.granchain.emit("tab", name);

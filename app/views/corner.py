@@ -8,7 +8,8 @@ from .component import Component, text
 class Corner(Component):
     """Tabs; the data tab sends the text of a CSV file."""
 
-    _esm = text("plot.js") + text("effects.js") + text("multipliers.js") + text("stabilitysmall.js") + text("corner.js")
+    _esm = (text("plot.js") + text("effects.js") + text("multipliers.js") + text("stabilitysmall.js")
+            + text("branchpicture.js") + text("corner.js"))
     _stylesheets = [text("controls.css"), text("drawing.css"), text("multipliers.css"), text("corner.css")]  # noqa: RUF012
 
 

@@ -18,9 +18,9 @@ LAYERS = {
     "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
     "run": {"errors", "scene", "kernels", "integrate", "result", "steady"},
     "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "lower", "scene", "steady"},
-    "orbits": {"errors", "scene", "kernels", "lower", "integrate", "steady", "warm"},
+    "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "steady", "warm"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
-    "store": {"errors", "quantities", "result", "scene", "steady", ""},
+    "store": {"errors", "orbits", "quantities", "result", "scene", "steady", ""},
 }
 
 
