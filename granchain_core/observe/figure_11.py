@@ -15,7 +15,7 @@ from ..scene import scene
 from .twin import Twin, twin
 
 #: What the observer is off by at first: small enough for many periods of linear growth.
-PERTURBATION = 1e-4
+PERTURBATION = 1e-6
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ LINEAR, ROUNDING = 0.03, 1e-11
 #: Most periods of one twin: a minute or so.
 MOST_PERIODS = 20_000
 #: Periods after which the fast multipliers are taken to have died out, as a part of the usable ones.
-_TRANSIENT = 0.25
+_TRANSIENT = 1.0 / 3.0
 #: A difference is called a translation when the uniform shift is so much of it (squared cosine).
 _TRANSLATION = 0.7
 
