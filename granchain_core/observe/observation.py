@@ -100,13 +100,14 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
 
     `output` is a measured output force at the same times. The chain begins at rest or in `start`. `offset` [N] or
     "median" is subtracted from the force; `gap` says what a gap is ("refuse", "zero", "interpolate"). Status is "done",
-    or "accuracy-not-reached" for an observer that amplifies every error. Raises `BadInput`, `NumbersFailed`, `Cancelled`.
+    or "accuracy-not-reached" for an observer that amplifies every error.
+    Raises `BadInput`, `NumbersFailed`, `Cancelled`.
     """
     record = time if isinstance(time, ForceRecord) else force_record(time, force, output)
     record = prepared(record, scene, offset, gap)
     if len(record.time) * scene.N > MOST_VALUES:
-        raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_VALUES:.0e} values; give at "
-                       f"most {MOST_VALUES // scene.N} samples.")
+        raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_VALUES:.0e} values; "
+                       f"give at most {MOST_VALUES // scene.N} samples.")
     began = clock.perf_counter()
     flag = new_stop() if stop is None else stop
     begin = rest(scene) if start is None else start
@@ -127,13 +128,15 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     tops, scales = chain.tops, chain.lowered.scales
     displacement = now.displacement * scales.length
     forces = now.force * scales.force
+    forces[:, 0] = record.force
     elastic = elastic_output(scene, displacement[:, -1])
     if progress is not None:
         progress(1.0)
     return Observation(
         scene=scene, record=record, displacement=displacement, velocity=now.velocity * scales.velocity, force=forces,
         max_output_force=float(tops[1]) * scales.force, max_output_force_elastic=float(tops[2]) * scales.force,
-        integration_error=integration, interpolation_error=_UNEVEN * _difference(now.displacement[kept], coarse.displacement),
+        integration_error=integration,
+        interpolation_error=_UNEVEN * _difference(now.displacement[kept], coarse.displacement),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",
         cost=Cost.of(clock.perf_counter() - began, chain.counts, "rk4-split"),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),

@@ -16,6 +16,7 @@ from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import FAR
 from ..kernels.effects.preload import Preload
 from ..kernels.effects.pushed import Echo
+from ..kernels.sampling import Samples
 from ..lower import Lowered, lower
 from ..scene import Scene
 
@@ -56,6 +57,11 @@ class Pair:
             return np.concatenate([getattr(chain, name), [0.0], getattr(observer, name)])
 
         self.engine.start(State(both("displacement"), both("velocity"), chain.phase))
+
+    def difference(self, rows: Samples) -> np.ndarray:
+        """Observer minus chain of recorded samples (T, 2N): displacements, then velocities, in scaled units."""
+        n = self.scene.N
+        return np.hstack([row[:, n + 1 :] - row[:, :n] for row in (rows.displacement, rows.velocity)])
 
     @property
     def states(self) -> tuple[State, State]:

@@ -51,7 +51,7 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
         raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
     if content.startswith(b"\x89HDF"):
         if time_unit is not None or force_unit is not None:
-            raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; units are chosen for CSV files only.")
+            raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")
         return checked(_from_hdf5(path))
     return read_force_csv(content, time_unit, force_unit)
 
@@ -78,17 +78,18 @@ def _unit(table: Table, meaning: str, known: dict[str, float], asked: str | None
         last = table.header[table.order.index(meaning)].rsplit("_", 1)[-1]
         named = next((unit for unit in known if unit.lower() == last), None)
     if named is not None and asked is not None and known[named] != known[asked]:
-        raise BadInput(f"Line 1: the header says the {meaning} is in {named}, and {asked} was asked for; they must agree.")
+        raise BadInput(f"Line 1: the header says the {meaning} is in {named}, and {asked} was asked for; "
+                       "they must agree.")
     unit = named or asked or usual
     return known[unit], unit
 
 
 def _told(record: ForceRecord, units: str) -> ForceRecord:
-    rate = 1.0 / record.spacing
+    output = "with" if record.output is not None else "no"
     return replace(record, understood=(
-        f"{len(record.time)} samples from {record.time[0]:.6g} to {record.time[-1]:.6g} s, {rate:.5g} a second, force "
-        f"{record.force.min():.4g} to {record.force.max():.4g} N, {'with' if record.output is not None else 'no'} output "
-        f"force; {units}"))
+        f"{len(record.time)} samples from {record.time[0]:.6g} to {record.time[-1]:.6g} s, "
+        f"{round(1.0 / record.spacing):d} a second, force {record.force.min():.4g} to {record.force.max():.4g} N, "
+        f"{output} output force; {units}"))
 
 
 def _from_hdf5(path: Path) -> ForceRecord:

@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from ..errors import BadInput
 from ..scene import Scene
@@ -60,6 +59,8 @@ class ForceRecord:
 
     def cubics(self) -> np.ndarray:
         """Coefficients (T − 1, 4) of the force in every interval, constant term first, in N and s."""
+        from scipy.interpolate import PchipInterpolator  # a quarter of a second, which only observers pay
+
         return np.ascontiguousarray(PchipInterpolator(self.time, self.force).c[::-1].T)
 
 
@@ -92,13 +93,14 @@ def checked(record: ForceRecord) -> ForceRecord:
         values = getattr(record, name)
         if values is not None and not np.isfinite(values).all():
             at = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise BadInput(f"{record.place(at)}: {name} is {values[at]}, not a finite number; leave the sample out, which "
-                           "makes a gap, or repair it.")
+            raise BadInput(f"{record.place(at)}: {name} is {values[at]}, not a finite number; leave the sample out, "
+                           "which makes a gap, or repair it.")
     steps = np.diff(record.time)
     if (steps <= 0.0).any():
         at = int(np.flatnonzero(steps <= 0.0)[0]) + 1
-        raise BadInput(f"{record.place(at)}: time {record.time[at]:.9g} s does not come after {record.time[at - 1]:.9g} s "
-                       "of the sample before; samples must be in order of time, each time once.")
+        raise BadInput(f"{record.place(at)}: time {record.time[at]:.9g} s does not come after "
+                       f"{record.time[at - 1]:.9g} s of the sample before; "
+                       "samples must be in order of time, each time once.")
     return record
 
 
@@ -146,13 +148,13 @@ def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
     if gap == "refuse":
         more = f" (and {len(gaps) - 1} more)" if len(gaps) > 1 else ""
         raise BadInput(f"{told}: a gap{more}; choose zero (no force in it) or interpolate (a smooth curve across it).")
-    notes.append(f"{len(gaps)} gap{'s' if len(gaps) > 1 else ''} {'of zero force' if gap == 'zero' else 'interpolated'}, "
-                 f"the first at {record.time[at]:.6g} s")
+    what = "taken as zero force" if gap == "zero" else "interpolated"
+    notes.append(f"{len(gaps)} gap{'s' if len(gaps) > 1 else ''} {what}, the first at {record.time[at]:.6g} s")
     if gap == "interpolate":
         return record
     if record.output is not None:
-        raise BadInput(f"{told}: a gap in a record with an output force can only be interpolated, since samples of zero "
-                       "force that are put in have no output.")
+        raise BadInput(f"{told}: a gap in a record with an output force can only be interpolated, since there is no "
+                       "output force for samples that are put in.")
     inside = np.sort(np.concatenate([record.time[gaps] + np.minimum(usual, 0.4 * steps[gaps]),
                                      record.time[gaps + 1] - np.minimum(usual, 0.4 * steps[gaps])]))
     places = np.searchsorted(record.time, inside)

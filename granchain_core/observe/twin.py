@@ -23,6 +23,8 @@ from .pair import Pair
 
 #: Distances between these are small enough to be linear and large enough not to be rounding.
 LINEAR, ROUNDING = 0.03, 1e-11
+#: Differences below this, all through a period, are rounding: the observer is in step and is followed no further.
+IN_STEP = 1e-12
 #: Most periods of one twin: a minute or so.
 MOST_PERIODS = 20_000
 #: Periods after which the fast multipliers are taken to have died out, as a part of the usable ones.
@@ -37,8 +39,8 @@ class Twin:
 
     `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is the
     distance's factor per orbit period as measured in time, `measured` the two leading multipliers read off from it
-    (None where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is not periodic.
-    `translation` is how much of the last linear difference is one shift of all beads.
+    (None where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is not
+    periodic. `translation` is how much of the last linear difference is one shift of all beads.
     """
 
     scene: Scene
@@ -79,13 +81,13 @@ class Twin:
 
     @property
     def verdict(self) -> str:
-        """"synchronises", "drifts" (an offset of the whole observer grows), "breaks down" or "neither yet"."""
+        """"synchronises", "drifts" (without foundation an offset grows), "breaks down" or "neither yet"."""
         grows = self.rate is not None and self.rate > 1.0
         if self.rate is None or (grows and self.leading is not None and abs(self.leading) < 1.0):
             return "neither yet"
         if not grows:
             return "synchronises"
-        return "drifts" if self.translation >= _TRANSLATION else "breaks down"
+        return "drifts" if self.scene.k == 0.0 and self.translation >= _TRANSLATION else "breaks down"
 
     @property
     def sentence(self) -> str:
@@ -106,7 +108,7 @@ class Twin:
 
 def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,
          stop: np.ndarray | None = None) -> Twin:
-    """Chain and observer of `scene` over `periods` drive periods, `samples` samples each.
+    """Chain and observer of `scene` over `periods` drive periods, `samples` samples each, or until they are in step.
 
     The chain starts on its settled orbit. `perturbation` is the observer's first distance: a number moves its beads at
     random (always the same) by that part of A0, root mean square; a `State` is where it starts, `rest(scene)` for one
@@ -121,24 +123,40 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
         start, n = orbit.state, orbit.period
     pair = Pair(scene, samples, stop)
     pair.start(start, observer_start(scene, start, perturbation))
-    record = pair.engine.record(periods * samples)
-    scales, beads = pair.engine.lowered.scales, scene.N
-    u, v = record.displacement, record.velocity
-    chain, observer = slice(0, beads), slice(beads + 1, 2 * beads + 1)
-    difference = np.hstack([u[:, observer] - u[:, chain], v[:, observer] - v[:, chain]])
+    u, force, difference = _follow(pair, periods)
     distance = np.sqrt((difference**2).sum(axis=1))
+    scales, beads = pair.engine.lowered.scales, scene.N
+    chain, observer = slice(0, beads), slice(beads + 1, 2 * beads + 1)
     strobes = difference[:: n * samples]
     window = linear_window(distance[:: n * samples])
     rate, measured = rates(strobes[window[0] : window[1]])
     return Twin(
         scene=scene, orbit=orbit, period=n, time=np.arange(len(u)) / samples * scene.period,
         chain=u[:, chain] * scales.length, observer=u[:, observer] * scales.length,
-        input_force=record.force[:, 0] * scales.force, output_force=record.force[:, beads] * scales.force,
-        observer_output_force=record.force[:, -1] * scales.force, distance=distance,
+        input_force=force[:, 0] * scales.force, output_force=force[:, beads] * scales.force,
+        observer_output_force=force[:, -1] * scales.force, distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
         translation=_share_of_translation(strobes[max(0, window[1] - 1), :beads]),
         cost=Cost.of(time.perf_counter() - began, pair.engine.counts, "dop853"),
     )
+
+
+def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Displacement and force of all bodies, and the observer's difference (T, 2N), to the end or to rounding."""
+    engine = pair.engine
+    rows = engine.record(engine.samples)
+    parts, difference = [rows], [pair.difference(rows)]
+    for _ in range(1, periods):
+        if np.abs(difference[-1]).max() < IN_STEP:
+            break
+        rows = engine.record(engine.samples)
+        parts.append(rows)
+        difference.append(pair.difference(rows)[1:])
+
+    def joined(name: str) -> np.ndarray:
+        return np.concatenate([getattr(parts[0], name), *(getattr(part, name)[1:] for part in parts[1:])])
+
+    return joined("displacement"), joined("force"), np.concatenate(difference)
 
 
 def _check(periods: int, samples: int) -> None:
@@ -162,10 +180,12 @@ def observer_start(scene: Scene, chain: State, perturbation: float | State) -> S
 
 
 def linear_window(distance: np.ndarray) -> tuple[int, int]:
-    """First strobe and one behind the last whose distances are linear: after the transient, off the rounding."""
+    """First strobe and one behind the last of the longest run of linear distances, without its transient."""
     beyond = np.flatnonzero((distance > LINEAR) | (distance < ROUNDING))
-    end = int(beyond[0]) if len(beyond) else len(distance)
-    return int(_TRANSIENT * end), end
+    edges = np.concatenate([[-1], beyond, [len(distance)]])
+    longest = int(np.argmax(np.diff(edges)))
+    first, end = int(edges[longest]) + 1, int(edges[longest + 1])
+    return first + int(_TRANSIENT * (end - first)), end
 
 
 def rates(strobes: np.ndarray) -> tuple[float | None, tuple[complex, complex] | None]:
