@@ -20,6 +20,7 @@ from .exchange import Exchange
 from .frames import samples_for
 from .jobs import LatestWins, Stop
 from .live import LivePicture, LiveRun
+from .observer import ObserverPage
 from .painter import Painter
 from .promptness import in_one_go, send_at_once
 from .session import LOOKS, SPEEDS, Session, presets, slider_range
@@ -45,6 +46,7 @@ class Controller:
         self.live: LiveRun | None = None
         self.curves = Curves(self.views, self.later, self.after, lambda: self.busy)
         self.exchange = Exchange(self)
+        self.observer = ObserverPage(self)
         self.accuracy = AccuracyPage(self)
         self.effects = EffectsPanel(self)
         self.covered = False
@@ -56,6 +58,7 @@ class Controller:
             "lock": self._lock, "curve": self._curve,
             "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
             "cover": self._cover, "curve-stop": lambda _: self.curves.stop(),
+            **self.observer.actions,
             **Transport(self).actions, **self.exchange.actions, **self.accuracy.actions, **self.effects.actions,
         }
 
@@ -110,6 +113,7 @@ class Controller:
 
     def close(self, session_context: object) -> None:
         """The visitor left."""
+        self.observer.close()
         self.jobs.close()
         self.curves.close()
         self.accuracy.close()
@@ -217,6 +221,7 @@ class Controller:
 
     def _describe(self) -> None:
         scene = self.session.scene
+        self.observer.changed()
         self.accuracy.describe()
         self.effects.changed()
         self.views.equation.display(latex=scene.equation_latex())

@@ -8,7 +8,7 @@ from .component import Component, text
 class Corner(Component):
     """Tabs; the data tab sends the text of a CSV file."""
 
-    _esm = text("plot.js") + text("effects.js") + text("corner.js")
+    _esm = text("plot.js") + text("observerplot.js") + text("effects.js") + text("corner.js")
     _stylesheets = [text("controls.css"), text("drawing.css"), text("corner.css")]  # noqa: RUF012
 
 

@@ -22,6 +22,7 @@ from .equation import Equation
 from .figures import BOTTOM, GAP, TOP, pane
 from .header import Header
 from .knobs import Knobs
+from .observer import Observer, first_state
 from .trains import Trains
 
 _APP = Path(__file__).resolve().parent.parent
@@ -43,6 +44,7 @@ class Views:
         self.corner = Corner(received, sizing_mode="stretch_both", state={"regimes": [
             {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
         self.accuracy = Accuracy(received, sizing_mode="stretch_both")
+        self.observer = Observer(received, sizing_mode="stretch_both", state=first_state())
         self.badge = Badge(received)
         self.shown: Settled | None = None
 
@@ -54,7 +56,7 @@ class Views:
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)
         page.add_variable("gap", GAP)
-        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "accuracy", "badge"):
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "accuracy", "observer", "badge"):
             page.add_panel(name, getattr(self, name))
         page.add_panel("left", pane(self.trains.left))
         page.add_panel("map", pane(self.energy.figure))
