@@ -133,15 +133,14 @@ class ObserverRun:
             return "The observer is in step with its chain, to the last digits; nudge it to see it again."
         if mu is None or factor is None:
             return self.failure or "What the multiplier predicts comes with the settled, periodic picture."
+        told = f"Observer |μ| = {abs(mu):.4g}:"
         if factor < 1.0:
             tenfold = np.log(0.1) / np.log(factor)
-            return (f"Leading observer multiplier |μ| = {abs(mu):.4g}: the observer synchronises, ten times nearer "
-                    f"every {tenfold:.3g} drive periods.")
+            return f"{told} it synchronises with its chain, ten times nearer every {tenfold:.3g} drive periods."
         side = ", to the other side each time" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
         if self.scene.k == 0.0:
-            return (f"Leading observer multiplier |μ| = {abs(mu):.4g}: an offset of the observer's beads, which "
-                    f"nothing pulls back, grows{side}: it drifts off its chain.")
-        return f"Leading observer multiplier |μ| = {abs(mu):.4g}: the observer leaves its chain{side}."
+            return f"{told} it drifts; an offset of its beads, which nothing pulls back, grows{side}."
+        return f"{told} it leaves its chain{side}."
 
     @property
     def broken(self) -> bool:

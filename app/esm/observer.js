@@ -105,7 +105,7 @@ export function render({ model }) {
 
   const palette = model.state.palette;
   const drawings = [new WholeChain(above, palette), new PushedChain(below, palette)];
-  let queue = [], now = null, row = 0, last = performance.now(), asked = 0, history = [], drawn = 0;
+  let queue = [], now = null, row = 0, last = performance.now(), asked = 0, history = [], drawn = 0, playing = true;
   const tell = () => {
     const { state } = model;
     said.textContent = state.sentence ?? "";
@@ -143,7 +143,7 @@ export function render({ model }) {
     last = time;
     if (wanted()) {
       if (queue.length < AHEAD) more();
-      if (now) row += seconds * PERIODS_A_SECOND * (now.message.rows - 1);
+      if (now && playing) row += seconds * PERIODS_A_SECOND * (now.message.rows - 1);
       if ((!now || row >= now.message.rows - 1) && queue.length) begin(queue.shift());
       if (now) row = Math.min(row, now.message.rows - 1);
       if (page.covered === "observer" && now) {
@@ -165,6 +165,7 @@ export function render({ model }) {
   const measure = () => { for (const one of drawings) one.measure(); };
   new ResizeObserver(measure).observe(stage);
   page.on("look", measure);
+  page.on("play", (value) => { playing = value; });
   page.on("cover", (name) => { if (name === "observer") requestAnimationFrame(measure); });
   tell();
   requestAnimationFrame(tick);

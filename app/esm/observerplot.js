@@ -40,5 +40,7 @@ function prediction({ svg, x1 }, X, Y, from, to, history, told, compact) {
   if (!(end > anchor[0])) return;
   const last = anchor[1] * 10 ** (slope * (end - anchor[0]));
   svg.append(draw("line", { x1: X(anchor[0]), y1: Y(anchor[1]), x2: X(end), y2: Y(last), class: "predicted" }));
-  if (!compact) words(svg, Math.min(X(end) + 6, x1 - 4), Y(last) + (slope > 0 ? 16 : -8), "predicted by |μ|", X(end) + 130 > x1 ? "end" : "start", "asked-words");
+  if (compact) return;
+  const middle = (X(anchor[0]) + X(end)) / 2, height = (Y(anchor[1]) + Y(last)) / 2;
+  words(svg, Math.min(middle + 14, x1 - 130), slope > 0 ? height + 30 : height - 30, "predicted by |μ|", "start", "asked-words");
 }
