@@ -99,10 +99,8 @@ class ObserverRun:
             return None
         strobes = np.array(self.strobes)
         first, end = linear_window(np.sqrt((strobes**2).sum(axis=1)))
-        rate, found = rates(strobes[first:end])
-        if found is None or end - first < 6:
-            return rate
-        return max(abs(z) for z in found)
+        _, found = rates(strobes[first:end])
+        return max((abs(z) for z in found), default=None)
 
     def step(self) -> Step:
         """One period on."""

@@ -2,8 +2,8 @@
 
 The distance between observer and chain, in scaled units |(Δu/A0, Δv/(A0 φ))|, changes by the observer's leading
 multiplier every period of the orbit as long as it is small. Here it is followed in time, where nothing is linearised,
-and the multiplier is read off from it: successive differences obey d_{k+2} = a d_{k+1} + b d_k where two multipliers
-lead, whose quadratic equation is z² = a z + b.
+and the multiplier is read off from it: successive differences obey d_{k+1} = a d_k where one real multiplier leads, and
+d_{k+2} = a d_{k+1} + b d_k where two do, which then solve z² = a z + b.
 """
 
 from __future__ import annotations
@@ -29,6 +29,8 @@ IN_STEP = 1e-12
 MOST_PERIODS = 20_000
 #: Periods after which the fast multipliers are taken to have died out, as a part of the usable ones.
 _TRANSIENT = 1.0 / 3.0
+#: Fewest strobes a rate is taken from, and what one multiplier may leave unexplained before there are two.
+_FEWEST, _ONE_IS_ENOUGH = 4, 0.03
 #: A difference is called a translation when the uniform shift is so much of it (squared cosine).
 _TRANSLATION = 0.7
 
@@ -37,10 +39,10 @@ _TRANSLATION = 0.7
 class Twin:
     """A chain x and its observer y in time: T samples of N beads in SI.
 
-    `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is the
-    distance's factor per orbit period as measured in time, `measured` the two leading multipliers read off from it
-    (None where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is not
-    periodic. `translation` is how much of the last linear difference is one shift of all beads.
+    `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is its
+    distance's factor per orbit period as measured in time, `measured` one or two leading multipliers read off from
+    it (None and empty where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is
+    not periodic. `translation` is how much of the last linear difference is one shift of all beads.
     """
 
     scene: Scene
@@ -56,7 +58,7 @@ class Twin:
     strobe_distance: np.ndarray
     window: tuple[int, int]
     rate: float | None
-    measured: tuple[complex, complex] | None
+    measured: tuple[complex, ...]
     translation: float
     cost: Cost
 
@@ -188,17 +190,25 @@ def linear_window(distance: np.ndarray) -> tuple[int, int]:
     return first + int(_TRANSIENT * (end - first)), end
 
 
-def rates(strobes: np.ndarray) -> tuple[float | None, tuple[complex, complex] | None]:
-    """Factor of the distance per strobe (least squares of its logarithm) and two leading multipliers, for (P, 2N)."""
-    if len(strobes) < 4:
-        return None, None
+def rates(strobes: np.ndarray) -> tuple[float | None, tuple[complex, ...]]:
+    """Factor of the distance per strobe (least squares of its logarithm) and one or two leading multipliers.
+
+    `strobes` are successive differences (P, 2N). Where one real multiplier explains them a second would be invented.
+    """
+    if len(strobes) < _FEWEST:
+        return None, ()
     size = np.sqrt((strobes**2).sum(axis=1))
     rate = float(np.exp(np.polyfit(np.arange(len(size)), np.log(size), 1)[0]))
+    before, after = strobes[:-1] / size[:-1, None], strobes[1:] / size[:-1, None]
+    alone = float((before * after).sum() / (before**2).sum())
+    left = float(np.sqrt(((after - alone * before) ** 2).sum() / (after**2).sum()))
+    if left < _ONE_IS_ENOUGH:
+        return rate, (complex(alone),)
     unit = 1.0 / size[:-2, None]
-    left = np.stack([(strobes[1:-1] * unit).ravel(), (strobes[:-2] * unit).ravel()], axis=1)
-    a, b = np.linalg.lstsq(left, (strobes[2:] * unit).ravel(), rcond=None)[0]
+    terms = np.stack([(strobes[1:-1] * unit).ravel(), (strobes[:-2] * unit).ravel()], axis=1)
+    a, b = np.linalg.lstsq(terms, (strobes[2:] * unit).ravel(), rcond=None)[0]
     found = sorted((complex(z) for z in np.roots([1.0, -a, -b])), key=abs, reverse=True)
-    return rate, (found[0], found[1])
+    return rate, tuple(found)
 
 
 def _share_of_translation(difference: np.ndarray) -> float:
