@@ -49,7 +49,9 @@ class ObserverPage:
     def changed(self) -> None:
         """A knob moved: the control on the page follows, and the next period is the new chain's."""
         scene = self._page.session.scene
-        self._view.display(kappa=scene.kappa, foundation=scene.k > 0.0)
+        self._view.display(kappa=scene.kappa)
+        if self._run is not None and self._run.scene.digest != scene.digest:
+            self._view.display(sentence="", predicted=None, measured=None)
 
     def close(self) -> None:
         """The visitor left."""

@@ -9,7 +9,15 @@ import numpy as np
 from granchain_core import NumbersFailed, Scene, Settled, State
 from granchain_core.integrate.engine import rest
 from granchain_core.observe.pair import Pair
-from granchain_core.observe.twin import IN_STEP, LINEAR, linear_window, observer_start, rates
+from granchain_core.observe.twin import (
+    IN_STEP,
+    LINEAR,
+    TRANSLATION,
+    linear_window,
+    observer_start,
+    rates,
+    share_of_translation,
+)
 from granchain_core.orbits import Orbit, periodic_orbit
 
 from .frames import samples_for
@@ -95,12 +103,30 @@ class ObserverRun:
     @property
     def measured(self) -> float | None:
         """The same as it was since the last nudge, where enough periods were linear."""
-        if len(self.strobes) < 8:
+        if len(self.strobes) < 8 * self._every:
             return None
-        strobes = np.array(self.strobes)
+        _, found = rates(self._linear)
+        return max((abs(z) ** (1.0 / self._every) for z in found), default=None)
+
+    @property
+    def _every(self) -> int:
+        """Drive periods after which the linear map repeats."""
+        return 1 if self.orbit is None else self.orbit.period
+
+    @property
+    def _linear(self) -> np.ndarray:
+        """The strobes, one an orbit, that are neither transient nor too large nor rounding."""
+        strobes = np.array(self.strobes).reshape(len(self.strobes), -1)[:: self._every]
         first, end = linear_window(np.sqrt((strobes**2).sum(axis=1)))
-        _, found = rates(strobes[first:end])
-        return max((abs(z) for z in found), default=None)
+        return strobes[first:end]
+
+    @property
+    def drifts(self) -> bool:
+        """Whether what grows is an offset of the whole observer, and there is no foundation to pull it back."""
+        linear = self._linear
+        if self.scene.k > 0.0 or len(linear) < 3:
+            return False
+        return share_of_translation(linear[-1, : self.scene.N]) >= TRANSLATION
 
     def step(self) -> Step:
         """One period on."""
@@ -136,7 +162,7 @@ class ObserverRun:
             tenfold = np.log(0.1) / np.log(factor)
             return f"{told} it synchronises with its chain, ten times nearer every {tenfold:.3g} drive periods."
         side = ", to the other side each time" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
-        if self.scene.k == 0.0:
+        if self.drifts:
             return f"{told} it drifts; an offset of its beads, which nothing pulls back, grows{side}."
         return f"{told} it leaves its chain{side}."
 

@@ -100,8 +100,8 @@ export function render({ model }) {
   const forceLabel = element("div", { className: "label force" }, element("b", { textContent: "F_in" }), push);
   const stage = element("div", { className: "chains" }, element("div", {}, label("chain x", "driven, as on the page"), above),
     element("div", { className: "between" }, forceLabel, between), element("div", {}, label("observer y", "feels F_in and nothing else of x"), below));
-  const picture = element("div", { className: "picture" });
-  const root = element("div", { className: "part sheet" }, head, say, stage, element("div", { className: "work" }, picture));
+  const picture = element("div", { className: "fill" });
+  const root = element("div", { className: "part sheet" }, head, say, stage, element("div", { className: "trace" }, picture));
 
   const palette = model.state.palette;
   const drawings = [new WholeChain(above, palette), new PushedChain(below, palette)];

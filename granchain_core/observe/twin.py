@@ -32,7 +32,7 @@ _TRANSIENT = 1.0 / 3.0
 #: Fewest strobes a rate is taken from, and what one multiplier may leave unexplained before there are two.
 _FEWEST, _ONE_IS_ENOUGH = 4, 0.03
 #: A difference is called a translation when the uniform shift is so much of it (squared cosine).
-_TRANSLATION = 0.7
+TRANSLATION = 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class Twin:
             return "neither yet"
         if not grows:
             return "synchronises"
-        return "drifts" if self.scene.k == 0.0 and self.translation >= _TRANSLATION else "breaks down"
+        return "drifts" if self.scene.k == 0.0 and self.translation >= TRANSLATION else "breaks down"
 
     @property
     def sentence(self) -> str:
@@ -138,7 +138,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
         input_force=force[:, 0] * scales.force, output_force=force[:, beads] * scales.force,
         observer_output_force=force[:, -1] * scales.force, distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
-        translation=_share_of_translation(strobes[max(0, window[1] - 1), :beads]),
+        translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
         cost=Cost.of(time.perf_counter() - began, pair.engine.counts, "dop853"),
     )
 
@@ -211,7 +211,7 @@ def rates(strobes: np.ndarray) -> tuple[float | None, tuple[complex, ...]]:
     return rate, tuple(found)
 
 
-def _share_of_translation(difference: np.ndarray) -> float:
+def share_of_translation(difference: np.ndarray) -> float:
     """Squared cosine between a difference of displacements and one shift of all beads."""
     size = float(difference @ difference)
     return float(difference.sum() ** 2 / (len(difference) * size)) if size > 0.0 else 0.0

@@ -27,6 +27,18 @@ def test_a_run_measures_what_its_multiplier_predicts() -> None:
     assert "synchronises" in run.sentence and not run.broken
 
 
+def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
+    # sec2 from rest is of period 2 at 615 Hz (PHYSICS.md, trap 8)
+    shown = scene("sec2").evolve(f=615.0, kappa=0.001)
+    picture = settled(shown)
+    run = ObserverRun(shown, picture, new_stop(), None)
+    run.predict(picture)
+    assert run.orbit is not None and run.orbit.period == 2
+    for _ in range(60):
+        run.step()
+    assert run.measured == pytest.approx(run.predicted, rel=0.02)
+
+
 def test_a_knob_that_is_turned_goes_on_from_where_both_are() -> None:
     free = scene("fig11-free")
     picture = settled(free)
