@@ -1,4 +1,4 @@
-"""The command line: serve, scenes, warm, run, curve, orbit, branch, accuracy.
+"""The command line: serve, scenes, warm, run, curve, orbit, branch, observe, map, accuracy, check.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled. With --json one object goes to stdout and nothing else; progress goes to stderr.
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import branch_command, commands, orbit_command
+from app import branch_command, commands, observe_command, orbit_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import unknown_name
 
@@ -63,6 +63,7 @@ def _parser() -> _Parser:
     accuracy.add_argument("scene", metavar="SCENE")
     accuracy.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     accuracy.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    observe_command.add_options(_scene_command(command("observe", "push a scene's chain by a measured force")))
     curve = _scene_command(command("curve", "resonance curve: largest forces over frequency"))
     curve.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
     curve.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
@@ -84,6 +85,7 @@ _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
     "curve": commands.curve, "orbit": orbit_command.orbit, "branch": branch_command.branch,
     "accuracy": commands.accuracy,
+    "observe": observe_command.observe,
 }
 
 

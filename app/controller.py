@@ -21,6 +21,7 @@ from .exchange import Exchange
 from .frames import samples_for
 from .jobs import LatestWins, Stop
 from .live import LivePicture, LiveRun
+from .observer import ObserverPage
 from .painter import Painter
 from .promptness import in_one_go, send_at_once
 from .session import LOOKS, SPEEDS, Session, presets, slider_range
@@ -47,11 +48,12 @@ class Controller:
         self.live: LiveRun | None = None
         self.curves = Curves(self.views, self.later, self.after, lambda: self.busy)
         self.exchange = Exchange(self)
+        self.observer = ObserverPage(self)
         self.accuracy = AccuracyPage(self)
         self.branches = BranchesPage(self)
         self.effects = EffectsPanel(self)
         self.stability = StabilityPage(self)
-        self.parts = (self.accuracy, self.branches, self.effects, self.stability)
+        self.parts = (self.accuracy, self.branches, self.effects, self.observer, self.stability)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
@@ -224,6 +226,7 @@ class Controller:
 
     def _describe(self) -> None:
         scene = self.session.scene
+        self.observer.changed()
         self.accuracy.describe()
         self.branches.describe()
         self.effects.changed()

@@ -7,6 +7,8 @@ const paragraph = (text, className = "") => Object.assign(document.createElement
 
 // Draws the small picture of accuracy again; set while its tab is open.
 let drawSmall = () => {};
+// The same of the observer's.
+let drawObserver = () => {};
 
 const TABS = {
   "look at": ({ state }) => [paragraph(state.look_at ?? ""), paragraph(state.paper ?? "", "soft")],
@@ -47,6 +49,24 @@ const TABS = {
   },
   effects: effectsTab,
   branches: branchesTab,
+  observer: () => {
+    const page = window.granchain;
+    const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
+    open.addEventListener("click", () => page.cover("observer"));
+    const host = Object.assign(document.createElement("div"), { className: "small" });
+    const said = paragraph("");
+    const show = () => {
+      said.textContent = page.observer?.sentence || "A copy of the chain that feels its input force and nothing else.";
+      if (host.isConnected && page.observer) distancePicture(host, page.observer.history, page.observer.told, true);
+    };
+    page.observerTab = host;  // while it is on the screen the observer runs
+    drawObserver = show;
+    requestAnimationFrame(show);
+    const row = Object.assign(document.createElement("div"), { className: "row top" });
+    row.append(said, open);
+    document.getElementById("curves").classList.add("roomy");
+    return [row, host];
+  },
   data: (model) => {
     const row = document.createElement("div");
     row.className = "row";
@@ -120,6 +140,7 @@ export function render({ model }) {
   });
   tabs.append(larger);
   model.on("state", show);
+  window.granchain.on("observer", () => { if (chosen === "observer") drawObserver(); });
   window.granchain.on("accuracy", () => { if (chosen === "accuracy") drawSmall(); });
   window.granchain.on("stability", () => { if (chosen === "stability") drawSmall(); });
   window.granchain.on("cover", () => { if (chosen === "effects") looking(); });

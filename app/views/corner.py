@@ -8,8 +8,8 @@ from .component import Component, text
 class Corner(Component):
     """Tabs; the data tab sends the text of a CSV file."""
 
-    _esm = (text("plot.js") + text("effects.js") + text("multipliers.js") + text("stabilitysmall.js")
-            + text("branchpicture.js") + text("corner.js"))
+    _esm = "".join(text(f"{name}.js") for name in (
+        "plot", "observerplot", "effects", "multipliers", "stabilitysmall", "branchpicture", "corner"))
     _stylesheets = [text("controls.css"), text("drawing.css"), text("multipliers.css"), text("corner.css")]  # noqa: RUF012
 
 

@@ -23,11 +23,12 @@ from .equation import Equation
 from .figures import BOTTOM, GAP, TOP, pane
 from .header import Header
 from .knobs import Knobs
+from .observer import Observer, first_state
 from .stability import Stability
 from .trains import Trains
 
 #: Pages over the pictures; each has its place in page.html.
-PAGES = ("accuracy", "stability", "branches")
+PAGES = ("accuracy", "stability", "branches", "observer")
 _APP = Path(__file__).resolve().parent.parent
 
 
@@ -49,6 +50,7 @@ class Views:
         self.accuracy = Accuracy(received, sizing_mode="stretch_both")
         self.stability = Stability(received, sizing_mode="stretch_both")
         self.branches = Branches(received, sizing_mode="stretch_both")
+        self.observer = Observer(received, sizing_mode="stretch_both", state=first_state())
         self.badge = Badge(received)
         self.shown: Settled | None = None
 

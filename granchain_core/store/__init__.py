@@ -2,5 +2,6 @@
 
 from .branches import load_branch, save_branch
 from .files import check_writable, load, save, save_curve
+from .observations import save_observation
 
-__all__ = ["check_writable", "load", "load_branch", "save", "save_branch", "save_curve"]
+__all__ = ["check_writable", "load", "load_branch", "save", "save_branch", "save_curve", "save_observation"]

@@ -19,8 +19,9 @@ LAYERS = {
     "run": {"errors", "scene", "kernels", "integrate", "result", "steady"},
     "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "lower", "scene", "steady"},
     "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "steady", "warm"},
+    "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
-    "store": {"errors", "orbits", "quantities", "result", "scene", "steady", ""},
+    "store": {"errors", "observe", "orbits", "quantities", "result", "scene", "steady", ""},
 }
 
 

@@ -19,7 +19,7 @@ def opened(page: Page) -> Locator:
     """The Branches page, opened from its tab in the corner."""
     page.get_by_role("tab", name="branches").click()
     page.locator("#corner").get_by_role("button", name="open the page").click()
-    sheet = page.locator("#branches")
+    sheet = page.locator('[data-cover="branches"]')
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
     return sheet
 
