@@ -1,4 +1,4 @@
-"""The command line: serve, scenes, warm, run, curve, orbit, accuracy.
+"""The command line: serve, scenes, warm, run, curve, orbit, accuracy, map.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled. With --json one object goes to stdout and nothing else; progress goes to stderr.
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import commands
+from app import commands, map_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import unknown_name
 
@@ -64,6 +64,7 @@ def _parser() -> _Parser:
     curve.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
     curve.add_argument("--points", type=int, required=True, metavar="n")
     curve.add_argument("--start", default="rest", metavar="rest|up|down")
+    map_command.add_arguments(command("map", "regime and largest forces over two knobs"))
     return parser
 
 
@@ -79,6 +80,7 @@ def _scene_command(parser: _Parser) -> _Parser:
 _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
     "curve": commands.curve, "orbit": commands.orbit, "accuracy": commands.accuracy,
+    "map": map_command.map_scene,
 }
 
 
