@@ -26,18 +26,22 @@ _LOOK = 0.05
 
 
 class _Shared:
-    """Cells of one structure that several threads draw from."""
+    """Starts of one structure that several threads draw from."""
 
-    def __init__(self, grid: Grid, numbers: Sequence[int]) -> None:
-        self._grid, self._numbers, self._lock = grid, iter(numbers), threading.Lock()
+    def __init__(self, starts: Iterable[Start]) -> None:
+        self._starts, self._lock = iter(starts), threading.Lock()
 
     def __iter__(self) -> Iterator[Start]:
         return self
 
     def __next__(self) -> Start:
         with self._lock:
-            number = next(self._numbers)
-        return Start(self._grid.cell(number), number=number)
+            return next(self._starts)
+
+
+def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
+    """Cells as starts from rest."""
+    return (Start(grid.cell(number), number=number) for number in numbers)
 
 
 def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
@@ -76,7 +80,7 @@ def block_cells(grid: Grid, numbers: Sequence[int], stop: np.ndarray | None = No
     """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
     flag = new_stop() if stop is None else stop
     found = [cell_of(result) for group in by_structure(grid, numbers)
-             for result in settle_starts(_Shared(grid, group), flag)]
+             for result in settle_starts(starts_of(grid, group), flag)]
     return np.array(found)
 
 
@@ -90,14 +94,15 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
     wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
     groups = by_structure(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
     for group in groups:
-        yield from _on_all_cores(_Shared(grid, group), min(workers or os.cpu_count() or 1, len(group)), stop)
+        yield from on_all_cores(starts_of(grid, group), stop, workers)
         if stop is not None and stop():
             return
 
 
-def _on_all_cores(work: _Shared, count: int, stop: Callable[[], bool] | None) -> Iterator[LaneResult]:
-    """Results of one group from `count` threads; closing the generator stops them."""
-    flag = new_stop()
+def on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None = None,
+                 workers: int | None = None) -> Iterator[LaneResult]:
+    """Where starts of one structure lead, from as many threads as there are cores; closing the generator stops them."""
+    work, flag, count = _Shared(starts), new_stop(), workers or os.cpu_count() or 1
     found: queue.SimpleQueue[LaneResult | BaseException | None] = queue.SimpleQueue()
     threads = [threading.Thread(target=_work, args=(work, flag, found), daemon=True, name=f"diagram-{i}")
                for i in range(count)]

@@ -1,5 +1,6 @@
 """Periodic orbits as fixed points of the stroboscopic map, and their stability."""
 
 from .orbit import Orbit, periodic_orbit
+from .response import Response, response
 
-__all__ = ["Orbit", "periodic_orbit"]
+__all__ = ["Orbit", "Response", "periodic_orbit", "response"]
