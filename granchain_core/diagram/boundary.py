@@ -8,24 +8,23 @@ On such a curve the orbit's critical multiplier meets its condition:
 
 Each point is found at a fixed second knob y: the orbit's branch over the first knob x is a curve in (state, x) with
 arclength s, on which Newton's method solves map(state, x) = state bordered by the arclength condition, so that a fold
-is nothing special; the root of the condition along s is found by Illinois false position. From one y to the next the
-curve is extrapolated, with steps that are halved where that fails.
+is nothing special; the root of the condition along s is found by secants. From one y to the next the curve is
+extrapolated, with steps that are halved where that fails.
 
 Source: Kuznetsov, Elements of Applied Bifurcation Theory (2004), chapter 10.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
-from ..integrate import State
+from ..integrate import Engine, Setting, State
 from ..integrate.lane_block import scaled_state
-from ..orbits.flow import StroboscopicMap
+from ..orbits.flow import TOLERANCE, StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene
 from .grid import KNOBS
@@ -37,10 +36,11 @@ _MET = 1e-6
 _CONVERGED, _ITERATIONS = 1e-10, 8
 #: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
 _DIFFERENCE = 1e-6
-#: First step along a branch, relative to the state and the knob, by how much it grows, and how often it is tried.
-_STEP, _GROWS, _TRIES = 2e-3, 1.6, 24
-#: Steps of false position at most, and how often a step to the next y is halved.
-_ROOT, _HALVINGS = 30, 6
+#: First step along a branch, relative to the state and the knob; a secant goes at most so many times the last step,
+#: is halved so often where the branch is lost, and so many are tried.
+_STEP, _FARTHEST, _SECANTS, _HALVINGS = 1e-3, 6.0, 14, 3
+#: Smallest part of the way to the next y that is tried as one step.
+_LEAST = 1.0 / 32.0
 #: Slower than this from +1 or −1 in angle a critical pair is not told from a real multiplier.
 _REAL = 1e-7
 
@@ -57,13 +57,17 @@ class BoundaryPoint:
 
 @dataclass(frozen=True, eq=False)
 class _Branch:
-    """Orbits of `periods` drive periods over the knob x; a point is X = (scaled state, x / x_unit), (2N + 1,)."""
+    """Orbits of `periods` drive periods over the knob x; a point is X = (scaled state, x / unit), (2N + 1,).
+
+    `near` is the critical multiplier of the point before, where there is one.
+    """
 
     scene: Scene
     knob: str
     unit: float
     periods: int
     stop: np.ndarray | None
+    near: complex | None = None
 
     def at(self, x: float) -> Scene:
         """The scene at a point's last entry."""
@@ -76,45 +80,64 @@ class _Branch:
 
     def slope(self, X: np.ndarray) -> np.ndarray:
         """Derivative of the map's end by the knob, (2N,)."""
-        ends = [self.map(np.append(X[:-1], X[-1] * (1.0 + sign * _DIFFERENCE)))[0] for sign in (1.0, -1.0)]
-        return (ends[0] - ends[1]) / (2.0 * _DIFFERENCE * X[-1])
+        ends = []
+        for sign in (1.0, -1.0):
+            engine = Engine(self.at(X[-1] * (1.0 + sign * _DIFFERENCE)), Setting("dop853", tolerance=TOLERANCE), 1,
+                            stop=self.stop)
+            engine.start_scaled(X[:-1])
+            engine.periods(self.periods, watch=False)
+            row = engine.lowered.row
+            ends.append(np.concatenate([engine.y[1 : row - 1], engine.y[row + 1 : 2 * row - 1]]))
+        return np.asarray((ends[0] - ends[1]) / (2.0 * _DIFFERENCE * X[-1]))
 
-    def solve(self, guess: np.ndarray, direction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The orbit on the plane through `guess` across `direction`, with the map's derivative there."""
-        X, slope = guess.copy(), None
+    def solve(self, guess: np.ndarray, direction: np.ndarray, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The orbit on the plane through `guess` across `direction`, with the map's derivative there.
+
+        `slope` may be that of a point near by: it only steers the iterations.
+        """
+        X = guess.copy()
         for _ in range(_ITERATIONS):
             end, derivative = self.map(X)
             off = np.append(end - X[:-1], direction @ (X - guess))
             if np.abs(off).max() <= _CONVERGED * max(1.0, float(np.abs(X[:-1]).max())):
                 return X, derivative
-            slope = self.slope(X) if slope is None else slope
             matrix = np.block([[derivative - np.eye(len(end)), slope[:, None]], [direction[None, :]]])
             X = X - np.linalg.solve(matrix, off)
             if not np.isfinite(X).all() or X[-1] <= 0.0:
                 break
         raise NumbersFailed("Newton's method lost the branch.", "no-convergence")
 
-    def tangent(self, X: np.ndarray, derivative: np.ndarray, along: np.ndarray) -> np.ndarray:
+    @staticmethod
+    def tangent(derivative: np.ndarray, slope: np.ndarray, along: np.ndarray) -> np.ndarray:
         """Unit tangent of the branch, on the side of `along`."""
-        matrix = np.block([[derivative - np.eye(len(X) - 1), self.slope(X)[:, None]], [along[None, :]]])
-        tangent = np.linalg.solve(matrix, np.append(np.zeros(len(X) - 1), 1.0))
+        matrix = np.block([[derivative - np.eye(len(slope)), slope[:, None]], [along[None, :]]])
+        tangent = np.linalg.solve(matrix, np.append(np.zeros(len(slope)), 1.0))
         return tangent / np.linalg.norm(tangent)
 
 
-def critical(derivative: np.ndarray, kind: str) -> tuple[float, complex]:
-    """The condition of `kind` and the multiplier that is nearest to meeting it."""
+def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> tuple[float, complex]:
+    """A smooth function that is 0 where `kind` is met, and the multiplier nearest to meeting it.
+
+    Π(μ − 1) for a fold and Π(μ + 1) for a period doubling, which know nothing of pairs that become real; |μ| − 1 of
+    the critical pair for Neimark–Sacker, which is the one nearest to `near`, else to the unit circle.
+    """
     multipliers = np.linalg.eigvals(derivative)
-    real = np.abs(multipliers.imag) <= _REAL
-    if kind == "neimark_sacker":
-        chosen = multipliers[~real]
-        distance = np.abs(chosen) - 1.0
-    else:
-        chosen = multipliers[real]
-        distance = chosen.real - (1.0 if kind == "fold" else -1.0)
-    if len(chosen) == 0:
-        raise NumbersFailed(f"The orbit has no multiplier that could meet a {kind.replace('_', ' ')}.", "no-point")
-    nearest = int(np.argmin(np.abs(distance)))
-    return float(distance[nearest]), complex(chosen[nearest])
+    if kind != "neimark_sacker":
+        target = 1.0 if kind == "fold" else -1.0
+        nearest = int(np.argmin(np.abs(multipliers - target)))
+        return float(np.prod(multipliers - target).real), complex(multipliers[nearest])
+    pairs = multipliers[np.abs(multipliers.imag) > _REAL]
+    if len(pairs) == 0:
+        raise NumbersFailed("The orbit has no complex multipliers, which a Neimark–Sacker point needs.", "no-point")
+    away = np.abs(np.abs(pairs) - 1.0) if near is None else np.abs(pairs - complex(near.real, abs(near.imag)))
+    nearest = int(np.argmin(np.where(pairs.imag > 0.0, away, np.inf)))
+    return float(abs(pairs[nearest]) - 1.0), complex(pairs[nearest])
+
+
+def _met(multiplier: complex, kind: str) -> bool:
+    """Whether a critical multiplier is where it has to be."""
+    away = abs(multiplier) - 1.0 if kind == "neimark_sacker" else multiplier - (1.0 if kind == "fold" else -1.0)
+    return abs(away) <= _MET
 
 
 def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: int = 1, x: str = "f", y: str = "A0",
@@ -145,58 +168,37 @@ def _check(scene: Scene, kind: str, x: str, y: str) -> None:
 
 
 def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y: str) -> BoundaryPoint:
-    """Step along the branch to both sides until the condition changes sign, then find its root."""
+    """Go along the branch by secants until the condition is met."""
     try:
-        start, derivative = branch.solve(guess, along)
-        condition, _ = critical(derivative, kind)
-        tangent = branch.tangent(start, derivative, along)
-        bracket = _bracketed(branch, kind, start, condition, tangent)
-        X, mu = _root(branch, kind, *bracket)
+        slope = branch.slope(guess)
+        before, derivative = branch.solve(guess, along, slope)
+        condition, mu = critical(derivative, kind, branch.near)
+        step = _STEP * float(np.linalg.norm(before)) * branch.tangent(derivative, slope, along)
+        for _ in range(_SECANTS):
+            if _met(mu, kind):
+                return BoundaryPoint(float(before[-1]) * branch.unit, float(branch.scene.knobs[y]), mu, before[:-1])
+            X, there, mu = _advanced(branch, kind, before, step, slope)
+            gain = condition - there
+            factor = there / gain if gain != 0.0 else _FARTHEST
+            step = (X - before) * float(np.clip(factor, -_FARTHEST, _FARTHEST))
+            before, condition = X, there
     except (np.linalg.LinAlgError, BadInput) as problem:
         raise NumbersFailed(f"The branch could not be followed: {problem}.", "no-convergence") from None
-    return BoundaryPoint(float(X[-1]) * branch.unit, float(branch.scene.knobs[y]), mu, X[:-1])
-
-
-def _bracketed(branch: _Branch, kind: str, start: np.ndarray, condition: float,
-               tangent: np.ndarray) -> tuple[np.ndarray, float, np.ndarray, float]:
-    """Two points of the branch between which the condition changes sign; the side on which it shrinks comes first."""
-    if abs(condition) <= _MET:
-        return start, condition, start, condition
-    size = _STEP * max(1.0, float(np.linalg.norm(start)))
-    sides = [(start, condition, sign * tangent) for sign in (1.0, -1.0)]
-    for attempt in range(_TRIES):
-        length = size * _GROWS ** (attempt // 2)
-        before, value, direction = sides[attempt % 2]
-        try:
-            X, derivative = branch.solve(before + length * direction, direction)
-            there, _ = critical(derivative, kind)
-        except NumbersFailed:
-            continue
-        if (there > 0.0) != (value > 0.0) and abs(there - value) < 0.5:
-            return before, value, X, there
-        sides[attempt % 2] = X, there, branch.tangent(X, derivative, direction)
     raise NumbersFailed(f"No {kind.replace('_', ' ')} was found on this branch near {branch.knob} = "
-                        f"{start[-1] * branch.unit:g}; give an orbit nearer to it.", "no-point")
+                        f"{guess[-1] * branch.unit:g}; give an orbit nearer to it.", "no-point")
 
 
-def _root(branch: _Branch, kind: str, a: np.ndarray, at_a: float, b: np.ndarray,
-          at_b: float) -> tuple[np.ndarray, complex]:
-    """Where the condition is met between two points of the branch (Illinois false position)."""
-    for _ in range(_ROOT):
-        part = 0.5 if at_a == at_b else at_a / (at_a - at_b)
-        chord = b - a
-        length = float(np.linalg.norm(chord))
-        direction = chord / length if length > 0.0 else np.append(np.zeros(len(a) - 1), 1.0)
-        X, derivative = branch.solve(a + part * chord, direction)
-        there, mu = critical(derivative, kind)
-        if abs(there) <= _MET:
-            return X, mu
-        if (there > 0.0) == (at_b > 0.0):
-            b, at_b, at_a = X, there, 0.5 * at_a
-        else:
-            a, at_a, b, at_b = b, at_b, X, there
-    raise NumbersFailed(f"The {kind.replace('_', ' ')} near {branch.knob} = {a[-1] * branch.unit:g} is not sharp.",
-                        "no-convergence")
+def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,
+              slope: np.ndarray) -> tuple[np.ndarray, float, complex]:
+    """The point of the branch a step further, or half of it, …, with its condition."""
+    shorter = step
+    for _ in range(_HALVINGS):
+        try:
+            X, derivative = branch.solve(before + shorter, shorter / np.linalg.norm(shorter), slope)
+            return X, *critical(derivative, kind, branch.near)
+        except NumbersFailed:
+            shorter = 0.5 * shorter
+    raise NumbersFailed("Newton's method lost the branch.", "no-convergence")
 
 
 def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: Iterable[float], period: int = 1,
@@ -231,21 +233,31 @@ def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: 
 def _follow(scene: Scene, kind: str, points: list[BoundaryPoint], value: float, period: int, x: str, y: str,
             stop: np.ndarray | None) -> BoundaryPoint | None:
     """The curve's point at y = `value`, by smaller steps where one is too large; None where the curve ends."""
-    path = points[-2:]
-    for halving in range(_HALVINGS):
-        way, ends = path.copy(), np.linspace(path[-1].y, value, 2**halving + 1)[1:]
-        try:
-            for end in ends:
-                x_guess, state = _extrapolated(way, float(end))
-                here = scene.evolve(**{x: x_guess, y: float(end)})
-                branch = _Branch(here, x, x_guess, period, stop)
-                along = np.append(np.zeros(len(state)), 1.0) if kind != "fold" else _inwards(branch, state)
-                way.append(_nearest(branch, kind, np.append(state, 1.0), along, y))
-        except (NumbersFailed, BadInput):
+    way, part = points[-2:], 1.0
+    whole = abs(value - way[-1].y)
+    while way[-1].y != value:
+        end = value if abs(value - way[-1].y) <= part * whole else way[-1].y + part * (value - points[-1].y)
+        following = _stepped(scene, kind, way, end, period, x, y, stop)
+        if following is not None:
+            way = [way[-1], following]
             continue
-        if _continues(way):
-            return way[-1]
-    return None
+        part *= 0.5
+        if part < _LEAST:
+            return None
+    return way[-1]
+
+
+def _stepped(scene: Scene, kind: str, way: list[BoundaryPoint], end: float, period: int, x: str, y: str,
+             stop: np.ndarray | None) -> BoundaryPoint | None:
+    """The point at y = `end` by one step from the last two; None where it is not found or does not go on evenly."""
+    guess, state = _extrapolated(way, end, x, y)
+    try:
+        branch = _Branch(scene.evolve(**{x: guess, y: end}), x, guess, period, stop, way[-1].multiplier)
+        along = _inwards(branch, state) if kind == "fold" else np.append(np.zeros(len(state)), 1.0)
+        found = _nearest(branch, kind, np.append(state, 1.0), along, y)
+    except (NumbersFailed, BadInput):
+        return None
+    return found if _continues(way[-1], found) else None
 
 
 def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
@@ -255,19 +267,20 @@ def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
     return np.append(rows[-1], 0.0)
 
 
-def _extrapolated(way: list[BoundaryPoint], y: float) -> tuple[float, np.ndarray]:
+def _extrapolated(way: list[BoundaryPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
+    """Knob x and state at y: on the line through the last two points; from one alone by f ∝ A0^{1/4}, else as it is.
+
+    (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit unchanged where D and k go along, and nearly where they do not.
+    """
     if len(way) == 1:
-        return way[0].x, way[0].state
+        power = {("f", "A0"): 0.25, ("A0", "f"): 4.0}.get((x_knob, y_knob), 0.0)
+        return way[0].x * (y / way[0].y) ** power, way[0].state
     a, b = way[-2:]
-    part = (y - b.y) / (b.y - a.y)
-    return b.x + part * (b.x - a.x), b.state + part * (b.state - a.state)
+    part = np.log(y / b.y) / np.log(b.y / a.y)
+    return b.x * (b.x / a.x) ** part, b.state + part * (b.state - a.state)
 
 
-def _continues(way: list[BoundaryPoint]) -> bool:
+def _continues(before: BoundaryPoint, after: BoundaryPoint) -> bool:
     """Whether the critical multiplier and the first knob go on evenly: else it is another curve that was met."""
-    for before, after in itertools.pairwise(way):
-        if abs(abs(np.angle(after.multiplier)) - abs(np.angle(before.multiplier))) > 0.3:
-            return False
-        if abs(after.x / before.x - 1.0) > 0.25 * max(0.2, abs(after.y / before.y - 1.0)):
-            return False
-    return True
+    turned = abs(abs(np.angle(after.multiplier)) - abs(np.angle(before.multiplier)))
+    return bool(turned <= 0.15 and abs(after.x / before.x - 1.0) <= 0.25)
