@@ -91,10 +91,17 @@ def error_norm(tolerance, h, y, work, m):
 @kernel
 def prepare_dense(slots, beta, t, h, y, work):
     """Fill work.dense for the step from y to work.end: three more slopes and seven coefficients."""
-    k, dense = work.k, work.dense
+    k = work.k
     for s in range(STAGES + 1, ALL_STAGES):
         combine(y, h, k, s, work.stage)
         evaluate(slots, beta, t + C[s] * h, work.stage, k[s], work.forces)
+    dense_coefficients(h, y, work)
+
+
+@kernel
+def dense_coefficients(h, y, work):
+    """Fill work.dense from the step's end and all its slopes."""
+    k, dense = work.k, work.dense
     for i in range(y.size):
         change = work.end[i] - y[i]
         dense[0, i] = change
