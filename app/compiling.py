@@ -15,6 +15,7 @@ from pathlib import Path
 
 from granchain_core import Scene
 from granchain_core.accuracy import compiled
+from granchain_core.orbits.compiled import ORBIT_PIECE, compile_orbit
 from granchain_core.warm import is_warm, structure, warm
 
 from .jobs import BACKGROUND, Stop
@@ -33,6 +34,8 @@ def load(scene: Scene, piece: str) -> None:
     """Have one piece of the kernels in this process: from the cache, or compiled here where it is not there."""
     if piece in compiled.PIECES:
         compiled.compile_piece(scene, piece)
+    elif piece == ORBIT_PIECE:
+        compile_orbit(scene)
     else:
         warm(scene, (piece,))
 

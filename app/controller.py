@@ -15,6 +15,7 @@ from .account import with_account
 from .accuracy import AccuracyPage
 from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
 from .curves import Curves
+from .diagrams import MapTab
 from .effects import EffectsPanel
 from .exchange import Exchange
 from .frames import samples_for
@@ -47,6 +48,7 @@ class Controller:
         self.exchange = Exchange(self)
         self.accuracy = AccuracyPage(self)
         self.effects = EffectsPanel(self)
+        self.map = MapTab(self)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
@@ -57,6 +59,7 @@ class Controller:
             "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
             "cover": self._cover, "curve-stop": lambda _: self.curves.stop(),
             **Transport(self).actions, **self.exchange.actions, **self.accuracy.actions, **self.effects.actions,
+            **self.map.actions,
         }
 
     # Coming in and going out
@@ -114,6 +117,7 @@ class Controller:
         self.curves.close()
         self.accuracy.close()
         self.effects.close()
+        self.map.close()
 
     @property
     def busy(self) -> bool:
@@ -219,6 +223,7 @@ class Controller:
         scene = self.session.scene
         self.accuracy.describe()
         self.effects.changed()
+        self.map.moved()
         self.views.equation.display(latex=scene.equation_latex())
         self.views.corner.display(validity=list(scene.validity()))
 

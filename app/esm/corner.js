@@ -40,6 +40,7 @@ const TABS = {
     row.append(said, open);
     return [row, host];
   },
+  map: mapTab,
   effects: effectsTab,
   data: (model) => {
     const row = document.createElement("div");
@@ -88,8 +89,9 @@ export function render({ model }) {
   const choose = (name) => {
     const before = chosen;
     chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects"].includes(name));
+    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "map"].includes(name));
     if (before === "effects" || name === "effects") looking();
+    if (before === "map" || name === "map") model.send_msg({ do: "map-visible", value: name === "map" });
     show();
   };
   for (const name of Object.keys(TABS)) {
@@ -99,7 +101,9 @@ export function render({ model }) {
     tabs.append(tab);
   }
   tabs.append(larger);
-  model.on("state", show);
+  // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
+  model.on("state", () => { if (chosen !== "map") show(); });
+  model.on("msg:custom", mapMessage);
   window.granchain.on("accuracy", () => { if (chosen === "accuracy") drawSmall(); });
   window.granchain.on("cover", () => { if (chosen === "effects") looking(); });
   show();

@@ -8,8 +8,8 @@ from .component import Component, text
 class Corner(Component):
     """Tabs; the data tab sends the text of a CSV file."""
 
-    _esm = text("plot.js") + text("effects.js") + text("corner.js")
-    _stylesheets = [text("controls.css"), text("drawing.css"), text("corner.css")]  # noqa: RUF012
+    _esm = text("plot.js") + text("effects.js") + text("map.js") + text("corner.js")
+    _stylesheets = [text("controls.css"), text("drawing.css"), text("corner.css"), text("map.css")]  # noqa: RUF012
 
 
 class CurveBar(Component):

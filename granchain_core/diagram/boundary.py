@@ -22,9 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
-from ..integrate import Engine, Setting, State
+from ..integrate import State
 from ..integrate.lane_block import scaled_state
-from ..orbits.flow import TOLERANCE, StroboscopicMap
+from ..orbits.flow import StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene
 from .grid import KNOBS
@@ -80,14 +80,8 @@ class _Branch:
 
     def slope(self, X: np.ndarray) -> np.ndarray:
         """Derivative of the map's end by the knob, (2N,)."""
-        ends = []
-        for sign in (1.0, -1.0):
-            engine = Engine(self.at(X[-1] * (1.0 + sign * _DIFFERENCE)), Setting("dop853", tolerance=TOLERANCE), 1,
-                            stop=self.stop)
-            engine.start_scaled(X[:-1])
-            engine.periods(self.periods, watch=False)
-            row = engine.lowered.row
-            ends.append(np.concatenate([engine.y[1 : row - 1], engine.y[row + 1 : 2 * row - 1]]))
+        ends = [StroboscopicMap(self.at(X[-1] * (1.0 + sign * _DIFFERENCE)), self.periods, self.stop).end(X[:-1])
+                for sign in (1.0, -1.0)]
         return np.asarray((ends[0] - ends[1]) / (2.0 * _DIFFERENCE * X[-1]))
 
     def solve(self, guess: np.ndarray, direction: np.ndarray, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

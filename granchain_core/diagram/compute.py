@@ -28,14 +28,16 @@ _LOOK = 0.05
 class _Shared:
     """Starts of one structure that several threads draw from."""
 
-    def __init__(self, starts: Iterable[Start]) -> None:
-        self._starts, self._lock = iter(starts), threading.Lock()
+    def __init__(self, starts: Iterable[Start], pause: Callable[[], None] | None) -> None:
+        self._starts, self._pause, self._lock = iter(starts), pause, threading.Lock()
 
     def __iter__(self) -> Iterator[Start]:
         return self
 
     def __next__(self) -> Start:
         with self._lock:
+            if self._pause is not None:
+                self._pause()
             return next(self._starts)
 
 
@@ -85,24 +87,25 @@ def block_cells(grid: Grid, numbers: Sequence[int], stop: np.ndarray | None = No
 
 
 def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
-                 stop: Callable[[], bool] | None = None, workers: int | None = None) -> Iterator[LaneResult]:
+                 stop: Callable[[], bool] | None = None, workers: int | None = None,
+                 pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
     """Cells of the diagram as they are decided, coarse first; `missing` are those wanted, else all.
 
     The result's `number` is the cell's. `stop` is asked between cells and may end the computation; running cells are
-    then given up.
+    then given up. `pause` is called before a cell is begun and may wait.
     """
     wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
     groups = by_structure(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
     for group in groups:
-        yield from on_all_cores(starts_of(grid, group), stop, workers)
+        yield from on_all_cores(starts_of(grid, group), stop, workers, pause)
         if stop is not None and stop():
             return
 
 
 def on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None = None,
-                 workers: int | None = None) -> Iterator[LaneResult]:
+                 workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
     """Where starts of one structure lead, from as many threads as there are cores; closing the generator stops them."""
-    work, flag, count = _Shared(starts), new_stop(), workers or os.cpu_count() or 1
+    work, flag, count = _Shared(starts, pause), new_stop(), workers or os.cpu_count() or 1
     found: queue.SimpleQueue[LaneResult | BaseException | None] = queue.SimpleQueue()
     threads = [threading.Thread(target=_work, args=(work, flag, found), daemon=True, name=f"diagram-{i}")
                for i in range(count)]

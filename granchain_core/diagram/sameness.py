@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from ..errors import NumbersFailed
+from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting, State
 from ..integrate.lane_block import scaled_state
 from ..lower import lower
@@ -109,7 +109,7 @@ def _polished(one: Found) -> Found:
                         if period % n == 0 and np.abs(section - np.roll(section, n, axis=0)).max() <= _REPEATS)
         if shortest < period:  # the lanes saw a slow approach to it with changing sign
             orbit = periodic_orbit(one.result.scene, shortest, orbit.state)
-    except NumbersFailed:
+    except (BadInput, NumbersFailed):  # a scene that cuts tension has no certified orbits
         return one
     if _distance(section, one.section) > 10.0 * one.tolerance + 1e-6:
         return one
