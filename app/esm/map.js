@@ -2,7 +2,7 @@
 
 const MAP = { head: null, cells: new Map(), now: null, done: 0, status: "none", sentence: "", stale: false, attractors: [], search: "none", searched: "", shown: "force" };
 const MAP_STATUS = {
-  none: "", waiting: "waiting for the curve …", compiling: "compiling the kernels: some 10 s, only the first time on this computer …", computing: "computing …", done: "",
+  none: "", waiting: "waiting for the curve …", compiling: "compiling the kernels: some 10 s, only the first time on this computer …", computing: "", done: "",
   cancelled: "stopped; what is there stays", failed: "",
 };
 // How a category looks without colour: lines of a tile of 8, as in a printed map.
@@ -50,7 +50,7 @@ function mapTold(cell) {
 
 function mapScale(host) {
   const { x, y } = MAP.head;
-  const box = { x0: 62, x1: host.clientWidth - 10, y0: host.clientHeight - 40, y1: 8 };
+  const box = { x0: 62, x1: host.clientWidth - 20, y0: host.clientHeight - 40, y1: 8 };
   const step = (axis) => (axis.log ? Math.log(axis.values.at(-1) / axis.values[0]) : axis.values.at(-1) - axis.values[0]) / Math.max(1, axis.values.length - 1);
   const part = (axis, value) => (axis.log ? Math.log(value / axis.values[0]) : value - axis.values[0]) / step(axis) + 0.5;
   return {
@@ -156,7 +156,12 @@ function mapLegend(host, range) {
     return;
   }
   const present = new Set([...MAP.cells.values()].map((cell) => cell.category));
-  MAP.head.categories.forEach((category, number) => { if (present.has(number)) host.append(mapSwatch(category, number), category.name); });
+  MAP.head.categories.forEach((category, number) => {
+    if (!present.has(number)) return;
+    const entry = document.createElement("span");
+    entry.append(mapSwatch(category, number), ` ${category.name}`);
+    host.append(entry);
+  });
 }
 
 function mapSwatch(category, number) {
@@ -207,9 +212,11 @@ function mapTab(model) {
     const cell = mapCell(i, j);
     if (cell) send("map-choose", { x: MAP.head.x.values[cell.j], y: MAP.head.y.values[cell.i] });
   };
-  canvas.addEventListener("pointermove", (event) => { if (MAP.head) { const [i, j] = place(event); show(mapCell(i, j), i, j); } });
+  // What was told is what a click chooses: browsers round the place of a click.
+  let told = null;
+  canvas.addEventListener("pointermove", (event) => { if (MAP.head) { told = place(event); show(mapCell(...told), ...told); } });
   canvas.addEventListener("pointerleave", () => { tip.hidden = true; });
-  canvas.addEventListener("click", (event) => { if (MAP.head) pick(...place(event)); });
+  canvas.addEventListener("click", (event) => { if (MAP.head) pick(...(told ?? place(event))); });
   canvas.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] }[event.key];
     if (!MAP.head || !(step || event.key === "Enter")) return;
@@ -247,6 +254,7 @@ function mapTab(model) {
     again.hidden = MAP.status !== "cancelled";
     meter.value = MAP.done;
     host.classList.toggle("stale", MAP.stale);
+    host.dataset.done = MAP.stale ? 0 : MAP.done;
     if (what === undefined || what === "map-attractors") listed();
     if (!MAP.head || !MAP.cells.size || !host.isConnected || host.clientHeight < 40) return;
     mapLegend(legend, mapPicture(host, canvas, cursor));
