@@ -271,7 +271,7 @@ def _extrapolated(way: list[BoundaryPoint], y: float, x_knob: str, y_knob: str) 
         return way[0].x * (y / way[0].y) ** power, way[0].state
     a, b = way[-2:]
     part = np.log(y / b.y) / np.log(b.y / a.y)
-    return b.x * (b.x / a.x) ** part, b.state + part * (b.state - a.state)
+    return float(b.x * (b.x / a.x) ** part), b.state + part * (b.state - a.state)
 
 
 def _continues(before: BoundaryPoint, after: BoundaryPoint) -> bool:

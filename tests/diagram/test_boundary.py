@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, NumbersFailed, Scene, State, scene, settled
+from granchain_core.diagram import boundaries, diagram
 from granchain_core.diagram.boundary import BoundaryPoint, boundary_curves, boundary_point
 from granchain_core.orbits import periodic_orbit
 
@@ -92,3 +93,17 @@ def test_wrong_requests_are_one_sentence() -> None:
         boundary_point(shown, "fold", start, x="f", y="k")
     with pytest.raises(NumbersFailed):
         boundary_point(scene("sec2"), "fold", periodic_orbit(scene("sec2")).state)
+
+
+def test_a_diagram_shows_where_its_boundaries_are() -> None:
+    found = diagram(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
+    curves = boundaries(found, rows=[1])
+    told = {(curve.kind, curve.period): curve for curve in curves}
+    # period 1 doubles at 512 Hz; the orbit of period 2 in its turn near 572 Hz, into one of period 4 or more
+    first = told["period_doubling", 1]
+    assert [point.y for point in first.points] == [4.5e-7, 5e-7]
+    assert first.points[1].x == pytest.approx(boundary_point(*near("period_doubling")[:1], "period_doubling",
+                                                             near("period_doubling")[1]).x, rel=1e-6)
+    assert 0.0 < first.points[1].x - first.points[0].x < 20.0  # f ∝ A0^{1/4} nearly: 13 Hz
+    with pytest.raises(BadInput, match="rows are numbers from 0 to 1"):
+        boundaries(found, rows=[2])
