@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import branch_command, commands, observe_command, orbit_command
+from app import branch_command, commands, map_command, observe_command, orbit_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import unknown_name
 
@@ -69,6 +69,7 @@ def _parser() -> _Parser:
     curve.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
     curve.add_argument("--points", type=int, required=True, metavar="n")
     curve.add_argument("--start", default="rest", metavar="rest|up|down")
+    map_command.add_arguments(command("map", "regime and largest forces over two knobs"))
     return parser
 
 
@@ -84,8 +85,7 @@ def _scene_command(parser: _Parser) -> _Parser:
 _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
     "curve": commands.curve, "orbit": orbit_command.orbit, "branch": branch_command.branch,
-    "accuracy": commands.accuracy,
-    "observe": observe_command.observe,
+    "observe": observe_command.observe, "map": map_command.map_scene, "accuracy": commands.accuracy,
 }
 
 

@@ -16,6 +16,7 @@ from .accuracy import AccuracyPage
 from .branches import BranchesPage
 from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
 from .curves import Curves
+from .diagrams import MapTab
 from .effects import EffectsPanel
 from .exchange import Exchange
 from .frames import samples_for
@@ -53,7 +54,8 @@ class Controller:
         self.branches = BranchesPage(self)
         self.effects = EffectsPanel(self)
         self.stability = StabilityPage(self)
-        self.parts = (self.accuracy, self.branches, self.effects, self.observer, self.stability)
+        self.map = MapTab(self)
+        self.parts = (self.accuracy, self.branches, self.effects, self.map, self.observer, self.stability)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
@@ -230,6 +232,7 @@ class Controller:
         self.accuracy.describe()
         self.branches.describe()
         self.effects.changed()
+        self.map.moved()
         self.views.equation.display(latex=scene.equation_latex())
         self.views.corner.display(validity=list(scene.validity()))
 

@@ -21,6 +21,8 @@ PICTURES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="pi
 BACKGROUND = ThreadPoolExecutor(max_workers=max(1, _CORES // 2), thread_name_prefix="background")
 ANALYSES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="analysis")
 """What follows a picture while the knobs rest: short, and given up when a knob moves."""
+MAPS = ThreadPoolExecutor(max_workers=2, thread_name_prefix="map")
+"""Diagrams of two knobs and searches for attractors: some seconds each, given up when they are not wanted any more."""
 
 MEASUREMENTS = ThreadPoolExecutor(max_workers=1, thread_name_prefix="measurement")
 """What measures times, one after the other for all visitors: two at once would measure each other."""

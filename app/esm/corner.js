@@ -47,6 +47,7 @@ const TABS = {
     row.append(said, open);
     return [row, host];
   },
+  map: mapTab,
   effects: effectsTab,
   branches: branchesTab,
   observer: () => {
@@ -117,8 +118,9 @@ export function render({ model }) {
   const choose = (name) => {
     const before = chosen;
     chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "stability", "branches"].includes(name));
+    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "stability", "branches", "map"].includes(name));
     if (before === "effects" || name === "effects") looking();
+    if (before === "map" || name === "map") model.send_msg({ do: "map-visible", value: name === "map" });
     show();
     window.granchain.emit("tab", name);
   };
@@ -141,6 +143,9 @@ export function render({ model }) {
   tabs.append(larger);
   model.on("state", show);
   window.granchain.on("observer", () => { if (chosen === "observer") drawObserver(); });
+  // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
+  model.on("state", () => { if (chosen !== "map") show(); });
+  model.on("msg:custom", mapMessage);
   window.granchain.on("accuracy", () => { if (chosen === "accuracy") drawSmall(); });
   window.granchain.on("stability", () => { if (chosen === "stability") drawSmall(); });
   window.granchain.on("cover", () => { if (chosen === "effects") looking(); });

@@ -8,8 +8,10 @@ from .branch_special import SpecialPoint
 from .branch_switch import switch_to_doubled
 from .branch_walk import Arm
 from .orbit import Orbit, periodic_orbit, random_state
+from .response import Response, response
 
 __all__ = [
-    "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "KnobAxis", "Orbit", "SpecialPoint", "begin_branch",
-    "check_branch", "continue_branch", "periodic_orbit", "random_state", "switch_to_doubled",
+    "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "KnobAxis", "Orbit", "Response", "SpecialPoint",
+    "begin_branch", "check_branch", "continue_branch", "periodic_orbit", "random_state", "response",
+    "switch_to_doubled",
 ]

@@ -104,7 +104,7 @@ def _point(scene: Scene, tops: np.ndarray, regime: Regime, error: float | None, 
     return CurvePoint(scene.f, float(tops[1]), float(tops[2]), float(tops[0]), regime, error, engine.state)
 
 
-def _safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
+def safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
     """A point, or a point that says why there is none: one failed frequency does not lose a curve."""
     try:
         return curve_point(scene, start, stop)
@@ -139,7 +139,7 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     for one in sorted(scenes, key=lambda s: s.f, reverse=start == "down"):
         if stop is not None and stop():
             return
-        point = _safe_point(one, state, flag)
+        point = safe_point(one, state, flag)
         state = point.state if not point.failure else None
         yield point
 
@@ -210,7 +210,7 @@ def _points(scenes: _Shared, flag: np.ndarray) -> Iterator[CurvePoint]:
         yield from (_from_lane(result) for result in lane_results(rest_of_them, flag))
         return
     for one in rest_of_them:
-        yield _safe_point(one, None, flag)
+        yield safe_point(one, None, flag)
 
 
 def _from_lane(result: LaneResult) -> CurvePoint:

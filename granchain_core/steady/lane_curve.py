@@ -19,8 +19,8 @@ from ..integrate.lane_block import NEVER, LaneBlock, scaled_state, state_of
 from ..kernels.lanes import LANES
 from ..lower import lower
 from ..scene import Scene
-from .lane_job import Job, LaneResult, draft_result, failed, look_coarse
-from .lyapunov import exponents_in_pairs
+from .lane_job import Job, LaneResult, Start, draft_result, failed, look_coarse
+from .lyapunov import MOST_APART, exponents_in_pairs
 from .regime import find_period, irregular
 from .settle import MOST_PERIODS, SLOW_PERIODS
 
@@ -31,17 +31,19 @@ _FINER = 3
 _DRAFT = 300
 #: Blocks and periods a block for the Lyapunov exponent.
 _BLOCKS, _BLOCK = 10, 20
+#: Scenes whose exponents are found at once.
+_PAIRS = LANES // 2
 
 
 class _Lanes:
     """A block of lanes with the jobs in them, those waiting for a lane and those whose regime is in doubt."""
 
-    def __init__(self, first: Scene, scenes: Iterator[Scene], stop: np.ndarray, draft: bool) -> None:
-        self.block = LaneBlock(first, stop)
+    def __init__(self, first: Start, starts: Iterator[Start], stop: np.ndarray, draft: bool) -> None:
+        self.block = LaneBlock(first.scene, stop)
         self.draft = draft
         self.stop = stop
         self.waiting = [_new_job(first)]
-        self.scenes = scenes
+        self.starts = starts
         self.jobs: dict[int, Job] = {}
         self.doubtful: list[Job] = []
 
@@ -49,7 +51,7 @@ class _Lanes:
         """Put jobs into all free lanes."""
         for lane in range(LANES):
             if lane not in self.jobs:
-                job = self.waiting.pop() if self.waiting else _job_or_none(self.scenes)
+                job = self.waiting.pop() if self.waiting else _job_or_none(self.starts)
                 if job is not None:
                     self.jobs[lane] = job
                     self._start(lane, job)
@@ -90,9 +92,17 @@ class _Lanes:
         job = self.jobs.pop(lane)
         self.block.put(lane, job.lowered, np.zeros_like(job.y), 1, NEVER, NEVER)
 
-    def decide(self) -> Iterator[LaneResult]:
-        """Tell doubtful jobs apart, four at a time; one whose neighbours come closer is given more time."""
-        jobs, self.doubtful = self.doubtful[: LANES // 2], self.doubtful[LANES // 2 :]
+    def undecided(self) -> list[Job]:
+        """Up to four doubtful jobs with about as many steps a period; fewer than four only if nothing else is to do."""
+        jobs = sorted(self.doubtful, key=_steps)
+        for i in range(len(jobs) - _PAIRS + 1):
+            if _steps(jobs[i + _PAIRS - 1]) <= MOST_APART * _steps(jobs[i]):
+                return jobs[i : i + _PAIRS]
+        return [] if self.jobs else [job for job in jobs if _steps(job) <= MOST_APART * _steps(jobs[0])]
+
+    def decide(self, jobs: list[Job]) -> Iterator[LaneResult]:
+        """Tell doubtful jobs apart; one whose neighbours come closer is given more time."""
+        self.doubtful = [job for job in self.doubtful if job not in jobs]
         found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], _BLOCKS, _BLOCK, self.stop)
         for job, (growth, strobes, tops, y) in zip(jobs, found, strict=True):
             if not np.isfinite(growth).all():
@@ -109,23 +119,32 @@ class _Lanes:
             if regime.name == "unsettled" and growth.mean() < 0.0 and job.run < SLOW_PERIODS and job.affordable:
                 self.waiting.append(job)
             else:
-                yield LaneResult(job.scene, job.tops, regime, None, state_of(job.lowered, y))
+                yield LaneResult(job.scene, job.tops, regime, None, state_of(job.lowered, y), number=job.number)
 
 
 def lane_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False) -> Iterator[LaneResult]:
     """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
 
-    A draft ends with the coarse run and after few periods: without errors, and what is not periodic by then is called
-    unsettled. Raises `Cancelled`.
+    See `lane_states`.
     """
-    first = next(scenes, None)
+    return lane_states((Start(scene) for scene in scenes), stop, draft)
+
+
+def lane_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) -> Iterator[LaneResult]:
+    """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
+
+    What is found does not depend on which starts share the lanes, but for rounding. A draft ends with the coarse run
+    and after few periods: without errors, and what is not periodic by then is called unsettled. Raises `Cancelled`.
+    """
+    first = next(starts, None)
     if first is None:
         return
-    lanes = _Lanes(first, scenes, stop, draft)
+    lanes = _Lanes(first, starts, stop, draft)
     while True:
         lanes.fill()
-        if len(lanes.doubtful) >= LANES // 2 or (lanes.doubtful and not lanes.jobs):
-            yield from lanes.decide()
+        undecided = lanes.undecided()
+        if undecided:
+            yield from lanes.decide(undecided)
         elif not lanes.jobs:
             return
         else:
@@ -134,11 +153,16 @@ def lane_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False)
                 yield result
 
 
-def _new_job(scene: Scene) -> Job:
-    lowered = lower(scene)
-    return Job(scene, lowered, scaled_state(lowered, rest(scene)))
+def _steps(job: Job) -> int:
+    return job.lowered.steps_per_period()
 
 
-def _job_or_none(scenes: Iterator[Scene]) -> Job | None:
-    scene = next(scenes, None)
-    return None if scene is None else _new_job(scene)
+def _new_job(start: Start) -> Job:
+    lowered = lower(start.scene)
+    state = rest(start.scene) if start.state is None else start.state
+    return Job(start.scene, lowered, scaled_state(lowered, state), number=start.number)
+
+
+def _job_or_none(starts: Iterator[Start]) -> Job | None:
+    start = next(starts, None)
+    return None if start is None else _new_job(start)

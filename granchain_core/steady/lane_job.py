@@ -20,9 +20,21 @@ _CAUTION = 2.0
 _IRREGULAR_PERIODS = 100
 
 
+@dataclass(frozen=True, eq=False)
+class Start:
+    """A scene that is to be settled, from rest or from `state` at phase 0; its `number` comes back with the result."""
+
+    scene: Scene
+    state: State | None = None
+    number: int = 0
+
+
 @dataclass(eq=False)
 class LaneResult:
-    """A steady state found in a lane: largest forces [N] in the order input, output, elastic output."""
+    """A steady state found in a lane: largest forces [N] in the order input, output, elastic output.
+
+    `number` is that of its start.
+    """
 
     scene: Scene
     tops: np.ndarray
@@ -30,6 +42,7 @@ class LaneResult:
     error_estimate: float | None
     state: State
     failure: str = ""
+    number: int = 0
 
 
 @dataclass(eq=False)
@@ -48,6 +61,7 @@ class Job:
     in_doubt: bool = False
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     tops: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    number: int = 0
 
     @property
     def affordable_periods(self) -> int:
@@ -71,7 +85,7 @@ class Job:
         error = _CAUTION * change + 1.5 * max(distance, regime.distance)
         state = state_of(self.lowered, block.state.y[:, lane])
         tops = tops * self.lowered.scales.force
-        return LaneResult(self.scene, tops, replace(regime, distance=distance), error, state)
+        return LaneResult(self.scene, tops, replace(regime, distance=distance), error, state, number=self.number)
 
 
 def draft_result(job: Job, block: LaneBlock, lane: int) -> LaneResult:
@@ -82,7 +96,7 @@ def draft_result(job: Job, block: LaneBlock, lane: int) -> LaneResult:
         return unsettled(job, block, lane, run)
     regime = Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run)
     tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
-    return LaneResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]))
+    return LaneResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]), number=job.number)
 
 
 def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | None:
@@ -93,7 +107,7 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
     if period > 0:
         regime = Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run)
         settled = (regime, block.settled_tops(lane, int(period)))
-        return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, settled)
+        return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, settled, number=job.number)
     if run >= job.affordable_periods:
         return unsettled(job, block, lane, run)
     record = block.strobes(lane)
@@ -107,18 +121,20 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
 def _in_doubt(job: Job, block: LaneBlock, lane: int, run: int, record: np.ndarray) -> Job:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
     tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
-    return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, in_doubt=True, record=record, tops=tops)
+    return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, in_doubt=True, record=record, tops=tops,
+               number=job.number)
 
 
 def unsettled(job: Job, block: LaneBlock, lane: int, run: int) -> LaneResult:
     """What a lane has come to when its budget of steps is spent."""
     tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
     state = state_of(job.lowered, block.state.y[:, lane])
-    return LaneResult(job.scene, tops, Regime("unsettled", None, None, None, run), None, state)
+    return LaneResult(job.scene, tops, Regime("unsettled", None, None, None, run), None, state,
+                      number=job.number)
 
 
 def failed(job: Job) -> LaneResult:
     """A lane whose numbers stopped being finite."""
     nothing = Regime("unsettled", None, None, None, 0)
     sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping or ask for higher accuracy."
-    return LaneResult(job.scene, np.full(3, np.nan), nothing, None, rest(job.scene), sentence)
+    return LaneResult(job.scene, np.full(3, np.nan), nothing, None, rest(job.scene), sentence, job.number)

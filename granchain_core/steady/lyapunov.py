@@ -6,12 +6,16 @@ import numpy as np
 
 from ..integrate import Engine
 from ..integrate.lane_block import NEVER, LaneBlock
+from ..kernels.lane_looks import REMEMBERED
 from ..kernels.section import LONGEST_PERIOD
 from ..kernels.shadow import run_shadowed
 from ..lower import Lowered
 
-#: Distance of the shadow, relative to the motion: far above rounding, far below the kinks of the contacts.
+#: Distance of the shadow in drive amplitudes: far above rounding, far below the kinks of the contacts.
 _DISTANCE = 1e-8
+#: Most steps a period of one scene over those of another that may run side by side: what a faster one does beyond its
+#: own periods must not push them out of the record.
+MOST_APART = 2.5
 
 
 def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, block: int,
@@ -19,20 +23,29 @@ def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, bl
     """`exponents` of up to four scenes side by side in lanes, each from its scaled state (2(N+2),) at phase 0.
 
     Of each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its last periods
-    (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite.
+    (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. What is found
+    for one does not depend on the others; their steps a period may differ by a factor `MOST_APART`.
     """
+    steps = [lowered.steps_per_period() for lowered, _ in scenes]
+    if max(steps) > MOST_APART * min(steps):
+        raise ValueError(f"steps a period {steps} differ by more than a factor {MOST_APART:g}")
     pairs, periods = LaneBlock(scenes[0][0].scene, stop), (blocks + 1) * block
-    size = max(1e-6, max(float(np.abs(y[: lowered.row]).max()) for lowered, y in scenes))
     for i, (lowered, y) in enumerate(scenes):
         row = lowered.row
         offset = np.random.default_rng(0).standard_normal(2 * row)
         offset[[0, row - 1, row, 2 * row - 1]] = 0.0
         pairs.put(2 * i, lowered, y, 1, periods, NEVER)
-        pairs.put(2 * i + 1, lowered, y + offset * (_DISTANCE * size / np.linalg.norm(offset)), 1, periods, NEVER)
-    growth = pairs.run_pairs(_DISTANCE * size, periods)
-    return [(growth[i, block:].reshape(blocks, block).mean(axis=1), pairs.strobes(2 * i, periods).copy(),
-             np.array([pairs.tops(2 * i, n) for n in range(LONGEST_PERIOD, 0, -1)]),
-             pairs.state.y[:, 2 * i].copy()) for i in range(len(scenes))]
+        pairs.put(2 * i + 1, lowered, y + offset * (_DISTANCE / np.linalg.norm(offset)), 1, periods, NEVER)
+    growth = pairs.run_pairs(_DISTANCE, periods)
+    return [(growth[i, block:].reshape(blocks, block).mean(axis=1), *_record(pairs, 2 * i, periods))
+            for i in range(len(scenes))]
+
+
+def _record(pairs: LaneBlock, lane: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Strobes, last largest forces and last state of a lane's own periods: a lane runs on until the slowest is done."""
+    strobes = pairs.state.strobes[lane, : periods + 1]
+    last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % REMEMBERED
+    return strobes[1:, :, 1:-1].copy(), pairs.state.tops[lane, last].copy(), strobes[-1].ravel().copy()
 
 
 def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.ndarray]:
@@ -45,8 +58,7 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     row = engine.lowered.row
     offset = np.random.default_rng(0).standard_normal(2 * row)
     offset[[0, row - 1, row, 2 * row - 1]] = 0.0
-    size = max(1e-6, float(np.abs(engine.y[1 : row - 1]).max()))
-    shadow.y[: 2 * row] = engine.y[: 2 * row] + offset * (_DISTANCE * size / np.linalg.norm(offset))
+    shadow.y[: 2 * row] = engine.y[: 2 * row] + offset * (_DISTANCE / np.linalg.norm(offset))
     shadow.place()
     growth = np.zeros((blocks + 1) * block)
     strobes = np.zeros((len(growth), 2, row))

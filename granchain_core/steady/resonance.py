@@ -16,7 +16,7 @@ from ..result import Run
 #: A push is strong if its largest force is above this part of the largest push.
 STRONG = 0.7
 #: A push ends where the force falls below this part of the largest push.
-_ENDED = 0.05
+ENDED = 0.05
 #: A frequency belongs to a peak (valley) if its force is less than this part of the way from it to the next valley.
 _NEAR = 0.35
 #: A peak or valley of the curve stands out if it differs from both neighbouring extrema by this part of the larger.
@@ -31,11 +31,11 @@ def pushes(run: Run) -> tuple[int, int] | None:
     largest = float(force.max())
     if largest <= 0.0:
         return None
-    quiet = np.flatnonzero(force < _ENDED * largest)
+    quiet = np.flatnonzero(force < ENDED * largest)
     if len(quiet) == 0:
         return None
     force = np.roll(force, -quiet[0])  # the orbit is closed, so begin where nothing is pushed
-    pushed = np.concatenate([[False], force >= _ENDED * largest, [False]])
+    pushed = np.concatenate([[False], force >= ENDED * largest, [False]])
     begins, ends = np.flatnonzero(pushed[1:] & ~pushed[:-1]), np.flatnonzero(~pushed[1:] & pushed[:-1])
     strong = sum(float(force[a:b].max()) >= STRONG * largest for a, b in zip(begins, ends, strict=True))
     periods = round((len(run.time) - 1) / run.samples)

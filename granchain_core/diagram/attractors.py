@@ -1,0 +1,184 @@
+"""All steady states of one setting that are found from rest, from both sweeps and from random states.
+
+Every start is settled in lanes; what is one and the same is told by sameness.py. A start that ends on an unstable
+orbit, where a slow departure looks like rest, is put beside it and runs on.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..errors import BadInput, NumbersFailed
+from ..integrate import Engine, State
+from ..integrate.engine import new_stop, rest
+from ..orbits import Orbit
+from ..scene import Scene
+from ..steady.curve import curve_point
+from ..steady.lane_job import LaneResult, Start
+from ..steady.regime import Regime
+from ..steady.settle import settle
+from .compute import on_all_cores
+from .sameness import LIVE, Found, found, merged
+
+#: Frequencies passed on the way in a sweep, and how far away it begins.
+_SWEEP, _AWAY = 5, 0.08
+#: Random states lie within so many times the largest displacement and velocity on the way from rest.
+_BOX = 1.5
+#: A start that ended on an unstable orbit is put so far beside it, relative to the motion, and runs so many periods
+#: before it is looked at again: more than it takes to leave an orbit with |μ| = 1.003.
+_BESIDE, _RUN_ON = 1e-2, 3000
+#: Most random states.
+MOST_STATES = 10_000
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """One start: "rest", "up", "down" or "random 17", and the state it is at phase 0."""
+
+    name: str
+    state: State
+
+
+@dataclass(eq=False)
+class Attractor:
+    """A steady state with what leads to it.
+
+    Forces are the largest ones [N], with their relative error where the motion is periodic. `orbit` is the certified
+    orbit with its multipliers, None where the motion is not periodic or Newton's method did not reach it. `share` is
+    the part of the random states that end here, `share_error` its standard error.
+    """
+
+    scene: Scene
+    regime: Regime
+    max_input_force: float
+    max_output_force: float
+    max_output_force_elastic: float
+    error_estimate: float | None
+    state: State
+    orbit: Orbit | None = None
+    origins: list[Origin] = field(default_factory=list)
+    share: float = 0.0
+    share_error: float = 0.0
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the multipliers of its orbit are all inside the unit circle; None where they are not known."""
+        return None if self.orbit is None else self.orbit.stable
+
+
+def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Callable[[], bool] | None = None,
+               progress: Callable[[float], None] | None = None) -> list[Attractor]:
+    """Steady states of `scene` that are found from rest, from sweeps of f in both directions and from random states.
+
+    The largest share comes first. Random states are uniform in a box of displacements and velocities, `_BOX` times what
+    is seen on the way from rest; shares are relative to it. The same seed gives the same answer. `stop` may end the
+    search early with what is there. Raises `BadInput`, and `NumbersFailed` where no start stays finite.
+    """
+    if not 0 <= random_states <= MOST_STATES:
+        raise BadInput(f"random_states = {random_states} is outside 0 to {MOST_STATES}; the nearest valid value is "
+                       f"{min(max(random_states, 0), MOST_STATES)}.")
+    origins = _origins(scene, random_states, seed)
+    starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
+    results = _settled(starts, stop, progress)
+    if results and not any(not result.failure for result in results):
+        raise NumbersFailed(results[0].failure, "not-finite")
+    groups = merged([found(result) for result in results if not result.failure])
+    again = [start for group in groups if group[0].unstable for start in _beside(group)]
+    if again:
+        kept = [one for group in groups if not group[0].unstable for one in group]
+        moved = [found(result) for result in _settled(again, stop) if not result.failure]
+        groups = merged(kept + moved)
+    listed = [_attractor(group, origins) for group in groups]
+    thrown = sum(origin.name.startswith("random") for attractor in listed for origin in attractor.origins)
+    for attractor in listed:
+        count = sum(origin.name.startswith("random") for origin in attractor.origins)
+        attractor.share, attractor.share_error = share(count, thrown)
+    return sorted(listed, key=lambda one: (-len(one.origins), one.max_output_force))
+
+
+def _settled(starts: list[Start], stop: Callable[[], bool] | None,
+             progress: Callable[[float], None] | None = None) -> list[LaneResult]:
+    """Where starts lead, in their order."""
+    results: list[LaneResult] = []
+    for result in on_all_cores(starts, stop):
+        results.append(result)
+        if progress is not None:
+            progress(len(results) / len(starts))
+    return sorted(results, key=lambda result: result.number)
+
+
+def _beside(group: list[Found]) -> Iterator[Start]:
+    """Starts for all that ended on an unstable orbit: where it goes from beside it."""
+    orbit = group[0].orbit
+    assert orbit is not None
+    u, v = orbit.state.displacement, orbit.state.velocity
+    for one in group:
+        shape = np.random.default_rng(one.result.number).standard_normal((2, len(u)))
+        engine = Engine(orbit.scene, LIVE, 1)
+        engine.start(State(u + _BESIDE * np.abs(u).max() * shape[0], v + _BESIDE * np.abs(v).max() * shape[1]))
+        engine.periods(_RUN_ON)
+        yield Start(orbit.scene, engine.state, one.result.number)
+
+
+def share(count: int, of: int) -> tuple[float, float]:
+    """A part and its standard error, by the rule of Agresti and Coull, which does not claim certainty at 0 or all."""
+    if of == 0:
+        return 0.0, 0.0
+    middle = (count + 2.0) / (of + 4.0)
+    return count / of, math.sqrt(middle * (1.0 - middle) / (of + 4.0))
+
+
+def _origins(scene: Scene, random_states: int, seed: int) -> list[Origin]:
+    """Rest, the ends of both sweeps, and random states."""
+    way = settle(scene, None, new_stop())
+    scales, dice = way.engine.lowered.scales, np.random.default_rng(seed)
+    size = _BOX * np.abs(way.strobes).max(axis=(0, 2)) * (scales.length, scales.velocity)
+    size = np.maximum(size, (scene.A0, 2.0 * math.pi * scene.f * scene.A0))
+    origins = [Origin("rest", rest(scene)), Origin("up", _swept(scene, 1.0 - _AWAY)),
+             Origin("down", _swept(scene, 1.0 + _AWAY))]
+    for number in range(random_states):
+        u, v = size[:, None] * dice.uniform(-1.0, 1.0, (2, scene.N))
+        origins.append(Origin(f"random {number}", State(u, v)))
+    return origins
+
+
+def _swept(scene: Scene, factor: float) -> State:
+    """The state in which a sweep of the frequency from `factor` times it arrives."""
+    state: State | None = None
+    for step in range(_SWEEP):
+        f = scene.f * (factor + (1.0 - factor) * step / _SWEEP)
+        try:
+            state = curve_point(scene.evolve(f=f), state, new_stop()).state
+        except NumbersFailed:
+            state = None
+    return rest(scene) if state is None else state
+
+
+def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
+    """What a group is; its forces are those with the least error."""
+    best = min((one.result for one in group), key=lambda result: result.error_estimate or 0.0)
+    first, tops = group[0], best.tops
+    regime = replace(first.result.regime, lyapunov=_pooled([one.result.regime for one in group]))
+    state = first.result.state if first.orbit is None else first.orbit.state
+    return Attractor(best.scene, regime, float(tops[0]), float(tops[1]), float(tops[2]), best.error_estimate, state,
+                     first.orbit, [origins[one.result.number] for one in group])
+
+
+def _pooled(regimes: list[Regime]) -> tuple[float, float] | None:
+    """Mean Lyapunov exponent of a group with its standard error."""
+    known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
+    if not known:
+        return None
+    mean = sum(value for value, _ in known) / len(known)
+    return mean, math.sqrt(sum(error**2 for _, error in known)) / len(known)
+
+
+def listing(attractors_found: list[Attractor]) -> Iterator[str]:
+    """The attractors in words, one line each."""
+    for one in attractors_found:
+        yield (f"{one.regime.sentence}; {one.max_output_force:.4g} N, {100 * one.share:.0f} ± "
+               f"{100 * one.share_error:.0f} % of random states; {len(one.origins)} starts")

@@ -1,0 +1,135 @@
+"""The boundaries that a diagram shows, found where neighbouring cells differ and followed through its rows.
+
+A pair of neighbouring cells says what to look for between them: periods n and 2n a period doubling, a periodic and a
+quasi-periodic cell a Neimark–Sacker point, anything else the fold at which an orbit ends. The orbit of the periodic
+cell is carried towards its neighbour, and from where its multipliers come nearest the point itself is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput, NumbersFailed
+from ..orbits import Orbit, periodic_orbit
+from .boundary import BoundaryPoint, boundary_curves, boundary_point
+from .cells import REGIMES, Diagram
+
+#: Steps from a cell to its neighbour in which its orbit is carried.
+_STEPS = 6
+#: A point this many cells outside its pair is another one; curves closer than this are one.
+_OUTSIDE, _SAME = 1.0, 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryCurve:
+    """A curve of one kind on which orbits of `period` drive periods lose their stability, in ascending y."""
+
+    kind: str
+    period: int
+    points: list[BoundaryPoint]
+
+
+@dataclass(frozen=True)
+class _Pair:
+    """Two neighbouring cells of one row: the periodic one, the other, and what lies between them."""
+
+    inside: int
+    outside: int
+    kind: str
+    period: int
+
+
+def boundaries(found: Diagram, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
+               stop: np.ndarray | None = None,
+               on_curve: Callable[[BoundaryCurve], None] | None = None) -> list[BoundaryCurve]:
+    """Curves through the boundaries of some rows of a diagram (the middle one), at `values` of y (those of its rows).
+
+    What cannot be followed is left out: a pair of cells from rest may be two attractors with no boundary between them.
+    `on_curve` is told each curve. Raises `BadInput` and `Cancelled`.
+    """
+    grid = found.grid
+    chosen = [grid.shape[0] // 2] if rows is None else list(rows)
+    if any(not 0 <= row < grid.shape[0] for row in chosen):
+        raise BadInput(f"rows are numbers from 0 to {grid.shape[0] - 1}.")
+    heights = list(grid.y.values if values is None else values)
+    curves: list[BoundaryCurve] = []
+    for row in chosen:
+        for pair in _pairs(found, row):
+            point = _between(found, pair, stop)
+            if point is None or any(_lies_on(found, point, pair, curve) for curve in curves):
+                continue
+            scene = grid.cell(pair.inside).evolve(**{grid.x.knob: point.x})
+            try:
+                points = boundary_curves(scene, pair.kind, point.state, heights, pair.period, grid.x.knob, grid.y.knob,
+                                         stop)
+            except NumbersFailed:
+                continue
+            curves.append(BoundaryCurve(pair.kind, pair.period, points))
+            if on_curve is not None:
+                on_curve(curves[-1])
+    return curves
+
+
+def _pairs(found: Diagram, row: int) -> Iterator[_Pair]:
+    """Neighbours in a row of which one is periodic and the other something else."""
+    width = found.grid.shape[1]
+    quasi = REGIMES.index("quasi-periodic")
+    for column in range(width - 1):
+        numbers = row * width + column, row * width + column + 1
+        for inside, outside in (numbers, numbers[::-1]):
+            period, other = int(found.cells["period"][inside]), int(found.cells["period"][outside])
+            if period == 0 or other == period or found.cells["regime"][outside] < 0:
+                continue
+            if found.cells["regime"][outside] == quasi:
+                yield _Pair(inside, outside, "neimark_sacker", period)
+            elif other == 2 * period:
+                yield _Pair(inside, outside, "period_doubling", period)
+            elif period != 2 * other:
+                yield _Pair(inside, outside, "fold", period)
+
+
+def _between(found: Diagram, pair: _Pair, stop: np.ndarray | None) -> BoundaryPoint | None:
+    """The point between two cells, from the orbit that comes nearest to it; None where there is none."""
+    grid = found.grid
+    columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]
+    a, b = (grid.x.values[column] for column in columns)
+    best, nearest = None, np.inf
+    try:
+        orbit: Orbit | None = None
+        for x in np.linspace(a, b, _STEPS + 1):
+            scene = grid.cell(pair.inside).evolve(**{grid.x.knob: float(x)})
+            orbit = periodic_orbit(scene, pair.period, None if orbit is None else orbit.state, stop=stop)
+            away = _away(orbit, pair.kind)
+            if away < nearest:
+                best, nearest = orbit, away
+    except NumbersFailed:
+        pass  # beyond a fold there is no orbit: the last one is the nearest
+    if best is None:
+        return None
+    try:
+        point = boundary_point(best.scene, pair.kind, best.state, pair.period, grid.x.knob, grid.y.knob, stop)
+    except (BadInput, NumbersFailed):
+        return None
+    low, high = min(a, b) - _OUTSIDE * abs(b - a), max(a, b) + _OUTSIDE * abs(b - a)
+    return point if low <= point.x <= high else None
+
+
+def _away(orbit: Orbit, kind: str) -> float:
+    """How far the multipliers of an orbit are from meeting a condition."""
+    if kind == "neimark_sacker":
+        pairs = orbit.multipliers[np.abs(orbit.multipliers.imag) > 0.0]
+        return float(np.abs(np.abs(pairs) - 1.0).min()) if len(pairs) else np.inf
+    return float(np.abs(orbit.multipliers - (1.0 if kind == "fold" else -1.0)).min())
+
+
+def _lies_on(found: Diagram, point: BoundaryPoint, pair: _Pair, curve: BoundaryCurve) -> bool:
+    """Whether a point is on a curve that is there already."""
+    if (curve.kind, curve.period) != (pair.kind, pair.period):
+        return False
+    values = found.grid.x.values
+    cell = (values[-1] - values[0]) / (len(values) - 1)
+    there = np.interp(point.y, [one.y for one in curve.points], [one.x for one in curve.points])
+    return bool(abs(there - point.x) <= _SAME * cell)

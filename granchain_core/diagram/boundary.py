@@ -1,0 +1,280 @@
+"""Curves in the plane of two knobs on which an orbit loses its stability: folds, period doublings, Neimark–Sacker.
+
+On such a curve the orbit's critical multiplier meets its condition:
+
+    fold             μ = +1
+    period_doubling  μ = −1
+    neimark_sacker   |μ| = 1, μ not real
+
+Each point is found at a fixed second knob y: the orbit's branch over the first knob x is a curve in (state, x) with
+arclength s, on which Newton's method solves map(state, x) = state bordered by the arclength condition, so that a fold
+is nothing special; the root of the condition along s is found by secants. From one y to the next the curve is
+extrapolated, with steps that are halved where that fails.
+
+Source: Kuznetsov, Elements of Applied Bifurcation Theory (2004), chapter 10.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
+from ..integrate import State
+from ..integrate.lane_block import scaled_state
+from ..orbits.flow import StroboscopicMap
+from ..quantities import QUANTITIES
+from ..scene import Scene
+from .grid import KNOBS
+
+KINDS = ("fold", "period_doubling", "neimark_sacker")
+#: The condition on the critical multiplier is met to this; the map's own tangents are good to about 1e-7.
+_MET = 1e-6
+#: Residual of an orbit, and Newton's iterations at most.
+_CONVERGED, _ITERATIONS = 1e-10, 8
+#: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
+_DIFFERENCE = 1e-6
+#: First step along a branch, relative to the state and the knob; a secant goes at most so many times the last step,
+#: is halved so often where the branch is lost, and so many are tried.
+_STEP, _FARTHEST, _SECANTS, _HALVINGS = 1e-3, 6.0, 14, 3
+#: Smallest part of the way to the next y that is tried as one step.
+_LEAST = 1.0 / 32.0
+#: Slower than this from +1 or −1 in angle a critical pair is not told from a real multiplier.
+_REAL = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryPoint:
+    """One point of a boundary: both knobs, the critical multiplier there, and the orbit's state at phase 0, scaled."""
+
+    x: float
+    y: float
+    multiplier: complex
+    state: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class _Branch:
+    """Orbits of `periods` drive periods over the knob x; a point is X = (scaled state, x / unit), (2N + 1,).
+
+    `near` is the critical multiplier of the point before, where there is one.
+    """
+
+    scene: Scene
+    knob: str
+    unit: float
+    periods: int
+    stop: np.ndarray | None
+    near: complex | None = None
+
+    def at(self, x: float) -> Scene:
+        """The scene at a point's last entry."""
+        return self.scene.evolve(**{self.knob: float(x) * self.unit})
+
+    def map(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where the map leads from X, and its derivative (2N, 2N)."""
+        flow = StroboscopicMap(self.at(X[-1]), self.periods, self.stop)(X[:-1])
+        return flow.end, flow.derivative
+
+    def slope(self, X: np.ndarray) -> np.ndarray:
+        """Derivative of the map's end by the knob, (2N,)."""
+        ends = [StroboscopicMap(self.at(X[-1] * (1.0 + sign * _DIFFERENCE)), self.periods, self.stop).end(X[:-1])
+                for sign in (1.0, -1.0)]
+        return np.asarray((ends[0] - ends[1]) / (2.0 * _DIFFERENCE * X[-1]))
+
+    def solve(self, guess: np.ndarray, direction: np.ndarray, slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The orbit on the plane through `guess` across `direction`, with the map's derivative there.
+
+        `slope` may be that of a point near by: it only steers the iterations.
+        """
+        X = guess.copy()
+        for _ in range(_ITERATIONS):
+            end, derivative = self.map(X)
+            off = np.append(end - X[:-1], direction @ (X - guess))
+            if np.abs(off).max() <= _CONVERGED * max(1.0, float(np.abs(X[:-1]).max())):
+                return X, derivative
+            matrix = np.block([[derivative - np.eye(len(end)), slope[:, None]], [direction[None, :]]])
+            X = X - np.linalg.solve(matrix, off)
+            if not np.isfinite(X).all() or X[-1] <= 0.0:
+                break
+        raise NumbersFailed("Newton's method lost the branch.", "no-convergence")
+
+    @staticmethod
+    def tangent(derivative: np.ndarray, slope: np.ndarray, along: np.ndarray) -> np.ndarray:
+        """Unit tangent of the branch, on the side of `along`."""
+        matrix = np.block([[derivative - np.eye(len(slope)), slope[:, None]], [along[None, :]]])
+        tangent = np.linalg.solve(matrix, np.append(np.zeros(len(slope)), 1.0))
+        return tangent / np.linalg.norm(tangent)
+
+
+def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> tuple[float, complex]:
+    """A smooth function that is 0 where `kind` is met, and the multiplier nearest to meeting it.
+
+    Π(μ − 1) for a fold and Π(μ + 1) for a period doubling, which know nothing of pairs that become real; |μ| − 1 of
+    the critical pair for Neimark–Sacker, which is the one nearest to `near`, else to the unit circle.
+    """
+    multipliers = np.linalg.eigvals(derivative)
+    if kind != "neimark_sacker":
+        target = 1.0 if kind == "fold" else -1.0
+        nearest = int(np.argmin(np.abs(multipliers - target)))
+        return float(np.prod(multipliers - target).real), complex(multipliers[nearest])
+    pairs = multipliers[np.abs(multipliers.imag) > _REAL]
+    if len(pairs) == 0:
+        raise NumbersFailed("The orbit has no complex multipliers, which a Neimark–Sacker point needs.", "no-point")
+    away = np.abs(np.abs(pairs) - 1.0) if near is None else np.abs(pairs - complex(near.real, abs(near.imag)))
+    nearest = int(np.argmin(np.where(pairs.imag > 0.0, away, np.inf)))
+    return float(abs(pairs[nearest]) - 1.0), complex(pairs[nearest])
+
+
+def _met(multiplier: complex, kind: str) -> bool:
+    """Whether a critical multiplier is where it has to be."""
+    away = abs(multiplier) - 1.0 if kind == "neimark_sacker" else multiplier - (1.0 if kind == "fold" else -1.0)
+    return abs(away) <= _MET
+
+
+def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: int = 1, x: str = "f", y: str = "A0",
+                   stop: np.ndarray | None = None) -> BoundaryPoint:
+    """The point of `kind` on the branch over knob x nearest to an orbit through `state`.
+
+    `state` is at phase 0, in SI or scaled (2N,) of displacements, then w. Raises `BadInput`, and `NumbersFailed` where
+    there is none near.
+    """
+    _check(scene, kind, x, y)
+    branch = _Branch(scene, x, float(scene.knobs[x]), period, stop)
+    strobe = StroboscopicMap(scene, period, stop)
+    inner = state if isinstance(state, np.ndarray) else strobe.inner(scaled_state(strobe.engine.lowered, state))
+    along = np.append(np.zeros(len(inner)), 1.0)
+    return _nearest(branch, kind, np.append(inner, 1.0), along, y)
+
+
+def _check(scene: Scene, kind: str, x: str, y: str) -> None:
+    if kind not in KINDS:
+        raise unknown_name("kind of boundary", kind, KINDS)
+    for knob in (x, y):
+        if knob not in KNOBS:
+            raise unknown_name("knob for a boundary", knob, KNOBS)
+        if not float(scene.knobs[knob] if knob != "wall" else scene.wall_factor) > 0.0:
+            raise BadInput(f"A boundary over {knob} begins at a value above 0; give the scene one.")
+    if x == y:
+        raise BadInput(f"Both knobs are {x}; give two distinct ones.")
+
+
+def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y: str) -> BoundaryPoint:
+    """Go along the branch by secants until the condition is met."""
+    try:
+        slope = branch.slope(guess)
+        before, derivative = branch.solve(guess, along, slope)
+        condition, mu = critical(derivative, kind, branch.near)
+        step = _STEP * float(np.linalg.norm(before)) * branch.tangent(derivative, slope, along)
+        for _ in range(_SECANTS):
+            if _met(mu, kind):
+                return BoundaryPoint(float(before[-1]) * branch.unit, float(branch.scene.knobs[y]), mu, before[:-1])
+            X, there, mu = _advanced(branch, kind, before, step, slope)
+            gain = condition - there
+            factor = there / gain if gain != 0.0 else _FARTHEST
+            step = (X - before) * float(np.clip(factor, -_FARTHEST, _FARTHEST))
+            before, condition = X, there
+    except (np.linalg.LinAlgError, BadInput) as problem:
+        raise NumbersFailed(f"The branch could not be followed: {problem}.", "no-convergence") from None
+    raise NumbersFailed(f"No {kind.replace('_', ' ')} was found on this branch near {branch.knob} = "
+                        f"{guess[-1] * branch.unit:g}; give an orbit nearer to it.", "no-point")
+
+
+def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,
+              slope: np.ndarray) -> tuple[np.ndarray, float, complex]:
+    """The point of the branch a step further, or half of it, …, with its condition."""
+    shorter = step
+    for _ in range(_HALVINGS):
+        try:
+            X, derivative = branch.solve(before + shorter, shorter / np.linalg.norm(shorter), slope)
+            return X, *critical(derivative, kind, branch.near)
+        except NumbersFailed:
+            shorter = 0.5 * shorter
+    raise NumbersFailed("Newton's method lost the branch.", "no-convergence")
+
+
+def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: Iterable[float], period: int = 1,
+                    x: str = "f", y: str = "A0", stop: np.ndarray | None = None,
+                    on_point: Callable[[BoundaryPoint], None] | None = None) -> list[BoundaryPoint]:
+    """The curve of `kind` through the point near the orbit `state` of `scene`, at the `values` of knob y.
+
+    It is followed to both sides of the scene's own y, as far as it goes: where the branch or the critical multiplier is
+    lost the curve ends, and points behind that are left out. Points come back in ascending y, that at the scene's own y
+    included. Raises `BadInput`, `Cancelled`, and `NumbersFailed` where there is no such point to begin with.
+    """
+    first = boundary_point(scene, kind, state, period, x, y, stop)
+    wanted = sorted({float(QUANTITIES[y].check(value)) for value in values} - {first.y})
+    found = [first]
+    if on_point is not None:
+        on_point(first)
+    for side in ([v for v in wanted if v > first.y], [v for v in reversed(wanted) if v < first.y]):
+        points = [first]
+        for value in side:
+            if stop is not None and stop[0]:
+                raise Cancelled
+            following = _follow(scene, kind, points, value, period, x, y, stop)
+            if following is None:
+                break
+            points.append(following)
+            if on_point is not None:
+                on_point(following)
+        found += points[1:]
+    return sorted(found, key=lambda point: point.y)
+
+
+def _follow(scene: Scene, kind: str, points: list[BoundaryPoint], value: float, period: int, x: str, y: str,
+            stop: np.ndarray | None) -> BoundaryPoint | None:
+    """The curve's point at y = `value`, by smaller steps where one is too large; None where the curve ends."""
+    way, part = points[-2:], 1.0
+    whole = abs(value - way[-1].y)
+    while way[-1].y != value:
+        end = value if abs(value - way[-1].y) <= part * whole else way[-1].y + part * (value - points[-1].y)
+        following = _stepped(scene, kind, way, end, period, x, y, stop)
+        if following is not None:
+            way = [way[-1], following]
+            continue
+        part *= 0.5
+        if part < _LEAST:
+            return None
+    return way[-1]
+
+
+def _stepped(scene: Scene, kind: str, way: list[BoundaryPoint], end: float, period: int, x: str, y: str,
+             stop: np.ndarray | None) -> BoundaryPoint | None:
+    """The point at y = `end` by one step from the last two; None where it is not found or does not go on evenly."""
+    guess, state = _extrapolated(way, end, x, y)
+    try:
+        branch = _Branch(scene.evolve(**{x: guess, y: end}), x, guess, period, stop, way[-1].multiplier)
+        along = _inwards(branch, state) if kind == "fold" else np.append(np.zeros(len(state)), 1.0)
+        found = _nearest(branch, kind, np.append(state, 1.0), along, y)
+    except (NumbersFailed, BadInput):
+        return None
+    return found if _continues(way[-1], found) else None
+
+
+def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
+    """The direction along which a branch passes its fold: the null vector of the map's derivative less one."""
+    _, derivative = branch.map(np.append(state, 1.0))
+    _, _, rows = np.linalg.svd(derivative - np.eye(len(state)))
+    return np.append(rows[-1], 0.0)
+
+
+def _extrapolated(way: list[BoundaryPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
+    """Knob x and state at y: on the line through the last two points; from one alone by f ∝ A0^{1/4}, else as it is.
+
+    (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit unchanged where D and k go along, and nearly where they do not.
+    """
+    if len(way) == 1:
+        power = {("f", "A0"): 0.25, ("A0", "f"): 4.0}.get((x_knob, y_knob), 0.0)
+        return way[0].x * (y / way[0].y) ** power, way[0].state
+    a, b = way[-2:]
+    part = np.log(y / b.y) / np.log(b.y / a.y)
+    return float(b.x * (b.x / a.x) ** part), b.state + part * (b.state - a.state)
+
+
+def _continues(before: BoundaryPoint, after: BoundaryPoint) -> bool:
+    """Whether the critical multiplier and the first knob go on evenly: else it is another curve that was met."""
+    turned = abs(abs(np.angle(after.multiplier)) - abs(np.angle(before.multiplier)))
+    return bool(turned <= 0.15 and abs(after.x / before.x - 1.0) <= 0.25)

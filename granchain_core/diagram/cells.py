@@ -1,0 +1,73 @@
+"""The cells of a diagram as one table: regime, period, largest forces, error, and the evidence for the regime."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..steady.lane_job import LaneResult
+from ..steady.regime import Regime
+from .grid import Grid
+
+#: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
+REGIMES = ("periodic", "quasi-periodic", "chaotic", "unsettled", "failed")
+#: One cell. Forces in N, NaN where the numbers failed; `error_estimate` is relative, NaN where none is claimed;
+#: `period` in drive periods, 0 where not periodic; `multiplier` and `lyapunov` (per drive period) NaN where not seen.
+CELL = np.dtype([
+    ("number", "<i4"), ("regime", "i1"), ("period", "<i2"), ("periods_run", "<i4"), ("max_input_force", "<f8"),
+    ("max_output_force", "<f8"), ("max_output_force_elastic", "<f8"), ("error_estimate", "<f8"),
+    ("multiplier", "<f8"), ("lyapunov", "<f8"), ("lyapunov_error", "<f8"),
+])
+
+
+def empty_cells(grid: Grid) -> np.ndarray:
+    """A table (cells,) of which nothing is computed."""
+    cells = np.zeros(grid.size, dtype=CELL)
+    cells["number"] = np.arange(grid.size)
+    cells["regime"] = -1
+    for name in ("max_input_force", "max_output_force", "max_output_force_elastic", "error_estimate", "multiplier",
+                 "lyapunov", "lyapunov_error"):
+        cells[name] = np.nan
+    return cells
+
+
+def cell_of(result: LaneResult) -> np.ndarray:
+    """The row () of one result."""
+    regime = result.regime
+    name = "failed" if result.failure else regime.name
+    mean, error = regime.lyapunov or (np.nan, np.nan)
+    return np.array((result.number, REGIMES.index(name), regime.period or 0, regime.periods_run, *result.tops,
+                     _or_nan(result.error_estimate), _or_nan(regime.multiplier), mean, error), dtype=CELL)
+
+
+def _or_nan(value: float | None) -> float:
+    return np.nan if value is None else value
+
+
+@dataclass(eq=False)
+class Diagram:
+    """A two-parameter diagram: its grid, its cells (cells,) by number, and the time it took."""
+
+    grid: Grid
+    cells: np.ndarray
+    wall_s: float = 0.0
+
+    def column(self, name: str) -> np.ndarray:
+        """One entry of all cells as an array (y, x)."""
+        return self.cells[name].reshape(self.grid.shape)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every cell is computed."""
+        return bool((self.cells["regime"] >= 0).all())
+
+    def regime(self, number: int) -> Regime | None:
+        """The regime of a cell; None where nothing is computed or the numbers failed."""
+        cell = self.cells[number]
+        if not 0 <= cell["regime"] < REGIMES.index("failed"):
+            return None
+        lyapunov = None if np.isnan(cell["lyapunov"]) else (float(cell["lyapunov"]), float(cell["lyapunov_error"]))
+        return Regime(REGIMES[cell["regime"]], int(cell["period"]) or None,
+                      None if np.isnan(cell["multiplier"]) else float(cell["multiplier"]), None,
+                      int(cell["periods_run"]), lyapunov)

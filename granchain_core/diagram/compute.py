@@ -1,0 +1,162 @@
+"""Computing the cells of a diagram by lanes, on all cores, coarse first."""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..errors import Cancelled
+from ..integrate.engine import new_stop
+from ..integrate.lane_block import can_share_lanes
+from ..scene import Scene
+from ..steady.curve import CurvePoint, safe_point
+from ..steady.lane_curve import lane_states
+from ..steady.lane_job import LaneResult, Start
+from .cells import Diagram, cell_of, empty_cells
+from .grid import Axis, Grid
+
+#: Seconds between looks whether the computation is still wanted.
+_LOOK = 0.05
+
+
+class _Shared:
+    """Starts of one structure that several threads draw from."""
+
+    def __init__(self, starts: Iterable[Start], pause: Callable[[], None] | None) -> None:
+        self._starts, self._pause, self._lock = iter(starts), pause, threading.Lock()
+
+    def __iter__(self) -> Iterator[Start]:
+        return self
+
+    def __next__(self) -> Start:
+        with self._lock:
+            if self._pause is not None:
+                self._pause()
+            return next(self._starts)
+
+
+def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
+    """Cells as starts from rest."""
+    return (Start(grid.cell(number), number=number) for number in numbers)
+
+
+def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
+    """The cells in groups that share a kernel: an axis that reaches 0 switches its effect off there."""
+    groups: dict[tuple[str, ...], list[int]] = {}
+    for number in numbers:
+        groups.setdefault(tuple(grid.cell(number).effects), []).append(number)
+    return list(groups.values())
+
+
+def settle_starts(starts: Iterable[Start], stop: np.ndarray) -> Iterator[LaneResult]:
+    """Where starts of one structure lead: by lanes where they can share them, else one by one."""
+    rest_of_them = iter(starts)
+    first = next(rest_of_them, None)
+    if first is None:
+        return
+    together = _chained(first, rest_of_them)
+    if can_share_lanes(first.scene):
+        yield from lane_states(together, stop)
+        return
+    for one in together:
+        yield _as_result(one, safe_point(one.scene, one.state, stop))
+
+
+def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
+    yield first
+    yield from others
+
+
+def _as_result(start: Start, point: CurvePoint) -> LaneResult:
+    tops = np.array([point.max_input_force, point.max_output_force, point.max_output_force_elastic])
+    return LaneResult(start.scene, tops, point.regime, point.error_estimate, point.state, point.failure, start.number)
+
+
+def block_cells(grid: Grid, numbers: Sequence[int], stop: np.ndarray | None = None) -> np.ndarray:
+    """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
+    flag = new_stop() if stop is None else stop
+    found = [cell_of(result) for group in by_structure(grid, numbers)
+             for result in settle_starts(starts_of(grid, group), flag)]
+    return np.array(found)
+
+
+def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
+                 stop: Callable[[], bool] | None = None, workers: int | None = None,
+                 pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
+    """Cells of the diagram as they are decided, coarse first; `missing` are those wanted, else all.
+
+    The result's `number` is the cell's. `stop` is asked between cells and may end the computation; running cells are
+    then given up. `pause` is called before a cell is begun and may wait.
+    """
+    wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
+    groups = by_structure(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
+    for group in groups:
+        yield from on_all_cores(starts_of(grid, group), stop, workers, pause)
+        if stop is not None and stop():
+            return
+
+
+def on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None = None,
+                 workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
+    """Where starts of one structure lead, from as many threads as there are cores; closing the generator stops them."""
+    work, flag, count = _Shared(starts, pause), new_stop(), workers or os.cpu_count() or 1
+    found: queue.SimpleQueue[LaneResult | BaseException | None] = queue.SimpleQueue()
+    threads = [threading.Thread(target=_work, args=(work, flag, found), daemon=True, name=f"diagram-{i}")
+               for i in range(count)]
+    for thread in threads:
+        thread.start()
+    try:
+        while count > 0:
+            if stop is not None and stop():
+                return
+            try:
+                item = found.get(timeout=_LOOK)
+            except queue.Empty:
+                continue
+            if isinstance(item, BaseException):
+                raise item
+            if item is None:
+                count -= 1
+            else:
+                yield item
+    finally:
+        flag[0] = 1
+        for thread in threads:
+            thread.join()
+
+
+def _work(work: _Shared, flag: np.ndarray, found: queue.SimpleQueue[Any]) -> None:
+    """One thread's share; ends with None, or with the problem that ended it."""
+    try:
+        for result in settle_starts(work, flag):
+            found.put(result)
+    except Cancelled:
+        pass
+    except Exception as problem:  # raised again by the thread that reads the queue
+        found.put(problem)
+    found.put(None)
+
+
+def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
+            stop: Callable[[], bool] | None = None, progress: Callable[[Diagram, float], None] | None = None,
+            workers: int | None = None) -> Diagram:
+    """Regime, period, largest forces and errors over two knobs, every cell from rest.
+
+    `x` and `y` are (knob, ascending values). `progress` is told the diagram so far and the part of it that is done
+    after every cell; `stop` may end it early, and what is not computed then has regime −1. Raises `BadInput`.
+    """
+    began = time.perf_counter()
+    grid = Grid(scene, Axis.of(*x), Axis.of(*y))
+    found = Diagram(grid, empty_cells(grid))
+    for done, result in enumerate(iter_diagram(grid, None, stop, workers), start=1):
+        found.cells[result.number] = cell_of(result)
+        found.wall_s = time.perf_counter() - began
+        if progress is not None:
+            progress(found, done / grid.size)
+    return found

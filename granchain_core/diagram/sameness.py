@@ -1,0 +1,151 @@
+"""Which results are one and the same steady state.
+
+Periodic results are the same if all their stroboscopic states agree for some shift by whole periods, so that the n
+copies of a period-n orbit count once; first within the errors claimed for them, then, when each has been brought onto
+its orbit by Newton's method, within what is left of that. Motions that are not periodic are the same if their sections
+lie in each other: the median distance of the states of one to the nearest of the other is no larger than `_APART`
+times that within each.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial.distance import cdist
+
+from ..errors import BadInput, NumbersFailed
+from ..integrate import Engine, Setting, State
+from ..integrate.lane_block import scaled_state
+from ..lower import lower
+from ..orbits import Orbit, periodic_orbit
+from ..scene import Scene
+from ..steady.lane_job import LaneResult
+
+#: Orbits found by Newton's method that agree to this, over 1 − |μ|, are one; coarser ones where it failed.
+_SAME = 1e-7
+#: Scaled strobes of an orbit that agree to this after fewer periods have the shorter period.
+_REPEATS = 1e-6
+#: Sections that are so many times further apart than their own states are different; those of motions that are not
+#: periodic have so many states, after as many periods more.
+_APART, _SECTION = 3.0, 400
+LIVE, _CERTIFIED = Setting("rk4-split"), Setting("dop853", tolerance=1e-11)
+
+
+@dataclass(eq=False)
+class Found:
+    """One result with its section: n strobes of a periodic orbit, or the record of another motion, (P, 2, N)."""
+
+    result: LaneResult
+    section: np.ndarray
+    orbit: Orbit | None = None
+
+    @property
+    def tolerance(self) -> float:
+        """How far its section may be from the true one, relative to the largest displacement or w."""
+        if self.orbit is not None:
+            return _SAME / max(1e-3, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
+        return self.result.error_estimate or 0.0
+
+    @property
+    def unstable(self) -> bool:
+        """Whether it is on an orbit that nothing stays on."""
+        return self.orbit is not None and not self.orbit.stable
+
+
+def found(result: LaneResult) -> Found:
+    """A result with the section of its motion."""
+    period = result.regime.period
+    return Found(result, _strobes(result.scene, result.state, period, LIVE) if period else _section(result))
+
+
+def _section(result: LaneResult) -> np.ndarray:
+    """Stroboscopic states of displacement and velocity, scaled, of what is not periodic, (P, 2, N)."""
+    engine = Engine(result.scene, LIVE, 1)
+    engine.start(result.state)
+    engine.periods(_SECTION)
+    return engine.periods(_SECTION)[0][1:]
+
+
+def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.ndarray:
+    """The next `periods` stroboscopic states of displacement and w, scaled, (periods, 2, N)."""
+    engine, lowered = Engine(scene, setting, 1), lower(scene)
+    engine.start(state)
+    rows = [scaled_state(lowered, state)]
+    for _ in range(periods - 1):
+        engine.periods(1, watch=False)
+        rows.append(scaled_state(lowered, engine.state))
+    return np.array(rows).reshape(periods, 2, -1)[:, :, 1:-1]
+
+
+def merged(results: list[Found]) -> list[list[Found]]:
+    """Results in groups that are one attractor each; the first of a group stands for it."""
+    groups: list[list[Found]] = []
+    for one in results:
+        _join(groups, [one])
+    polished: list[list[Found]] = []
+    for group in groups:
+        _join(polished, [_polished(group[0]), *group[1:]])
+    return polished
+
+
+def _join(groups: list[list[Found]], new: list[Found]) -> None:
+    for group in groups:
+        if _same(group[0], new[0]):
+            group.extend(new)
+            return
+    groups.append(new)
+
+
+def _polished(one: Found) -> Found:
+    """The result on its certified orbit, if Newton's method ends on the orbit that it began at."""
+    period = one.result.regime.period
+    if period is None or one.orbit is not None:
+        return one
+    try:
+        orbit = periodic_orbit(one.result.scene, period, one.result.state)
+        section = _strobes(orbit.scene, orbit.state, period, _CERTIFIED)
+        shortest = next(n for n in range(1, period + 1)
+                        if period % n == 0 and np.abs(section - np.roll(section, n, axis=0)).max() <= _REPEATS)
+        if shortest < period:  # the lanes saw a slow approach to it with changing sign
+            orbit = periodic_orbit(one.result.scene, shortest, orbit.state)
+    except (BadInput, NumbersFailed):  # a scene that cuts tension has no certified orbits
+        return one
+    if _distance(section, one.section) > 10.0 * one.tolerance + 1e-6:
+        return one
+    result = replace(one.result, regime=replace(one.result.regime, period=shortest))
+    return Found(result, section[:shortest], orbit)
+
+
+def _same(a: Found, b: Found) -> bool:
+    if a.result.regime.name != b.result.regime.name or a.result.regime.period != b.result.regime.period:
+        return False
+    if a.result.regime.period is not None:
+        return _distance(a.section, b.section) <= a.tolerance + b.tolerance
+    scale = _scale(a.section, b.section)
+    apart = max(_to_nearest(a.section, b.section, scale), _to_nearest(b.section, a.section, scale))
+    return apart <= _APART * max(_own(a.section, scale), _own(b.section, scale))
+
+
+def _scale(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The largest displacement and w of two sections, (1, 2, 1)."""
+    largest = np.maximum(np.abs(a).max(axis=(0, 2)), np.abs(b).max(axis=(0, 2)))
+    return np.where(largest > 0.0, largest, 1.0)[None, :, None]
+
+
+def _distance(a: np.ndarray, b: np.ndarray) -> float:
+    """Largest relative difference of two orbits of n strobes (n, 2, N) under the best shift by whole periods."""
+    scale = _scale(a, b)
+    return min(float(np.abs((a - np.roll(b, shift, axis=0)) / scale).max()) for shift in range(len(a)))
+
+
+def _to_nearest(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> float:
+    """Median relative distance of the states of one section to the nearest of another."""
+    flat = [(section / scale).reshape(len(section), -1) for section in (a, b)]
+    return float(np.median(cdist(*flat, metric="chebyshev").min(axis=1)))
+
+
+def _own(section: np.ndarray, scale: np.ndarray) -> float:
+    """The same between the later and the earlier half of one section."""
+    half = len(section) // 2
+    return _to_nearest(section[half:], section[:half], scale)

@@ -1,0 +1,98 @@
+"""What kind of response a periodic orbit is: 1:n resonance, 1:1 anti-resonance, or neither.
+
+Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives one strong push every n periods, at the
+moment at which the pulse reflected by the wall comes back to it; in an anti-resonance pulses interfere destructively,
+and every period has one weak push. Both are read from the orbit itself:
+
+pushes     counted as in steady/resonance.py: `strong` pushes in `periods` drive periods, in lowest terms.
+returning  speed with which bead 1 comes towards the driver just before the strongest push, over the drive's largest
+           speed 2πf A0: the reflected pulse, if it is in step.
+rule       one strong push in n ≥ 2 periods is a 1:n resonance. One push a period is a 1:1 resonance if `returning` is
+           at least a third, else an anti-resonance. Where less than `STOPS` of the input force arrives at the wall the
+           chain is in its stop band and the response is neither.
+
+The drive's phase at contact alone does not tell the two apart: for section 2 it is 343° at the 1:1 peak and 355° in the
+valley behind it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from ..integrate import Engine, Setting
+from ..result import Cost, Run, run_from
+from ..steady.regime import Regime
+from ..steady.resonance import ENDED, pushes
+from .orbit import Orbit
+
+#: A push is met by the reflected pulse if bead 1 comes back with this part of the drive's largest speed.
+IN_STEP = 1.0 / 3.0
+#: Less than this part of the input force at the wall: nothing travels through the chain.
+STOPS = 0.15
+#: Samples a period, and the tolerance of a step: events are placed to about a degree of the drive.
+_SAMPLES, _TOLERANCE = 480, 1e-9
+
+
+@dataclass(frozen=True)
+class Response:
+    """Strong pushes in so many periods, what that is, and the evidence.
+
+    `kind` is "resonance", "anti-resonance" or "". `contact_phase` and `peak_phase` are the drive's phase [degrees, 0
+    where it moves forward through its middle] where the strongest push begins and is strongest, None where driver and
+    bead 1 never part. `returning` is relative to 2πf A0, `transmission` is largest output over largest input force.
+    """
+
+    strong: int
+    periods: int
+    kind: str
+    contact_phase: float | None
+    peak_phase: float
+    returning: float
+    transmission: float
+
+    @property
+    def sentence(self) -> str:
+        """The response in words."""
+        ratio = f"{self.strong}:{self.periods}"
+        if self.kind:
+            return f"{ratio} {self.kind}"
+        return f"{ratio} motion, stop band" if self.transmission < STOPS else f"{ratio} motion"
+
+
+def response(orbit: Orbit) -> Response:
+    """The response that a periodic orbit is."""
+    run = recorded(orbit)
+    counted = pushes(run)
+    strong, periods = counted if counted is not None else (orbit.period, orbit.period)
+    force, speed = run.input_force[:-1], run.velocity[:-1, 0] / (2.0 * pi * orbit.scene.f * orbit.scene.A0)
+    peak = int(np.argmax(force))
+    begin = _begin(force, peak)
+    returning = 0.0 if begin is None else max(0.0, -float(speed[begin - 1]))
+    transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
+    kind = ""
+    if strong == 1 and transmission >= STOPS:
+        kind = "resonance" if periods > 1 or returning >= IN_STEP else "anti-resonance"
+    return Response(strong, periods, kind, None if begin is None else _phase(begin), _phase(peak), returning,
+                    transmission)
+
+
+def _phase(sample: int) -> float:
+    return 360.0 * (sample % _SAMPLES) / _SAMPLES
+
+
+def _begin(force: np.ndarray, peak: int) -> int | None:
+    """The sample at which the push around `peak` begins; the orbit is closed, so it may lie behind the peak's index."""
+    quiet = np.flatnonzero(np.roll(force, -peak) < ENDED * force[peak])
+    return None if len(quiet) == 0 else int((peak + quiet[-1] + 1) % len(force))
+
+
+def recorded(orbit: Orbit) -> Run:
+    """The orbit as a run over its whole period."""
+    engine = Engine(orbit.scene, Setting("dop853", tolerance=_TOLERANCE), _SAMPLES)
+    engine.start(orbit.state)
+    samples = engine.record(orbit.period * _SAMPLES)
+    regime = Regime("periodic", orbit.period, float(np.abs(orbit.multipliers).max()), None, orbit.period)
+    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, "dop853"))

@@ -1,0 +1,131 @@
+"""All attractors of one setting: found from rest, sweeps and random states, each once, with shares that add up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import BadInput, Scene, resonance_curve, scene, settled
+from granchain_core.diagram import Attractor, attractors, listing
+from granchain_core.diagram.attractors import share
+from granchain_core.orbits import periodic_orbit, response
+
+#: Where rest, a sweep up and a sweep down lead to three different motions of sec2.
+MANY = 893.0
+
+
+@pytest.fixture(scope="module")
+def many() -> list[Attractor]:
+    return attractors(scene("sec2").evolve(f=MANY), random_states=48)
+
+
+def named(found: list[Attractor], name: str) -> Attractor:
+    """The attractor that a start leads to."""
+    return next(one for one in found if name in [origin.name for origin in one.origins])
+
+
+def test_rest_up_and_down_lead_to_three_attractors(many: list[Attractor]) -> None:
+    rest, up, down = (named(many, name) for name in ("rest", "up", "down"))
+    assert rest is not up and up is not down and rest is not down
+    assert rest.regime.period == 3 and down.regime.period == 3 and up.regime.name == "quasi-periodic"
+    # the curves computed by themselves end at the same forces: periodic ones to the errors claimed for both
+    frequencies = MANY * np.linspace(0.92, 1.08, 9)
+    for direction, one in (("rest", rest), ("down", down)):
+        point = resonance_curve(scene("sec2"), frequencies, direction).points[4]
+        assert point.error_estimate is not None and one.error_estimate is not None
+        assert one.max_output_force == pytest.approx(point.max_output_force,
+                                                     rel=point.error_estimate + one.error_estimate)
+
+
+def test_every_start_leads_to_one_attractor_and_shares_add_up(many: list[Attractor]) -> None:
+    names = [origin.name for one in many for origin in one.origins]
+    assert sorted(names) == sorted(["rest", "up", "down", *(f"random {i}" for i in range(48))])
+    assert sum(one.share for one in many) == pytest.approx(1.0, abs=1e-12)
+    for one in many:
+        count = sum(origin.name.startswith("random") for origin in one.origins)
+        assert one.share == count / 48 and 0.0 < one.share_error < 0.08  # √(p(1−p)/48) ≤ 0.072
+
+
+def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
+    # the live and the certified method know nothing of lanes: they start from the state that is listed
+    for one in (named(many, "rest"), named(many, "down")):
+        origin = next(o for o in one.origins if o.name.startswith("random"))
+        alone = settled(one.scene, origin.state)
+        assert alone.regime.period == one.regime.period
+        assert alone.run.max_output_force == pytest.approx(one.max_output_force, rel=2e-4)  # its error_estimate
+
+
+def test_periodic_ones_are_certified_orbits_and_stable(many: list[Attractor]) -> None:
+    periodic = [one for one in many if one.regime.period]
+    for one in periodic:
+        assert one.orbit is not None and one.orbit.residual <= 1e-11 and one.stable
+        assert periodic_orbit(one.scene, one.regime.period, one.state).residual <= 1e-9
+    irregular = [one for one in many if not one.regime.period]
+    for one in irregular:
+        assert one.stable is None and one.regime.lyapunov is not None and one.error_estimate is None
+
+
+def test_the_same_seed_gives_the_same_answer_and_another_seed_the_same_attractors(many: list[Attractor]) -> None:
+    def told(found: list[Attractor]) -> list[tuple]:
+        return [(one.regime.name, one.regime.period, one.share, [o.name for o in one.origins]) for one in found]
+
+    assert told(attractors(scene("sec2").evolve(f=MANY), random_states=48)) == told(many)
+    other = attractors(scene("sec2").evolve(f=MANY), random_states=48, seed=1)
+    assert {(one.regime.name, one.regime.period) for one in other} == {(o.regime.name, o.regime.period) for o in many}
+    assert told(other) != told(many)
+
+
+@pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3)])
+def test_shifted_copies_of_an_orbit_are_one_attractor(frequency: float, period: int) -> None:
+    # a period-n orbit has n stroboscopic copies, and random states end on all of them
+    found = attractors(scene("sec2").evolve(f=frequency), random_states=32)
+    assert [one.regime.period for one in found] == [period] and found[0].share == 1.0
+
+
+def test_what_only_seems_to_rest_is_not_an_attractor() -> None:
+    # At 1936 Hz a sweep down arrives on a period-1 orbit with |μ| = 1.003: left to itself it goes elsewhere.
+    found = attractors(scene("sec2").evolve(f=1936.0), random_states=24)
+    assert all(one.stable is not False for one in found)
+    assert {one.regime.period for one in found} == {5, None}
+
+
+def test_shares_without_a_single_hit_still_have_an_error() -> None:
+    assert share(0, 64) == (0.0, pytest.approx(0.0206, abs=1e-3)) and share(0, 0) == (0.0, 0.0)
+    assert share(32, 64) == (0.5, pytest.approx(0.0606, abs=1e-3))
+
+
+def test_too_many_states_are_refused() -> None:
+    with pytest.raises(BadInput, match="nearest valid value is 10000"):
+        attractors(scene("sec2"), random_states=10**9)
+
+
+def test_the_listing_says_what_share_and_which_regime(many: list[Attractor]) -> None:
+    lines = list(listing(many))
+    assert len(lines) == len(many) and lines[0].startswith("period 3") and "% of random states" in lines[0]
+
+
+# What kind of response an orbit is
+
+def at(frequency: float) -> Scene:
+    return scene("sec2").evolve(f=frequency)
+
+
+@pytest.mark.parametrize(("frequency", "ratio", "kind"), [
+    (340.0, (1, 1), "resonance"), (615.0, (1, 2), "resonance"), (1130.0, (1, 3), "resonance"),
+    (1576.0, (1, 4), "resonance"), (470.0, (1, 1), "anti-resonance"), (860.0, (1, 1), "anti-resonance"),
+    (1280.0, (1, 1), "anti-resonance"), (2500.0, (1, 1), ""),
+])
+def test_peaks_are_resonances_and_dips_anti_resonances(frequency: float, ratio: tuple[int, int], kind: str) -> None:
+    # PHYSICS, section 3: peaks 1:1 … 1:5 and the dips between them; above 2000 Hz is the stop band
+    found = response(periodic_orbit(at(frequency)))
+    assert (found.strong, found.periods) == ratio and found.kind == kind
+
+
+def test_at_the_first_peak_the_push_meets_the_reflected_pulse() -> None:
+    peak, dip = response(periodic_orbit(at(340.0))), response(periodic_orbit(at(470.0)))
+    # the driver moves forward through its middle when the pulse comes back: contact begins before, and peaks near phase 0
+    assert peak.contact_phase is not None and 330.0 < peak.contact_phase < 360.0
+    assert min(peak.peak_phase, 360.0 - peak.peak_phase) < 15.0
+    assert peak.returning > 1.0 > 1.0 / 3.0 > dip.returning
+    assert peak.transmission == pytest.approx(0.629 / 0.697, rel=0.01)
+    assert peak.sentence == "1:1 resonance" and response(periodic_orbit(at(2500.0))).sentence == "1:1 motion, stop band"

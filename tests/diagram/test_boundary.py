@@ -1,0 +1,109 @@
+"""Boundaries of stability in the plane of two knobs: where multipliers say they are, and where the scaling puts them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import BadInput, NumbersFailed, Scene, State, scene, settled
+from granchain_core.diagram import boundaries, diagram
+from granchain_core.diagram.boundary import BoundaryPoint, boundary_curves, boundary_point
+from granchain_core.orbits import periodic_orbit
+
+#: Near a period doubling and a Neimark–Sacker point of sec2's period-1 orbit, and the fold of its 1:5 resonance.
+NEAR = {"period_doubling": (508.0, 1), "neimark_sacker": (1226.0, 1), "fold": (1951.0, 5)}
+
+
+def near(kind: str) -> tuple[Scene, np.ndarray, int]:
+    """A scene near such a point, its orbit's state and period."""
+    frequency, period = NEAR[kind]
+    shown = scene("sec2").evolve(f=frequency)
+    return shown, periodic_orbit(shown, period).state, period  # type: ignore[return-value]
+
+
+@pytest.fixture(scope="module")
+def points() -> dict[str, BoundaryPoint]:
+    return {kind: boundary_point(near(kind)[0], kind, *near(kind)[1:]) for kind in NEAR}
+
+
+@pytest.mark.parametrize(("kind", "condition"), [
+    ("period_doubling", lambda mu: mu + 1.0), ("fold", lambda mu: mu - 1.0), ("neimark_sacker", lambda mu: abs(mu) - 1.0)])
+def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, BoundaryPoint], kind: str, condition) -> None:  # type: ignore[no-untyped-def]
+    found = points[kind]
+    assert abs(condition(found.multiplier)) <= 1e-6
+    shown, start, period = near(kind)
+    if kind != "fold":  # at a fold Newton's method at fixed f has a singular matrix; elsewhere it is another way
+        orbit = periodic_orbit(shown.evolve(f=found.x), period, start)
+        assert np.abs(condition(orbit.multipliers)).min() <= 1e-5
+
+
+def test_beyond_a_period_doubling_the_period_is_two(points: dict[str, BoundaryPoint]) -> None:
+    at = points["period_doubling"].x
+    assert settled(scene("sec2").evolve(f=at - 3.0)).regime.period == 1
+    assert settled(scene("sec2").evolve(f=at + 3.0)).regime.period == 2
+
+
+@pytest.mark.parametrize(("away", "name"), [(-8.0, "quasi-periodic"), (15.0, "periodic")])
+def test_on_one_side_of_a_neimark_sacker_point_the_motion_is_quasi_periodic(
+        points: dict[str, BoundaryPoint], away: float, name: str) -> None:
+    shown = scene("sec2").evolve(f=points["neimark_sacker"].x + away)
+    orbit = periodic_orbit(shown, 1)
+    assert orbit.stable == (name == "periodic")
+    beside = State(1.02 * orbit.state.displacement, orbit.state.velocity)
+    assert settled(shown, beside).regime.name == name
+
+
+def test_beyond_a_fold_there_is_no_such_orbit(points: dict[str, BoundaryPoint]) -> None:
+    at, (shown, start, period) = points["fold"].x, near("fold")
+    assert periodic_orbit(shown.evolve(f=at - 0.5), period, start).stable
+    with pytest.raises(NumbersFailed):
+        periodic_orbit(shown.evolve(f=at + 5.0), period, start)
+
+
+def test_a_curve_goes_through_its_rows_and_scales(points: dict[str, BoundaryPoint]) -> None:
+    shown, start, period = near("neimark_sacker")
+    rows = [3.5e-7, 5e-7, 8e-7]
+    curve = boundary_curves(shown, "neimark_sacker", start, rows, period)
+    assert [point.y for point in curve] == rows
+    assert all(abs(abs(point.multiplier) - 1.0) <= 1e-6 for point in curve)
+    assert curve[1].x == pytest.approx(points["neimark_sacker"].x, rel=1e-9)
+    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D): the curve at another D, point by point
+    s = 2.0
+    other = shown.evolve(A0=s * shown.A0, f=s**0.25 * shown.f, D=s**0.25 * shown.D)
+    scaled = boundary_curves(other, "neimark_sacker", periodic_orbit(other, 1).state, [s * row for row in rows], period)
+    for a, b in zip(curve, scaled, strict=True):
+        assert b.x == pytest.approx(s**0.25 * a.x, rel=1e-6)  # |μ| is met to 1e-6
+        assert abs(b.multiplier.real) == pytest.approx(abs(a.multiplier.real), abs=1e-5)
+
+
+def test_a_fold_is_followed(points: dict[str, BoundaryPoint]) -> None:
+    shown, start, period = near("fold")
+    curve = boundary_curves(shown, "fold", start, [4.5e-7, 5e-7], period)
+    assert [point.y for point in curve] == [4.5e-7, 5e-7]
+    assert abs(curve[0].multiplier - 1.0) <= 1e-6 and curve[0].x < curve[1].x
+
+
+def test_wrong_requests_are_one_sentence() -> None:
+    shown, start, _ = near("period_doubling")
+    with pytest.raises(BadInput, match="Unknown kind of boundary 'hopf'"):
+        boundary_point(shown, "hopf", start)
+    with pytest.raises(BadInput, match="two distinct"):
+        boundary_point(shown, "fold", start, x="f", y="f")
+    with pytest.raises(BadInput, match="begins at a value above 0"):
+        boundary_point(shown, "fold", start, x="f", y="k")
+    with pytest.raises(NumbersFailed):
+        boundary_point(scene("sec2"), "fold", periodic_orbit(scene("sec2")).state)
+
+
+def test_a_diagram_shows_where_its_boundaries_are() -> None:
+    found = diagram(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
+    curves = boundaries(found, rows=[1])
+    told = {(curve.kind, curve.period): curve for curve in curves}
+    # period 1 doubles at 512 Hz; the orbit of period 2 in its turn near 572 Hz, into one of period 4 or more
+    first = told["period_doubling", 1]
+    assert [point.y for point in first.points] == [4.5e-7, 5e-7]
+    assert first.points[1].x == pytest.approx(boundary_point(*near("period_doubling")[:1], "period_doubling",
+                                                             near("period_doubling")[1]).x, rel=1e-6)
+    assert 0.0 < first.points[1].x - first.points[0].x < 20.0  # f ∝ A0^{1/4} nearly: 13 Hz
+    with pytest.raises(BadInput, match="rows are numbers from 0 to 1"):
+        boundaries(found, rows=[2])
