@@ -1,0 +1,3 @@
+"""The table."""
+from .energy import free_chain
+CASES=()
