@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,7 +77,13 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     status = "done" if error <= scene.accuracy else "accuracy-not-reached"
     cost = Cost.of(time.perf_counter() - began, total, setting.method)
     first = periods * samples + round(begin.phase * samples)
-    return run_from(now.engine, now.samples, first, regime, error, cost, status)
+    return replace(run_from(now.engine, now.samples, first, regime, error, cost, status), start=_origin(scene, start))
+
+
+def _origin(scene: Scene, start: State | None) -> str:
+    if start is not None:
+        return "given state"
+    return "thrown beads" if scene.start_velocity else "rest"
 
 
 def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:

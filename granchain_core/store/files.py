@@ -51,7 +51,7 @@ def save(result: Run, path: str | Path) -> Path:
 
     def write(file: h5py.File) -> None:
         _provenance(file, result.scene, result.cost.method, result.error_estimate)
-        file.attrs["status"] = result.status
+        file.attrs["status"], file.attrs["start"] = result.status, result.start
         file.attrs["energy_residual"] = _or_nan(result.energy_residual)
         file.attrs["samples_per_period"] = result.samples
         file.attrs["cost"] = json.dumps(asdict(result.cost))
@@ -118,7 +118,7 @@ def _read(path: str | Path) -> Run:
             raise BadInput(f"{path}: {name} has shape {arrays[name].shape}, expected {(rows, *width)}.")
     return Run(
         scene=scene, samples=int(attrs["samples_per_period"]),
-        status=str(attrs["status"]), regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
+        status=str(attrs["status"]), start=str(attrs.get("start", "rest")), regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
         error_estimate=_or_none(attrs["accuracy_reached"]), energy_residual=_or_none(attrs["energy_residual"]),
         max_input_force=float(attrs["max_input_force"]), max_output_force=float(attrs["max_output_force"]),
         max_output_force_elastic=float(attrs["max_output_force_elastic"]), **arrays,
