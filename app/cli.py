@@ -1,4 +1,4 @@
-"""The command line: serve, scenes, warm, run, curve, orbit, accuracy.
+"""The command line: serve, scenes, warm, run, curve, orbit, accuracy, check.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled. With --json one object goes to stdout and nothing else; progress goes to stderr.
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import commands
+from app import check_command, commands
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import unknown_name
 
@@ -59,6 +59,7 @@ def _parser() -> _Parser:
     accuracy.add_argument("scene", metavar="SCENE")
     accuracy.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     accuracy.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    check_command.add_parser(command("check", "the hard cases: figure, bar and verdict; status 3 if one fails"))
     curve = _scene_command(command("curve", "resonance curve: largest forces over frequency"))
     curve.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
     curve.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
@@ -79,6 +80,7 @@ def _scene_command(parser: _Parser) -> _Parser:
 _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
     "curve": commands.curve, "orbit": commands.orbit, "accuracy": commands.accuracy,
+    "check": check_command.check,
 }
 
 

@@ -118,10 +118,10 @@ class Engine:
         self.drive = np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
         self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size),
                                 np.zeros((ENDS, lo.row - 1)), lo.forces(),
-                                self._along())
+                                self.new_along())
         self.grid = n
 
-    def _along(self) -> Along | Wide | None:
+    def new_along(self) -> Along | Wide | None:
         """The workspace of SIMD steps, where there is neither a tension cut nor an energy account in the equations."""
         lo, slots = self.lowered, self.lowered.slots
         if self.setting.method != "rk4-split" or slots.tension is not None or slots.balance is not None:

@@ -7,7 +7,7 @@ that step the failure has not spread yet, and the first bead is the one where it
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -83,27 +83,31 @@ def _located(engine: Engine, done: float, before: Before | None) -> tuple[int, i
 
 def _by_halves(engine: Engine, done: float, before: Before) -> tuple[int, int]:
     """Go through the call again up to the last certain instant, then halve the steps behind it."""
-    n = engine.method.steps_per_period
+    n, row = engine.method.steps_per_period, engine.lowered.row
     y, slope, first = before
     low = first + round(done * n)
-    y, slope = _steps(engine, y, slope, first, low, engine.work.along)
+    y, slopes = _steps(engine, y, slope, first, low, vectors=True)
+    slope = slopes[0]
     high = (low // n + 1) * n if engine.samples == 1 else min((low // n + 1) * n, low + n // engine.samples)
-    end, _ = _steps(engine, y, slope, low, high)
     while high - low > 1:
         middle = (low + high) // 2
-        there, its_slope = _steps(engine, y, slope, low, middle)
-        if not_finite(there, engine.lowered.row):
-            high, end = middle, there
+        there, slopes = _steps(engine, y, slope, low, middle, vectors=True)
+        if not_finite(there, row):
+            high = middle
         else:
-            low, y, slope = middle, there, its_slope
-    return max(1, not_finite(end, engine.lowered.row)), low % n
+            low, y, slope = middle, there, slopes[0]
+    _, slopes = _steps(engine, y, slope, low, high)
+    end, _ = _steps(engine, y, slope, low, high, vectors=True)
+    # each stage spreads to the next beads only: the earliest stage names the bead
+    return next((b for b in (not_finite(k, row) for k in (*slopes[1:], end)) if b), 1), low % n
 
 
 def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: int,
-           along: Any = None) -> tuple[np.ndarray, np.ndarray]:
-    """State and slope after steps `first` to `last`, counted through periods; without `along` by scalar code."""
+           vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    """State and slopes after steps `first` to `last`, counted through periods; by the engine's vectors or by scalar code."""
     n, now = engine.method.steps_per_period, y.copy()
-    work = engine.work._replace(along=along, k=engine.work.k.copy())
+    # new vectors: those of the failed call are full of what failed
+    work = engine.work._replace(along=engine.new_along() if vectors else None, k=np.zeros_like(engine.work.k))
     work.k[0] = slope
     kept, peaks = engine.empty_samples(2), np.zeros_like(engine.peaks)
     j = first
@@ -112,4 +116,4 @@ def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: i
         sampling.run_samples(engine.method, engine.lowered.slots, engine.drive, engine.h, now, work, j % n, stride, kept,
                              peaks, np.zeros(4, dtype=np.int64), np.zeros(1, dtype=np.uint8))
         j += stride
-    return now, work.k[0].copy()
+    return now, work.k

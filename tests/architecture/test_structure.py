@@ -19,6 +19,7 @@ LAYERS = {
     "run": {"errors", "scene", "kernels", "integrate", "result", "steady"},
     "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "lower", "scene", "steady"},
     "orbits": {"errors", "scene", "kernels", "integrate", "steady"},
+    "drift": {"integrate", "orbits"}, "hard": {"errors", "scene", "kernels", "integrate", "orbits", "run", "steady", "drift"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
     "store": {"errors", "quantities", "result", "scene", "steady", ""},
 }
