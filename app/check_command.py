@@ -42,4 +42,5 @@ def check(arguments: argparse.Namespace) -> None:
     say(f"{sum(row.passed for row in every)} of {len(every)} rows passed in {time.perf_counter() - began:.1f} s")
     missed = [row.case for row in every if not row.passed]
     if missed:
-        raise NumbersFailed(f"{len(missed)} of {len(every)} rows are above their bars: {'; '.join(missed)}.", "check-failed")
+        raise NumbersFailed(f"{len(missed)} of {len(every)} rows are above their bars: {'; '.join(missed)}.",
+                            "check-failed")

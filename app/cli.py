@@ -13,6 +13,7 @@ from typing import NoReturn
 
 from app import check_command, commands
 from granchain_core import BadInput, Cancelled, NumbersFailed
+from granchain_core.budget import BUDGET
 from granchain_core.errors import unknown_name
 
 DONE, BAD_INPUT, FAILED, CANCELLED = 0, 2, 3, 130
@@ -48,6 +49,7 @@ def _parser() -> _Parser:
     run.add_argument("--record", type=int, default=20, metavar="R", help="periods recorded")
     run.add_argument("--samples", type=int, default=96, metavar="S", help="samples a period")
     run.add_argument("--method", metavar="M", help="integration method instead of the one accuracy chooses")
+    run.add_argument("--budget", type=float, default=BUDGET, metavar="SECONDS", help="refuse what would take longer")
     run.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
     orbit = command("orbit", "periodic orbit and Floquet multipliers")
     orbit.add_argument("scene", metavar="SCENE")

@@ -1,8 +1,8 @@
 """Drift by its name: an observer that nothing holds moves away as a whole.
 
 The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
-wall alone, and only while they touch it. A multiplier outside the unit circle that is real and whose mode moves all beads
-the same way is no instability of a form but a drift.
+wall alone, and only while they touch it. A multiplier outside the unit circle that is real and whose mode moves all
+beads the same way is no instability of a form but a drift.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ def observer_drift(orbit: Orbit) -> str | None:
     values, vectors = np.linalg.eig(flow.derivative)
     leading = int(np.argmax(np.abs(values)))
     moved = vectors[: orbit.scene.N, leading].real
-    if abs(values[leading].imag) > 0.0 or values[leading].real < 0.0 or not ((moved > 0.0).all() or (moved < 0.0).all()):
+    real = values[leading].imag == 0.0 and values[leading].real > 0.0
+    if not real or not ((moved > 0.0).all() or (moved < 0.0).all()):
         return None
-    return (f"The observer drifts: its leading multiplier {values[leading].real:.4g} is real and moves all beads the same way, "
-            f"because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")
+    return (f"The observer drifts: its leading multiplier {values[leading].real:.4g} is real and moves all beads the same "
+            f"way, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 
-
 #: Names of the outcomes of computations whose numbers failed.
 FAILURES = ("not-finite", "step-too-small", "chatter", "no-convergence", "solver-gave-up")
 
@@ -17,8 +16,8 @@ class BadInput(ValueError):
 class NumbersFailed(ArithmeticError):
     """A computation that could not be finished; the message says which bead, when, why and what to do.
 
-    `status` is the outcome's name as it appears in the JSON output: one of `FAILURES`. Where they are known, `bead` is the
-    first bead that failed, `time` [s] when, and `step` the step of its drive period, counted from 0.
+    `status` is the outcome's name as it appears in the JSON output: one of `FAILURES`. Where they are known, `bead` is
+    the first bead that failed, `time` [s] when, and `step` the step of its drive period, counted from 0.
     """
 
     def __init__(self, sentence: str, status: str, bead: int | None = None, time: float | None = None,

@@ -2,8 +2,8 @@
 
 One bead with a gap on both sides (a negative static overlap), in scaled units. Either a driver of amplitude 1 comes
 within the gap's depth of it while it rests, or it is thrown on its foundation and comes as near to the wall. Depths are
-log-uniform from 1e-7 to 1e-2 of the amplitude, half of them negative: then nothing may be touched. Frequency, phase, step
-settings and tolerance are random.
+log-uniform from 1e-7 to 1e-2 of the amplitude, half of them negative: then nothing may be touched. Frequency, phase,
+step settings and tolerance are random.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def draw(count: int, seed: int, driven: bool) -> np.ndarray:
 
 
 @kernel
-def touch(cases, driven, work, y, clock, counts, static, chain, found):
+def touch(cases, driven, work, y, clock, counts, static, chain, found):  # type: ignore[no-untyped-def]
     """Run every case from its phase until the driver, or the bead, is back at middle position.
 
     The gap is 1 − depth. A bead that rests is where it was until the touch, so the analytic onset is asin(gap); the
@@ -105,6 +105,9 @@ def missed(cases: np.ndarray, found: np.ndarray) -> np.ndarray:
 
 
 def moved(cases: np.ndarray) -> np.ndarray:
-    """How much later than at π − asin(gap) a touch by the driver ends, as a part of the period, to order depth²: the bead
-    has moved by half the touch's length 2√(2·depth)/β times its velocity (3π√2/8)·depth²/β, over the driver's speed."""
+    """How much later than at π − asin(gap) a touch by the driver ends, as a part of the period, to order depth².
+
+    The bead has moved by half the touch's length 2√(2·depth)/β times its velocity (3π√2/8)·depth²/β, over the driver's
+    speed.
+    """
     return 3.0 * pi * 2.0**0.5 / 8.0 * (cases[:, DEPTH] / cases[:, RATE]) ** 2 / (2.0 * pi)

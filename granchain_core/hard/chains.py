@@ -29,8 +29,8 @@ def contact_time(speed: float, reduced_mass: float = 0.5, stiffness: float = 1.0
 class Bench:
     """Equal or unequal beads between a driver and a wall that stand still, K = m = 1, carried by `method`.
 
-    `ends` are the stiffnesses of the first and the last contact: with a first one of 0 there is no driver at all, a last
-    one of 0 leaves that end free as long as `law`, which acts in every contact, has no strength.
+    `ends` are the stiffnesses of the first and the last contact: with a first one of 0 there is no driver at all, a
+    last one of 0 leaves that end free as long as `law`, which acts in every contact, has no strength.
     `time` is the length of one record of `samples` samples; displacements start at zero. With `static` the contacts
     have these overlaps at rest (negative ones are gaps).
     """

@@ -20,7 +20,7 @@ def overdamped(times: float, beads: int = 3) -> Scene:
 
 
 def implicit_error(chosen: Scene, samples: int = 16) -> float:
-    """Largest difference of `run` from Radau in (u, v) over the first period from rest, over the largest displacement."""
+    """Largest difference of `run` from Radau in (u, v), over the first period from rest and the largest displacement."""
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
     chain = Plain.of(chosen)
     times = chain.period * np.arange(samples + 1) / samples
@@ -35,7 +35,7 @@ def strong_damping(quick: bool) -> list[Figure]:
 
 
 def strong_damping_picture() -> Picture:
-    """First bead's displacement at 10^4 times the rig's damping: ours, and plain RK4 with two and a half times our step."""
+    """First bead at 10^4 times the rig's damping: ours, and plain RK4 with two and a half times our step."""
     chosen, samples = overdamped(1e4), 100
     ours = run(chosen, periods=0, record=1, samples=samples).displacement[:, 0] / chosen.A0
     naive, kept = Engine(chosen, Setting("rk4-naive", 0.4), samples), np.full(samples + 1, np.nan)

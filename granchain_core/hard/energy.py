@@ -81,7 +81,7 @@ def driven_chaos(quick: bool) -> list[Figure]:
     return [
         Figure("energy balance", float(np.abs(work - lost - stored).max() / largest), 1e-8),
         Figure("Lyapunov exponents of two methods, difference over their stated errors", difference, 2.0,
-               f"{shadow[0]:.3f} ± {shadow[1]:.3f} by a shadow, {tangent[0]:.3f} ± {tangent[1]:.3f} by tangents, per period"),
+               f"{shadow[0]:.3f} ± {shadow[1]:.3f} per period by a shadow, {tangent[0]:.3f} ± {tangent[1]:.3f} by tangents"),
         Figure(f"of {count} undamped motions called periodic", float(periodic), 0.0),
     ]
 
@@ -125,7 +125,7 @@ def chaos_picture() -> Picture:
 
 # --- drives that are switched -----------------------------------------------------------------------------
 
-#: Samples a period: what Simpson's rule misses beside an opening or closing contact is 0.0024 v^{3/2} h^{5/2}, 1e-11 here.
+#: Samples a period: Simpson's rule misses 0.0024 v^{3/2} h^{5/2} beside an opening or closing contact, 1e-11 here.
 _SWITCHED = 1 << 16
 
 

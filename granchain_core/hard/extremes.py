@@ -16,7 +16,7 @@ from .oracle import Plain, solved
 
 
 def scaled_difference(frequency: float, setting: Setting, times: tuple[float, ...]) -> float:
-    """How far the scaled motions of (sA0, s^{1/4} f, s^{1/4} D) are from that of s = 1, over the largest displacement."""
+    """How far scaled motions of (sA0, s^{1/4} f, s^{1/4} D) are from that of s = 1, over the largest displacement."""
     base = scene("sec2").evolve(A0=1e-8, N=5, kappa=0.002, f=frequency)
     true = Engine(base, setting, 16).record(16).displacement
     worst = 0.0
@@ -195,7 +195,8 @@ def mode_errors(preload: float, number: int, beads: int = 11) -> tuple[float, fl
     frequency, shape = mode(chosen, number)
     static = float(chosen.static_overlap()[0])
     linear = np.outer(np.cos(2.0 * np.pi * 3.0 * np.arange(49) / 48.0), shape)
-    odd = 0.5 * (swing(chosen, frequency, shape, 1e-5 * static) + swing(chosen, frequency, -shape, 1e-5 * static) * -1.0)
+    there, back = (swing(chosen, frequency, sign * shape, 1e-5 * static) for sign in (1.0, -1.0))
+    odd = 0.5 * (there - back)
     deviations = [float(np.abs(swing(chosen, frequency, shape, a * static) - linear).max()) for a in (1e-4, 1e-3)]
     return float(np.abs(odd - linear).max()), abs(deviations[1] / deviations[0] / 10.0 - 1.0)
 
@@ -222,7 +223,8 @@ def preloads(quick: bool) -> list[Figure]:
     """Linear modes from a millionth of a newton to ten thousand, and the limit without preload."""
     forces = (1e-6, 10.0) if quick else (1e-6, 1e-3, 1.0, 10.0, 100.0, 1e4)
     errors = [mode_errors(f, n) for f in forces for n in (0, 10)]
-    limit = max(plain_error(scene("sec2").evolve(N=3, F0=f, accuracy=1e-7)) for f in ((1e-9,) if quick else (1e-12, 1e-9, 1e-6)))
+    weak = (1e-9,) if quick else (1e-12, 1e-9, 1e-6)
+    limit = max(plain_error(scene("sec2").evolve(N=3, F0=f, accuracy=1e-7)) for f in weak)
     return [
         Figure("linear modes, in amplitudes", max(e[0] for e in errors), 1e-8),
         Figure("deviation over ten times the amplitude, less ten times", max(e[1] for e in errors), 0.05),

@@ -54,7 +54,7 @@ def uninterrupted(method: str, periods: int, cuts: int) -> float:
 
 
 def phase_error(periods: int) -> tuple[float, float]:
-    """How far the driver is from sin 2πft after `periods` periods, in amplitudes: at phase 0, and over one period more."""
+    """How far the driver is from sin 2πft after `periods` periods and one more, in amplitudes; periods miscounted."""
     engine = Engine(scene("sec2").evolve(N=1, f=3000.0), Setting("rk4-split"), _SAMPLES)
     left = periods
     while left > 0:

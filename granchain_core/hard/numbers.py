@@ -100,7 +100,8 @@ def injections(count: int) -> tuple[int, int]:
 def slowing(method: str, beads: int, rounds: int) -> float:
     """Time of a chain ahead of whose wave there are subnormal numbers over that of one with ordinary small ones.
 
-    Displacements fall from 1 by the same factor from bead to bead, to 1e-320 or to 1e-160; by turns, the fastest of each.
+    Displacements fall from 1 by the same factor from bead to bead, to 1e-310 or to 1e-160; by turns, the fastest of
+    each.
     """
     best = [np.inf, np.inf]
     chosen = scene("sec2").evolve(N=beads, f=3000.0, k=1e4)

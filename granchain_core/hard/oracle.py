@@ -1,7 +1,8 @@
 """An independent solver to measure against: SciPy, in (u, v), restarted wherever a contact opens or closes.
 
 It shares no equation, no variable and no line with the kernels: contacts are gated by flags that events flip, forces
-are those of Zhang et al. 2016, eq. (1), in scaled units, and the method may be implicit (Radau) where a dashpot is stiff.
+are those of Zhang et al. 2016, eq. (1), in scaled units, and the method may be implicit (Radau) where a dashpot is
+stiff.
 """
 
 from __future__ import annotations
@@ -63,7 +64,8 @@ class Plain:
         return np.concatenate([state[n:], (force[:-1] - force[1:] - self.foundation * state[:n]) / self.masses])
 
 
-def solved(chain: Plain, start: np.ndarray, times: np.ndarray, method: str = "DOP853", rtol: float = 1e-12) -> np.ndarray:
+def solved(chain: Plain, start: np.ndarray, times: np.ndarray, method: str = "DOP853",
+           rtol: float = 1e-12) -> np.ndarray:
     """States (T, 2N) of displacements and velocities at `times` from `start` at the first of them.
 
     Raises `NumbersFailed` where SciPy gives up.
@@ -104,8 +106,8 @@ def _event(chain: Plain, contact: int, closed: bool) -> Callable[[float, np.ndar
 def restitution(law: str, strength: float, cut: bool) -> float:
     """Speed after over speed before of a bead of mass 1 that meets a contact K = 1 at speed 1.
 
-    The force is δ^{3/2} + strength·g(δ)·δ̇ with g = 1, δ^{1/4} or δ^{1/2}. Integrated in s = t^{1/4}, in which the motion
-    behind the onset is smooth; with a cut it ends where the force does, else where the overlap does.
+    The force is δ^{3/2} + strength·g(δ)·δ̇ with g = 1, δ^{1/4} or δ^{1/2}. Integrated in s = t^{1/4}, in which the
+    motion behind the onset is smooth; with a cut it ends where the force does, else where the overlap does.
     """
     power = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}[law]
 

@@ -18,7 +18,8 @@ from .case import Figure, Picture, Trace
 _STROBES, _BEADS = 400, 3
 
 
-def normal_form(rng: np.random.Generator, kind: str, closeness: float, count: int) -> tuple[np.ndarray, np.ndarray, int]:
+def normal_form(rng: np.random.Generator, kind: str, closeness: float,
+                count: int) -> tuple[np.ndarray, np.ndarray, int]:
     """Strobes (count + 1, 2, N) of a map near a bifurcation, its orbit (q, 2, N) and the orbit's period q.
 
     In the coordinates of the normal form one direction has the multiplier 1 − ε (fold), −(1 − ε) (flip) or a pair
@@ -58,7 +59,7 @@ def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
 
 
 def claims(count: int, seed: int) -> tuple[int, int, int]:
-    """Of `count` maps near a bifurcation: settled claims made, claims whose bound or period is wrong, slow ones claimed.
+    """Of `count` maps near a bifurcation: settled claims, claims whose bound or period is wrong, slow ones claimed.
 
     A slow one has a multiplier so near 1 that it cannot have settled within its strobes.
     """
@@ -113,17 +114,18 @@ def chain_claims(count: int) -> tuple[int, int]:
 
 
 def near_bifurcation_picture() -> Picture:
-    """Distance from the orbit of a slow approach, what the change per period says it is, and our bound where claimed."""
+    """Distance from the orbit of a slow approach, what the change per period says, and our bound where claimed."""
     strobes, orbit, _ = normal_form(np.random.default_rng(8), "flip", 0.02, 1_000)
     scale, marks = np.abs(strobes).max(axis=(0, 2)), np.arange(20, 1_000, 20)
     true = [distance(strobes[i], orbit, scale) for i in marks]
-    change = [float((np.abs(strobes[i] - strobes[i - 1]).max(axis=1) / scale).max()) for i in marks]
+    change = [float((np.abs(strobes[i] - strobes[i - 2]).max(axis=1) / scale).max()) for i in marks]
     bounds = [find_period(strobes[max(0, i - 420) : i + 1]).distance for i in marks]
     ours = np.array([np.nan if b is None else b for b in bounds])
     small = 1e-17
     return Picture(marks, "drive periods", "relative distance from the orbit, log10", (
-        Trace("true", np.log10(np.array(true) + small)), Trace("granchain's bound, where it claims one", np.log10(ours)),
-        Trace("change per two periods, as if it were the distance", np.log10(np.abs(np.array(change)) * 0.02 + small))))
+        Trace("true", np.log10(np.array(true) + small)),
+        Trace("granchain's bound, where it claims one", np.log10(ours)),
+        Trace("change over two periods, as if it were the distance", np.log10(np.array(change) + small))))
 
 
 # --- several attractors -----------------------------------------------------------------------------------
@@ -148,13 +150,14 @@ def two_attractors(quick: bool) -> list[Figure]:
     forces = [p.max_output_force for p in found.values()]
     again = {start: settled(chosen, p.state) for start, p in found.items()}
     same = max(abs(again[s].run.max_output_force / found[s].max_output_force - 1.0) for s in found)
+    leading = max(float(np.abs(o.multipliers).max()) for o in orbits.values())
     named = [settled(chosen).start == "rest", *(one.start == "previous state" for one in again.values()),
              run(chosen, periods=0, record=1, samples=4).start == "rest",
              run(chosen, periods=0, record=1, samples=4, start=found["up"].state).start == "given state"]
     return [
         Figure("orbits missing, of two", 2.0 - len({p.regime.period for p in found.values()}), 0.0,
                ", ".join(f"{s}: period {p.regime.period}, {p.max_output_force:.4f} N" for s, p in found.items())),
-        Figure("largest multiplier of either orbit", max(float(np.abs(o.multipliers).max()) for o in orbits.values()), 1.0),
+        Figure("largest multiplier of either orbit", leading, 1.0),
         Figure("smaller force over the larger", min(forces) / max(forces), 0.9),
         Figure("change of either when gone on from", float(same), 1e-3),
         Figure("results that do not say their start", float(len(named) - sum(named)), 0.0),

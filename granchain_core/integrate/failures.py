@@ -1,7 +1,7 @@
 """Which bead, when and in which step: what a kernel's status means, found out where it is not known yet.
 
-Kernels with fixed steps look for numbers that are not finite once a sample or a period, because looking costs as much as
-a bead. When they have found one, the period is gone through again from its start by halves, until the step is known; in
+Kernels with fixed steps look for numbers that are not finite once a sample or a period, because looking costs as much
+as a bead. When they have found one, the period is gone through again from its start by halves, until the step is known; in
 that step the failure has not spread yet, and the first bead is the one where it began.
 """
 
@@ -33,7 +33,8 @@ def check_start(engine: Engine) -> None:
     """Raise `NumbersFailed` if the state from which `engine` is to go on is not finite already."""
     bead = not_finite(engine.y, engine.lowered.row)
     if bead:
-        raise _failed(engine, bead, engine.elapsed, None if METHODS[engine.setting.method].adaptive else engine.grid_index)
+        adaptive = METHODS[engine.setting.method].adaptive
+        raise _failed(engine, bead, engine.elapsed, None if adaptive else engine.grid_index)
 
 
 def raise_for(engine: Engine, status: int, done: float, before: Before | None) -> None:
@@ -53,7 +54,8 @@ def raise_for(engine: Engine, status: int, done: float, before: Before | None) -
     scene, method = engine.lowered.scene, engine.setting.method
     if status == sampling.STEP_TOO_SMALL:
         raise NumbersFailed(f"The step of {method} shrank to nothing {when}; ask for less accuracy than "
-                            f"{scene.accuracy:g} or use method rk4-split.", "step-too-small", time=periods * scene.period)
+                            f"{scene.accuracy:g} or use method rk4-split.", "step-too-small",
+                            time=periods * scene.period)
     raise NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D or use "
                         f"method rk4-split.", "chatter", time=periods * scene.period)
 
@@ -64,8 +66,8 @@ def _when(engine: Engine, periods: float) -> str:
 
 def _failed(engine: Engine, bead: int, periods: float, step: int | None) -> NumbersFailed:
     where = "" if step is None else f" in step {step} of its period"
-    return NumbersFailed(f"The motion of bead {bead} stopped being a finite number {_when(engine, periods)}{where}; lower "
-                         f"the damping or ask for a higher accuracy.", "not-finite", bead,
+    return NumbersFailed(f"The motion of bead {bead} stopped being a finite number {_when(engine, periods)}{where}; "
+                         f"lower the damping or ask for a higher accuracy.", "not-finite", bead,
                          periods * engine.lowered.scene.period, step)
 
 
@@ -104,7 +106,7 @@ def _by_halves(engine: Engine, done: float, before: Before) -> tuple[int, int]:
 
 def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: int,
            vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """State and slopes after steps `first` to `last`, counted through periods; by the engine's vectors or by scalar code."""
+    """State and slopes after steps `first` to `last`, counted through periods, by vectors or by scalar code."""
     n, now = engine.method.steps_per_period, y.copy()
     # new vectors: those of the failed call are full of what failed
     work = engine.work._replace(along=engine.new_along() if vectors else None, k=np.zeros_like(engine.work.k))
@@ -113,7 +115,7 @@ def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: i
     j = first
     while j < last:
         stride = min(last, (j // n + 1) * n) - j
-        sampling.run_samples(engine.method, engine.lowered.slots, engine.drive, engine.h, now, work, j % n, stride, kept,
-                             peaks, np.zeros(4, dtype=np.int64), np.zeros(1, dtype=np.uint8))
+        sampling.run_samples(engine.method, engine.lowered.slots, engine.drive, engine.h, now, work, j % n, stride,
+                             kept, peaks, np.zeros(4, dtype=np.int64), np.zeros(1, dtype=np.uint8))
         j += stride
     return now, work.k

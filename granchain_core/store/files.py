@@ -118,7 +118,8 @@ def _read(path: str | Path) -> Run:
             raise BadInput(f"{path}: {name} has shape {arrays[name].shape}, expected {(rows, *width)}.")
     return Run(
         scene=scene, samples=int(attrs["samples_per_period"]),
-        status=str(attrs["status"]), start=str(attrs.get("start", "rest")), regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
+        status=str(attrs["status"]), start=str(attrs.get("start", "rest")),
+        regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
         error_estimate=_or_none(attrs["accuracy_reached"]), energy_residual=_or_none(attrs["energy_residual"]),
         max_input_force=float(attrs["max_input_force"]), max_output_force=float(attrs["max_output_force"]),
         max_output_force_elastic=float(attrs["max_output_force_elastic"]), **arrays,
