@@ -2,7 +2,8 @@
 
 The number of steps of a fixed-step method is known; that of a method with error control, and the time of a step, are
 from measurements on section 2's chain and the rig (docs/hard-cases.md), brought to this machine by the speed of its
-square roots. A run is computed at least twice, the second time finer; that is part of the estimate, still finer ones are not.
+square roots. A run is computed at least twice, the second time finer, and about as often a third time: the estimate
+lies half way between on a logarithmic scale.
 """
 
 from __future__ import annotations

@@ -30,5 +30,5 @@ def observer_drift(orbit: Orbit) -> str | None:
     real = values[leading].imag == 0.0 and values[leading].real > 0.0
     if not real or not ((moved > 0.0).all() or (moved < 0.0).all()):
         return None
-    return (f"The observer drifts: its leading multiplier {values[leading].real:.4g} is real and moves all beads the same "
-            f"way, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")
+    return (f"The observer drifts: its leading multiplier {values[leading].real:.4g} is real and moves all beads the "
+            f"same way, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")

@@ -20,7 +20,7 @@ def overdamped(times: float, beads: int = 3) -> Scene:
 
 
 def implicit_error(chosen: Scene, samples: int = 16) -> float:
-    """Largest difference of `run` from Radau in (u, v), over the first period from rest and the largest displacement."""
+    """Largest difference of `run` from Radau in (u, v) in the first period from rest, over the largest displacement."""
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
     chain = Plain.of(chosen)
     times = chain.period * np.arange(samples + 1) / samples

@@ -81,7 +81,7 @@ def driven_chaos(quick: bool) -> list[Figure]:
     return [
         Figure("energy balance", float(np.abs(work - lost - stored).max() / largest), 1e-8),
         Figure("Lyapunov exponents of two methods, difference over their stated errors", difference, 2.0,
-               f"{shadow[0]:.3f} ± {shadow[1]:.3f} per period by a shadow, {tangent[0]:.3f} ± {tangent[1]:.3f} by tangents"),
+               f"per period {shadow[0]:.3f} ± {shadow[1]:.3f} by a shadow, {tangent[0]:.3f} ± {tangent[1]:.3f} else"),
         Figure(f"of {count} undamped motions called periodic", float(periodic), 0.0),
     ]
 

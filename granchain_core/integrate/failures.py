@@ -1,8 +1,8 @@
 """Which bead, when and in which step: what a kernel's status means, found out where it is not known yet.
 
 Kernels with fixed steps look for numbers that are not finite once a sample or a period, because looking costs as much
-as a bead. When they have found one, the period is gone through again from its start by halves, until the step is known; in
-that step the failure has not spread yet, and the first bead is the one where it began.
+as a bead. When they have found one, the period is gone through again from its start by halves, until the step is known;
+in that step the failure has not spread yet, and its earliest stage names the bead where it began.
 """
 
 from __future__ import annotations
