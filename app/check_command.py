@@ -27,6 +27,9 @@ def check(arguments: argparse.Namespace) -> None:
         found[name] = rows
         verdict = "passed" if all(row.passed for row in rows) else "FAILED"
         say(f"{len(found):2}/{len(CASES)}  {name}: {verdict}, {rows[0].seconds:.1f} s")
+        for row in rows:
+            if not row.passed:
+                say(f"       {row.figure:.2e} is above {row.bar:.1e}: {row.case.removeprefix(name + ': ')} {row.note}")
     every = in_order(found)
     if arguments.json:
         print(json.dumps({"rows": [{"case": row.case, "figure": row.figure if math.isfinite(row.figure) else None,

@@ -20,7 +20,7 @@ from .lower import Lowered, lower
 from .scene import Scene
 
 #: Seconds a run may take unless it is told otherwise.
-BUDGET = 3600.0
+BUDGET = 86_400.0
 #: Seconds of one step of a method with fixed steps: so much, and so much for each contact.
 _STEP: dict[str, tuple[float, float]] = {"rk4-split": (450e-9, 45e-9), "rk4": (350e-9, 35e-9),
                                          "rk4-naive": (120e-9, 40e-9), "verlet-naive": (80e-9, 12e-9)}
