@@ -34,7 +34,7 @@ CASES: tuple[Case, ...] = (
          extremes.amplitudes, extremes.amplitudes_picture),
     Case("no damping, free chain after an impact",
          "Nothing can be lost, so every loss is the method's.",
-         "Plain RK4 loses or gains energy at every contact, always to the same side.",
+         "Plain RK4 is off by 4e-4 of the energy after a thousand contact times, and nobody was told.",
          "conservation of energy and momentum; velocity Verlet, symplectic, beside it",
          energy.free_chain, energy.free_chain_picture),
     Case("1, 2 and 10^4 beads, masses 10^6 apart, a soft bead",
