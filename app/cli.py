@@ -11,8 +11,9 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import branch_command, commands, map_command, observe_command, orbit_command
+from app import branch_command, check_command, commands, map_command, observe_command, orbit_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
+from granchain_core.budget import BUDGET
 from granchain_core.errors import unknown_name
 
 DONE, BAD_INPUT, FAILED, CANCELLED = 0, 2, 3, 130
@@ -48,6 +49,7 @@ def _parser() -> _Parser:
     run.add_argument("--record", type=int, default=20, metavar="R", help="periods recorded")
     run.add_argument("--samples", type=int, default=96, metavar="S", help="samples a period")
     run.add_argument("--method", metavar="M", help="integration method instead of the one accuracy chooses")
+    run.add_argument("--budget", type=float, default=BUDGET, metavar="SECONDS", help="refuse what would take longer")
     run.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
     orbit = command("orbit", "periodic orbit and Floquet multipliers")
     orbit.add_argument("scene", metavar="SCENE")
@@ -64,6 +66,7 @@ def _parser() -> _Parser:
     accuracy.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     accuracy.add_argument("--json", action="store_true", help="print one JSON object on stdout")
     observe_command.add_options(_scene_command(command("observe", "push a scene's chain by a measured force")))
+    check_command.add_parser(command("check", "the hard cases: figure, bar and verdict; status 3 if one fails"))
     curve = _scene_command(command("curve", "resonance curve: largest forces over frequency"))
     curve.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
     curve.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
@@ -86,6 +89,7 @@ _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
     "curve": commands.curve, "orbit": orbit_command.orbit, "branch": branch_command.branch,
     "observe": observe_command.observe, "map": map_command.map_scene, "accuracy": commands.accuracy,
+    "check": check_command.check,
 }
 
 

@@ -115,7 +115,8 @@ def run(arguments: argparse.Namespace) -> None:
         _explain(chosen, arguments.method, sys.stderr if arguments.json else sys.stdout)
     progress = _progress if sys.stderr.isatty() else None
     result = in_background(lambda stop: run_scene(chosen, arguments.periods, arguments.record, arguments.samples,
-                                                  arguments.method, stop=stop, progress=progress))
+                                                  arguments.method, stop=stop, progress=progress,
+                                                  budget=arguments.budget))
     for warning in warnings(result):
         say(warning)
     if result.status == "accuracy-not-reached":

@@ -22,10 +22,11 @@ from .exchange import Exchange
 from .frames import samples_for
 from .jobs import LatestWins, Stop
 from .live import LivePicture, LiveRun
+from .looks import Looks
 from .observer import ObserverPage
 from .painter import Painter
 from .promptness import in_one_go, send_at_once
-from .session import LOOKS, SPEEDS, Session, presets, slider_range
+from .session import SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
 from .stability import StabilityPage
 from .transport import Transport
@@ -33,8 +34,6 @@ from .views.knobs import foundation_words, knob_state
 from .views.shell import Views
 
 log = logging.getLogger("granchain")
-
-_INK = {"light": ("#14181f", 1.0), "dark": ("#eef1f6", 1.0), "projector": ("#000000", 1.5)}
 
 
 class Controller:
@@ -49,6 +48,7 @@ class Controller:
         self.live: LiveRun | None = None
         self.curves = Curves(self.views, self.later, self.after, lambda: self.busy)
         self.exchange = Exchange(self)
+        self.looks = Looks(self)
         self.observer = ObserverPage(self)
         self.accuracy = AccuracyPage(self)
         self.branches = BranchesPage(self)
@@ -61,11 +61,8 @@ class Controller:
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
             "painted": lambda m: self._painter.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
-            "look": self._look, "understood": self._understood,
-            "lock": self._lock, "curve": self._curve,
-            "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
-            "cover": self._cover, "curve-stop": lambda _: self.curves.stop(),
-            **Transport(self).actions, **self.exchange.actions,
+            "understood": self._understood, "cover": self._cover,
+            **Transport(self).actions, **self.exchange.actions, **self.looks.actions,
             **{name: action for part in self.parts for name, action in part.actions.items()},
         }
 
@@ -206,7 +203,7 @@ class Controller:
     def _ready(self, message: dict[str, Any]) -> None:
         send_at_once(self._document)
         self.views.trains.fit(bool(message.get("narrow")))
-        self._look({"value": message.get("look")})
+        self.looks.choose({"value": message.get("look")})
         self._new_scene()
 
     def _new_scene(self) -> None:
@@ -295,16 +292,3 @@ class Controller:
     def _understood(self, _: dict[str, Any]) -> None:
         self.session.notice = ""
         self.say("")
-
-    def _lock(self, message: dict[str, Any]) -> None:
-        self.views.energy.locked = bool(message.get("value"))
-
-    def _look(self, message: dict[str, Any]) -> None:
-        look = message.get("value")
-        if look in LOOKS:
-            ink, thick = _INK[str(look)]
-            self.views.curve.ink(ink, thick)
-            self.views.trains.thicken(thick)
-
-    def _curve(self, message: dict[str, Any]) -> None:
-        self.curves.choose(str(message.get("name")), bool(message.get("value")), self.session.scene)

@@ -1,9 +1,12 @@
-"""The two ways a request can fail, each carrying one sentence a student understands."""
+"""The ways a request can fail, each carrying one sentence a student understands."""
 
 from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+
+#: Names of the outcomes of computations whose numbers failed.
+FAILURES = ("not-finite", "step-too-small", "chatter", "no-convergence", "solver-gave-up")
 
 
 class BadInput(ValueError):
@@ -13,13 +16,29 @@ class BadInput(ValueError):
 class NumbersFailed(ArithmeticError):
     """A computation that could not be finished; the message says which bead, when, why and what to do.
 
-    `status` is the outcome's name as it appears in the JSON output, for example ``"not-finite"``.
+    `status` is the outcome's name as it appears in the JSON output: one of `FAILURES`. Where they are known, `bead` is
+    the first bead that failed, `time` [s] when, and `step` the step of its drive period, counted from 0.
     """
 
-    def __init__(self, sentence: str, status: str) -> None:
+    def __init__(self, sentence: str, status: str, bead: int | None = None, time: float | None = None,
+                 step: int | None = None) -> None:
         super().__init__(sentence)
         self.sentence = sentence
         self.status = status
+        self.bead = bead
+        self.time = time
+        self.step = step
+
+
+class OverBudget(BadInput):
+    """A computation that is refused before it starts, because it would take `estimate` seconds of `budget`."""
+
+    status = "over-budget"
+
+    def __init__(self, sentence: str, estimate: float, budget: float) -> None:
+        super().__init__(sentence)
+        self.estimate = estimate
+        self.budget = budget
 
 
 class Cancelled(Exception):

@@ -34,7 +34,8 @@ class Run:
 
     `error_estimate` is the largest error of any displacement sample over the largest displacement (None where no
     claim is made); `energy_residual` is (work − lost − stored)/largest of the three (None where no account was
-    kept). Maxima are those between the samples too.
+    kept). Maxima are those between the samples too. `start` says where the motion began: "rest", "thrown beads" or
+    "given state".
     """
 
     scene: Scene
@@ -52,6 +53,7 @@ class Run:
     error_estimate: float | None
     energy_residual: float | None
     cost: Cost
+    start: str = "rest"
 
     @property
     def kinetic_energy(self) -> np.ndarray:

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .budget import BUDGET, check_budget
 from .errors import BadInput
 from .integrate import Engine, Setting, State, method_for
 from .integrate.engine import Counts, new_stop, rest
@@ -35,6 +36,8 @@ _CAUTION, _UNEVEN = 1.5, 3.0
 _CLOSES = 10.0
 #: Periods whose stroboscopic states are kept to decide the regime, however long a run is.
 _KEPT = 420
+#: The next finer computation takes about so many times as long.
+_TWICE = 2.0
 #: Fewest periods on which a run is called anything but unsettled.
 _ENOUGH = 40
 
@@ -50,34 +53,46 @@ class _Attempt:
 
 def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, method: str | None = None,
         start: State | None = None, stop: np.ndarray | None = None,
-        progress: Callable[[float], None] | None = None) -> Run:
+        progress: Callable[[float], None] | None = None, budget: float = BUDGET) -> Run:
     """Run `periods` periods and discard them, then record `record` periods at `samples` samples each, both ends.
 
     The scene's accuracy is the relative error of the displacements asked for; `method` overrides the choice made from
     it. `stop` is a flag from `new_stop`, `progress` is told the fraction of the present computation. Status is "done",
-    or "accuracy-not-reached" where no finer computation came near enough (chaos amplifies every error).
-    Raises `BadInput`, `NumbersFailed`, `Cancelled`.
+    "accuracy-not-reached" where no finer computation came near enough (chaos amplifies every error), or "over-budget"
+    where the next finer one would go beyond `budget` seconds. A run that would do so from the beginning is not begun.
+    Raises `BadInput`, `OverBudget` (which is one), `NumbersFailed`, `Cancelled`.
     """
     _check_sizes(scene, periods, record, samples)
     began = time.perf_counter()
     flag = new_stop() if stop is None else stop
     begin = rest(scene) if start is None else start
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
-    total = Counts()
+    check_budget(scene, setting, periods, record, samples, budget)
+    total, status = Counts(), "accuracy-not-reached"
     before = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
     while True:
-        setting = setting.finer()
+        setting, lap = setting.finer(), time.perf_counter()
         now = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
         error = _stated(setting, scene, _difference(now, before))
         lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
         if error <= scene.accuracy or setting.finest or lost:
             break
+        if time.perf_counter() - began + _TWICE * (time.perf_counter() - lap) > budget:
+            status = "over-budget"
+            break
         before = now
     regime = _regime(scene, now, periods + record, flag)
-    status = "done" if error <= scene.accuracy else "accuracy-not-reached"
+    if error <= scene.accuracy:
+        status = "done"
     cost = Cost.of(time.perf_counter() - began, total, setting.method)
     first = periods * samples + round(begin.phase * samples)
-    return run_from(now.engine, now.samples, first, regime, error, cost, status)
+    return replace(run_from(now.engine, now.samples, first, regime, error, cost, status), start=_origin(scene, start))
+
+
+def _origin(scene: Scene, start: State | None) -> str:
+    if start is not None:
+        return "given state"
+    return "thrown beads" if scene.start_velocity else "rest"
 
 
 def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
@@ -156,4 +171,4 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> 
 
 def warnings(result: Run) -> list[str]:
     """Sentences on where the model itself stopped being valid during a run."""
-    return overlap_warnings(result.scene, float(result.overlap.max()))
+    return overlap_warnings(result.scene, result.overlap.max(axis=0))

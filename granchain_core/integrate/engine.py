@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Cancelled, NumbersFailed
 from ..kernels import sampling
 from ..kernels.along import Along
 from ..kernels.certified import run_certified
@@ -23,6 +22,7 @@ from ..kernels.simd import LANES, aligned
 from ..kernels.wide import BLOCK, KEPT, WIDTHS, Wide
 from ..lower import Lowered, lower
 from ..scene import Scene
+from .failures import check_start, raise_for
 from .methods import METHODS, Setting
 
 #: Grid points for following force maxima lie at most this far apart in scaled time; a Hertzian pulse lasts about 6.
@@ -105,6 +105,7 @@ class Engine:
         else:
             self._prepare_fixed()
         self.start(rest(scene) if lowered is None else State(np.zeros(lowered.beads), np.zeros(lowered.beads)))
+        self._before = self.y.copy(), self.work.k[0].copy(), self.grid_index
 
     # --- set-up --------------------------------------------------------------------------------------------
 
@@ -119,10 +120,10 @@ class Engine:
         self.drive = np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
         self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size),
                                 np.zeros((ENDS, lo.row - 1)), lo.forces(),
-                                self._along())
+                                self.new_along())
         self.grid = n
 
-    def _along(self) -> Along | Wide | None:
+    def new_along(self) -> Along | Wide | None:
         """The workspace of SIMD steps: neither tension cut nor energy account in the equations, and one chain."""
         lo, slots = self.lowered, self.lowered.slots
         if self.setting.method != "rk4-split" or slots.tension is not None or slots.balance is not None:
@@ -223,7 +224,11 @@ class Engine:
         return sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)
 
     def record(self, count: int) -> sampling.Samples:
-        """Advance by `count` samples and keep them, the present one first: count + 1 rows."""
+        """Advance by `count` samples and keep them, the present one first: count + 1 rows.
+
+        Raises `NumbersFailed`, `Cancelled`.
+        """
+        self._remember()
         samples = self.empty_samples(count + 1)
         every = self.grid // self.samples
         lo, work = self.lowered, self.work
@@ -236,7 +241,7 @@ class Engine:
                                                 self.grid_index, every, samples, self.peaks, self.counts.array,
                                                 self.stop)
         self.grid_index = (self.grid_index + count * every) % self.grid
-        self.raise_for(status, rows / self.samples)
+        raise_for(self, status, max(0, rows - 1) / self.samples, self._before)
         self.elapsed += count / self.samples
         return samples
 
@@ -256,13 +261,14 @@ class Engine:
         input, output and elastic output force of each period (count, 3); without `watch` the certified method does
         not look for the forces and they are NaN.
         """
+        self._remember()
         strobes, tops = np.zeros((count + 1, 2, self.lowered.row)), np.full((count, 3), np.nan)
         if self._adaptive:
             self._certified_periods(strobes, tops, watch)
         else:
             status, done = sampling.run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
                                                 strobes, self.peaks, tops, self.counts.array, self.stop)
-            self.raise_for(status, done)
+            raise_for(self, status, done, self._before)
         self.elapsed += count
         return strobes[:, :, 1:-1], tops
 
@@ -279,21 +285,11 @@ class Engine:
             if watch:
                 tops[p] = self.tops
 
-    def raise_for(self, status: int, periods: float) -> None:
-        """Turn a kernel's status into an outcome a student understands."""
-        if status == sampling.DONE:
-            return
-        if status == sampling.CANCELLED:
-            raise Cancelled
-        scene, row = self.lowered.scene, self.lowered.row
-        periods += self.elapsed
-        when = f"at about {periods * scene.period:.6g} s ({periods:.6g} drive periods)"
-        if status == sampling.NOT_FINITE:
-            bead = max(1, sampling.first_not_finite(self.y, row))
-            raise NumbersFailed(f"The motion of bead {bead} stopped being a finite number {when}; "
-                                f"lower the damping or ask for a higher accuracy.", "not-finite")
-        if status == sampling.STEP_TOO_SMALL:
-            raise NumbersFailed(f"The step of {self.setting.method} shrank to nothing {when}; ask for less accuracy "
-                                f"than {scene.accuracy:g} or use method rk4-split.", "step-too-small")
-        raise NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D or "
-                            f"use method rk4-split.", "chatter")
+    def raise_for(self, status: int, done: float) -> None:
+        """Turn the status of a kernel that someone ran with this engine into an outcome, after `done` periods."""
+        raise_for(self, status, done, None)
+
+    def _remember(self) -> None:
+        """Keep the state from which a failure would have to be searched; one that is there already is said at once."""
+        check_start(self)
+        self._before = self.y.copy(), self.work.k[0].copy(), self.grid_index

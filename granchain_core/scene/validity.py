@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 if TYPE_CHECKING:
     from .description import Scene
@@ -10,18 +13,54 @@ if TYPE_CHECKING:
 #: Hertz's theory takes the contact patch as small against the sphere; at an overlap of 1 % of the radius the
 #: patch radius √(Rδ/2) is already 7 % of R.
 LARGEST_OVERLAP_FRACTION = 0.01
+#: Spheres with ν = 0.3 begin to yield, below the surface, at a peak pressure of 1.6 Y (Johnson, Contact
+#: Mechanics, 1985, section 6.1).
+ONSET_OF_YIELD = 1.6
+#: Yield stress of hardened bearing steel (AISI 52100) [Pa]: a third of the hardness (Tabor, The Hardness of Metals,
+#: 1951), 60 HRC being 697 HV, that is 6.84 GPa (ASTM E140). Softer steel yields sooner.
+YIELD_STRESS = 2.28e9
 
 
-def overlap_warnings(scene: Scene, largest_overlap: float) -> list[str]:
-    """Sentences for a chain whose contacts reached `largest_overlap` [m]."""
-    radius = min(b.radius for b in scene.beads)
-    fraction = largest_overlap / radius
-    if fraction <= LARGEST_OVERLAP_FRACTION:
-        return []
-    return [f"The largest overlap, {largest_overlap:.2e} m, is {100 * fraction:.1f} % of a bead's radius; "
-            f"Hertz's law holds below about {100 * LARGEST_OVERLAP_FRACTION:.0f} %."]
+def contact_geometry(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """E* [Pa] and R* [m] of every contact (N+1,); the driver is a bead like bead 1.
+
+    The wall is flat where it is called so, and a rigid one has no compliance of its own; a wall that is a number times
+    K is taken for a bead.
+    """
+    beads = (scene.beads[0], *scene.beads, scene.beads[-1])
+    modulus = np.array([1.0 / ((1 - a.poisson**2) / a.young + (1 - b.poisson**2) / b.young)
+                        for a, b in itertools.pairwise(beads)])
+    radius = np.array([1.0 / (1.0 / a.radius + 1.0 / b.radius) for a, b in itertools.pairwise(beads)])
+    if scene.wall in ("same-material", "rigid"):
+        radius[-1] = beads[-1].radius
+    if scene.wall == "rigid":
+        modulus[-1] = beads[-1].young / (1 - beads[-1].poisson**2)
+    return modulus, radius
+
+
+def peak_pressures(scene: Scene, overlaps: np.ndarray) -> np.ndarray:
+    """Hertz's peak pressure p0 = (1/π)(6 F E*²/R*²)^{1/3} = (2E*/π)√(δ/R*) of contacts (N+1,) pressed by `overlaps`."""
+    modulus, radius = contact_geometry(scene)
+    return 2.0 * modulus / np.pi * np.sqrt(np.maximum(overlaps, 0.0) / radius)
+
+
+def overlap_warnings(scene: Scene, largest_overlap: float | np.ndarray) -> list[str]:
+    """Sentences for a chain whose contacts reached these overlaps [m], one number or one for each contact."""
+    overlaps = np.broadcast_to(np.asarray(largest_overlap, dtype=float), scene.N + 1)
+    found, largest = [], float(overlaps.max())
+    fraction = largest / min(b.radius for b in scene.beads)
+    if fraction > LARGEST_OVERLAP_FRACTION:
+        found.append(f"The largest overlap, {largest:.2e} m, is {100 * fraction:.1f} % of a bead's radius; "
+                     f"Hertz's law holds below about {100 * LARGEST_OVERLAP_FRACTION:.0f} %.")
+    pressures = peak_pressures(scene, overlaps)
+    worst = int(pressures.argmax())
+    if pressures[worst] > ONSET_OF_YIELD * YIELD_STRESS:
+        found.append(f"The peak pressure in contact {worst}, {1e-9 * pressures[worst]:.1f} GPa, is above "
+                     f"{1e-9 * ONSET_OF_YIELD * YIELD_STRESS:.1f} GPa, where hardened bearing steel begins to yield; "
+                     f"beyond it the contact is not elastic.")
+    return found
 
 
 def warnings(scene: Scene) -> list[str]:
     """Sentences known before anything is run: the drive amplitude and the preload already overlap the beads."""
-    return overlap_warnings(scene, max(scene.A0, float(scene.static_overlap().max())))
+    return overlap_warnings(scene, np.maximum(scene.A0, scene.static_overlap()))

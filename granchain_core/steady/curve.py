@@ -35,7 +35,7 @@ class CurvePoint:
     """The steady state at one frequency: largest forces [N], regime, relative error of the output force.
 
     Where the motion is not periodic the forces are the largest seen in the last periods and no error is claimed.
-    `failure` is a sentence if the numbers failed there; the forces are then NaN.
+    `failure` is a sentence if the numbers failed there, `status` the outcome's name; the forces are then NaN.
     """
 
     frequency: float
@@ -46,6 +46,7 @@ class CurvePoint:
     error_estimate: float | None
     state: State
     failure: str = ""
+    status: str = "done"
 
 
 @dataclass(eq=False)
@@ -111,7 +112,8 @@ def safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoin
     except NumbersFailed as failed:
         nothing = Regime("unsettled", None, None, None, 0)
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
-        return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, None, start or resting, failed.sentence)
+        return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, None, start or resting, failed.sentence,
+                          failed.status)
 
 
 def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray) -> list[Scene]:
@@ -216,7 +218,8 @@ def _points(scenes: _Shared, flag: np.ndarray) -> Iterator[CurvePoint]:
 def _from_lane(result: LaneResult) -> CurvePoint:
     tops = result.tops
     return CurvePoint(result.scene.f, float(tops[1]), float(tops[2]), float(tops[0]), result.regime,
-                      result.error_estimate, result.state, result.failure)
+                      result.error_estimate, result.state, result.failure,
+                      "not-finite" if result.failure else "done")
 
 
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: np.ndarray) -> list[CurvePoint]:

@@ -75,13 +75,20 @@ def look(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = R
     """
     seen = section.find(np.ascontiguousarray(strobes), longest, rounding, SETTLED_DISTANCE, slowest, np.zeros(2),
                         np.zeros(max(section.LEAST_WINDOW, 3 * longest)))
-    return in_words(seen, len(strobes) - 1)
+    return in_words(seen, len(strobes) - 1, rounding)
 
 
-def in_words(seen: Sequence[float] | np.ndarray, run: int) -> tuple[Regime, Approach | None]:
-    """The six numbers of section.find after `run` periods as a regime and what is approached."""
+def in_words(seen: Sequence[float] | np.ndarray, run: int,
+             rounding: float = ROUNDING) -> tuple[Regime, Approach | None]:
+    """The six numbers of section.find after `run` periods as a regime and what is approached.
+
+    Changes that are lost in rounding may still be those of a slow approach: the distance is no better known than
+    rounding·|μ|/(1 − |μ|).
+    """
     period, rate, distance, approached, its_rate, its_change = seen
     if period > 0:
+        if 0.0 < rate < 1.0:
+            distance = max(distance, rounding * rate / (1.0 - rate))
         return Regime("periodic", int(period), None if rate < 0.0 else float(rate), float(distance), run), None
     approach = Approach(int(approached), float(its_rate), float(its_change)) if approached else None
     return Regime("unsettled", None, None, None, run), approach

@@ -183,7 +183,10 @@ def live_picture(way: Settling, samples: int, began: float, origin: str, final: 
 
 
 def certified_picture(way: Settling, samples: int, began: float, origin: str) -> Settled:
-    """The periodic orbit by the certified method, with its error: integration plus distance from the orbit."""
+    """The periodic orbit by the certified method, with its error: integration plus distance from the orbit.
+
+    An error e of the n-period map moves its fixed point by e/(1 − |μ|).
+    """
     n = way.regime.period
     assert n is not None
     engine, distance = relax(way, way.scene.accuracy, samples)
@@ -199,8 +202,14 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     fine.counts.array += way.engine.counts.array + engine.counts.array + coarse.counts.array
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(way.regime, distance=distance)
+    integration /= 1.0 - slowness(way.regime)
     run = run_from(fine, record, 0, regime, integration + distance, cost)
     return Settled(run, regime, start, origin, False, True)
+
+
+def slowness(regime: Regime) -> float:
+    """The decay per orbit that bounds rest on: the multiplier seen, a half where none was."""
+    return min(0.999, regime.multiplier or 0.5)
 
 
 def certified_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
@@ -216,7 +225,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
     """
     scene, n = way.scene, way.regime.period
     assert n is not None
-    rate = min(0.999, way.regime.multiplier or 0.5)
+    rate = slowness(way.regime)
     setting = certified_setting(scene, accuracy, rate)
     engine = Engine(scene, setting, samples, stop=way.stop)
     engine.start(way.engine.state)

@@ -3,7 +3,7 @@
 /run    time (s), bead, contact; displacement, velocity, kinetic_energy (time, bead); force (time, contact);
         drive_displacement, input_force, output_force, output_force_elastic (time)
 /curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, error_estimate (frequency);
-        regime, period (frequency)
+        regime, status, period (frequency)
 The root carries schema version, scene, method, accuracy asked and reached, cost, versions and time of writing. A file
 is written under a temporary name, synced and renamed: there is never half a file under its own name.
 """
@@ -27,6 +27,7 @@ from ..errors import BadInput
 from ..quantities import QUANTITIES
 from ..result import Cost, Run
 from ..scene import Scene
+from ..scene.validity import overlap_warnings
 from ..steady.curve import Curve
 from ..steady.regime import Regime
 
@@ -51,7 +52,8 @@ def save(result: Run, path: str | Path) -> Path:
 
     def write(file: h5py.File) -> None:
         _provenance(file, result.scene, result.cost.method, result.error_estimate)
-        file.attrs["status"] = result.status
+        file.attrs["status"], file.attrs["start"] = result.status, result.start
+        file.attrs["warnings"] = json.dumps(overlap_warnings(result.scene, result.overlap.max(axis=0)))
         file.attrs["energy_residual"] = _or_nan(result.energy_residual)
         file.attrs["samples_per_period"] = result.samples
         file.attrs["cost"] = json.dumps(asdict(result.cost))
@@ -84,6 +86,8 @@ def save_curve(curve: Curve, path: str | Path) -> Path:
         _variable(group, "error_estimate", errors, ("frequency",), "1", "relative error of the output forces")
         periods = np.array([p.regime.period or 0 for p in curve.points])
         _variable(group, "period", periods, ("frequency",), "1", "period in drive periods, 0 where not periodic")
+        outcomes = np.array([p.status for p in curve.points], dtype=h5py.string_dtype())
+        _variable(group, "status", outcomes, ("frequency",), "", "done, or how the numbers failed")
         names = np.array([p.regime.name for p in curve.points], dtype=h5py.string_dtype())
         _variable(group, "regime", names, ("frequency",), "", "periodic, quasi-periodic, chaotic or unsettled")
 
@@ -118,7 +122,8 @@ def _read(path: str | Path) -> Run:
             raise BadInput(f"{path}: {name} has shape {arrays[name].shape}, expected {(rows, *width)}.")
     return Run(
         scene=scene, samples=int(attrs["samples_per_period"]),
-        status=str(attrs["status"]), regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
+        status=str(attrs["status"]), start=str(attrs.get("start", "rest")),
+        regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
         error_estimate=_or_none(attrs["accuracy_reached"]), energy_residual=_or_none(attrs["energy_residual"]),
         max_input_force=float(attrs["max_input_force"]), max_output_force=float(attrs["max_output_force"]),
         max_output_force_elastic=float(attrs["max_output_force_elastic"]), **arrays,

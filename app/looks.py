@@ -1,0 +1,38 @@
+"""How the pictures look: light, dark or projector, a kept colour scale, which curves are drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from .session import LOOKS
+
+if TYPE_CHECKING:
+    from .controller import Controller
+
+_INK = {"light": ("#14181f", 1.0), "dark": ("#eef1f6", 1.0), "projector": ("#000000", 1.5)}
+
+
+class Looks:
+    """The visitor's choices that compute nothing but, perhaps, another curve."""
+
+    def __init__(self, page: Controller) -> None:
+        self._page = page
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "look": self.choose, "lock": self._lock, "curve": self._curve, "curve-stop": lambda _: page.curves.stop(),
+            "curve-visible": lambda m: page.curves.visible(bool(m.get("value")), page.session.scene),
+        }
+
+    def choose(self, message: dict[str, Any]) -> None:
+        """Ink and line width of a look."""
+        look = message.get("value")
+        if look in LOOKS:
+            ink, thick = _INK[str(look)]
+            self._page.views.curve.ink(ink, thick)
+            self._page.views.trains.thicken(thick)
+
+    def _lock(self, message: dict[str, Any]) -> None:
+        self._page.views.energy.locked = bool(message.get("value"))
+
+    def _curve(self, message: dict[str, Any]) -> None:
+        self._page.curves.choose(str(message.get("name")), bool(message.get("value")), self._page.session.scene)

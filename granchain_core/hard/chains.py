@@ -1,0 +1,87 @@
+"""Chains that the hard cases need and scenes do not offer: without a driver, free at their ends, in scaled units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..integrate import Engine, Setting, State
+from ..kernels.effects.contact import Chain
+from ..kernels.effects.dissipation import LinearDashpot
+from ..kernels.effects.driver import Harmonic
+from ..kernels.effects.preload import Preload
+from ..kernels.effects.tension import NoTension
+from ..kernels.sampling import Samples
+from ..scene import Scene, scene
+
+#: Speed of two colliding beads in scaled units, m* = 1/2: contact time 3.2180655 (m*/K)^{2/5} v^{-1/5}.
+HERTZ_DURATION, HERTZ_FORCE = 3.2180655, 1.1432626
+
+
+def contact_time(speed: float, reduced_mass: float = 0.5, stiffness: float = 1.0) -> float:
+    """Duration of a loss-free Hertz collision."""
+    return HERTZ_DURATION * (reduced_mass / stiffness) ** 0.4 * speed**-0.2
+
+
+class Bench:
+    """Equal or unequal beads between a driver and a wall that stand still, K = m = 1, carried by `method`.
+
+    `ends` are the stiffnesses of the first and the last contact: with a first one of 0 there is no driver at all, a
+    last one of 0 leaves that end free as long as `law`, which acts in every contact, has no strength.
+    `time` is the length of one record of `samples` samples; displacements start at zero. With `static` the contacts
+    have these overlaps at rest (negative ones are gaps).
+    """
+
+    def __init__(self, beads: int, time: float, samples: int, law: Any = None, ends: tuple[float, float] = (1.0, 1.0),
+                 inverse_mass: Sequence[float] | None = None, stiffness: Sequence[float] | None = None,
+                 static: np.ndarray | None = None, cut: bool = False, method: str = "dop853",
+                 tolerance: float = 1e-13, refine: float = 1.0) -> None:
+        base: Scene = scene("sec2").evolve(N=beads)
+        rate = Engine(base, Setting("dop853", tolerance=1e-3)).lowered.scales.rate
+        self.engine = Engine(base.evolve(f=rate / time), Setting(method, refine, tolerance), samples)
+        lowered = self.engine.lowered
+        masses = np.zeros(beads + 2)
+        masses[1:-1] = 1.0 if inverse_mass is None else inverse_mass
+        springs = np.ones(beads + 1) if stiffness is None else np.array(stiffness, dtype=float)
+        springs[0], springs[-1] = ends[0] * springs[0], ends[1] * springs[-1]
+        slots = lowered.slots._replace(
+            chain=Chain(masses, springs), dissipation=LinearDashpot(0.0) if law is None else law,
+            driver=Harmonic(0.0, lowered.beta) if ends[0] > 0.0 else None, tension=NoTension(1) if cut else None,
+            preload=None if static is None else Preload(np.array(static, dtype=float)))
+        self.engine.lowered = replace(lowered, slots=slots)
+        self.engine.work = self.engine.work._replace(forces=self.engine.lowered.forces())
+        if not self.engine._adaptive:
+            self.engine.drive[:] = 0.0
+        self.masses = 1.0 / masses[1:-1]
+        self.springs = springs
+        self.static = np.zeros(beads + 1) if static is None else np.array(static, dtype=float)
+        self.samples = samples
+        self.time = np.linspace(0.0, time, samples + 1)
+
+    def throw(self, velocity: Sequence[float] | np.ndarray, displacement: np.ndarray | None = None) -> None:
+        """Start with these scaled velocities, from zero displacement or the one given."""
+        scales = self.engine.lowered.scales
+        start = np.zeros(len(self.masses)) if displacement is None else displacement
+        self.engine.start(State(start * scales.length, np.array(velocity, dtype=float) * scales.velocity))
+
+    def record(self, times: int = 1) -> Samples:
+        """Samples of `times` records in a row, scaled."""
+        return self.engine.record(self.samples * times)
+
+    def overlaps(self, displacement: np.ndarray) -> np.ndarray:
+        """Overlap of every contact (T, N+1); negative where there is a gap."""
+        ends = np.zeros((len(displacement), 1))
+        bodies = np.hstack([ends, displacement, ends])
+        return bodies[:, :-1] - bodies[:, 1:] + self.static
+
+    def energy(self, kept: Samples) -> np.ndarray:
+        """Kinetic and contact energy at every sample (T,)."""
+        pressed = np.maximum(self.overlaps(kept.displacement), 0.0)
+        return 0.5 * (self.masses * kept.velocity**2).sum(axis=1) + 0.4 * (self.springs * pressed**2.5).sum(axis=1)
+
+    def momentum(self, kept: Samples) -> np.ndarray:
+        """Momentum of all beads at every sample (T,)."""
+        return (self.masses * kept.velocity).sum(axis=1)

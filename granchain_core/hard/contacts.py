@@ -1,0 +1,166 @@
+"""Hard cases of contacts: brief ones, several at once, and collisions whose outcome is known."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..kernels.effects.dissipation import LinearDashpot
+from . import brushes
+from .case import Figure, Picture, Trace
+from .chains import HERTZ_DURATION, HERTZ_FORCE, Bench
+from .oracle import Plain, solved
+
+
+def brushed(quick: bool) -> list[Figure]:
+    """Random brushes: none missed, none invented, and the moments of contact exact."""
+    count = 4_000 if quick else 100_000
+    driver, thrown = (brushes.draw(count // 2, 11, True), brushes.draw(count // 2, 12, False))
+    by_driver, by_throw = brushes.run(driver, True), brushes.run(thrown, False)
+    wrong = len(brushes.missed(driver, by_driver)) + len(brushes.missed(thrown, by_throw))
+    touched, hit = driver[:, brushes.DEPTH] > 0.0, thrown[:, brushes.DEPTH] > 0.0
+    still = touched & (brushes.moved(driver) < 1e-10)
+    onset = max(by_driver[touched, brushes.ONSET_ERROR].max(), by_throw[hit, brushes.ONSET_ERROR].max())
+    return [
+        Figure(f"of {count} random brushes missed or invented", float(wrong), 0.0),
+        Figure("moment of the onset, in periods", float(onset), 1e-9),
+        Figure("moment of the release, in periods", float(by_driver[still, brushes.RELEASE_ERROR].max()), 1e-9),
+    ]
+
+
+def brushed_picture() -> Picture:
+    """Part of brushes that plain sampling sees, over the depth: 100 and 1000 looks a period, and ours."""
+    depths = np.linspace(-7.0, -2.0, 21)
+    cases = brushes.draw(2_000, 5, True)
+    cases[:, brushes.DEPTH] = np.abs(cases[:, brushes.DEPTH])
+    seen = brushes.run(cases, True)[:, brushes.ONSETS] == 1
+    logs = np.log10(cases[:, brushes.DEPTH])
+    ours = np.array([seen[np.abs(logs - d) < 0.25].mean() for d in depths])
+    traces = [Trace("granchain", ours)]
+    for looks in (100, 1000):
+        # a touch of depth d lasts 2·arccos(1 − d)/2π of a period, and is seen if a look falls into it
+        traces.append(Trace(f"{looks} steps a period", np.minimum(1.0, looks * np.arccos(1.0 - 10.0**depths) / np.pi)))
+    return Picture(depths, "depth of the touch in amplitudes, log10", "part that is seen", tuple(traces))
+
+
+# --- several at once --------------------------------------------------------------------------------------
+
+
+def mirrored(beads: int, time: float, tolerance: float = 1e-13) -> float:
+    """How far a chain thrown as its own mirror image is from that at the end, in amplitudes."""
+    bench = Bench(beads, time, 64, LinearDashpot(0.1), tolerance=tolerance)
+    velocity = np.random.default_rng(beads).uniform(-1.0, 1.0, beads)
+    bench.throw(velocity - velocity[::-1])
+    kept = bench.record()
+    return float(np.abs(kept.displacement + kept.displacement[:, ::-1]).max())
+
+
+def reordered(beads: int, time: float, seed: int) -> float:
+    """How far a chain is from its mirror image, in which simultaneous events are met in the other order.
+
+    Velocities are drawn from three values, so that collisions coincide without the whole being symmetric.
+    """
+    velocity = np.random.default_rng(seed).choice([-1.0, 0.0, 1.0], beads)
+    velocity[0] = 1.0
+    kept = []
+    for thrown in (velocity, -velocity[::-1]):
+        bench = Bench(beads, time, 64, LinearDashpot(0.1), tolerance=1e-14)
+        bench.throw(thrown)
+        kept.append(bench.record().displacement)
+    return float(np.abs(kept[0] + kept[1][:, ::-1]).max() / np.abs(kept[0]).max())
+
+
+def at_once(quick: bool) -> list[Figure]:
+    """Symmetry, and independence of the order in which events are met."""
+    symmetric = max(mirrored(n, 200.0 if quick else 2000.0, t) for n in (2, 5, 8) for t in (1e-5, 1e-9, 1e-13))
+    order = max(reordered(n, 60.0, seed) for n in (5, 8) for seed in range(4 if quick else 100))
+    return [Figure("departure from mirror symmetry, in amplitudes", symmetric, 1e-13),
+            Figure("change when events are met in the other order", order, 1e-12)]
+
+
+# --- collisions with a known outcome ----------------------------------------------------------------------
+
+
+def hertz(speed: float, stiffness: float) -> tuple[float, float, float]:
+    """Relative errors of duration, peak force and speed after a loss-free impact on the wall."""
+    duration = HERTZ_DURATION * stiffness**-0.4 * speed**-0.2
+    bench = Bench(1, 2.0 * duration, 4, ends=(0.0, stiffness), tolerance=1e-14)
+    bench.throw([speed])
+    kept = bench.record()
+    after = -float(kept.velocity[-1, 0])
+    lasted = bench.time[-1] + float(kept.displacement[-1, 0]) / after
+    peak = stiffness * float(kept.displacement[1, 0]) ** 1.5
+    return (abs(lasted / duration - 1.0), abs(peak / (HERTZ_FORCE * stiffness**0.4 * speed**1.2) - 1.0),
+            abs(after / speed - 1.0))
+
+
+def unequal(mass: float) -> float:
+    """Error of the velocities after a bead has met one of `mass` times its own, against the two conservation laws."""
+    bench = Bench(2, 8.0 * (1.0 + mass) ** 0.4, 4, ends=(0.0, 0.0), inverse_mass=[1.0, 1.0 / mass], tolerance=1e-14)
+    bench.throw([1.0, 0.0])
+    found = bench.record().velocity[-1]
+    return float(np.abs(found - [(1.0 - mass) / (1.0 + mass), 2.0 / (1.0 + mass)]).max())
+
+
+def free_pulse(beads: int, inverse_mass: list[float], time: float = 20.0) -> float:
+    """Error of a free chain whose first bead is thrown, against SciPy restarted at every event, in amplitudes."""
+    bench = Bench(beads, time, 32, ends=(0.0, 0.0), inverse_mass=inverse_mass, tolerance=1e-14)
+    bench.throw(np.eye(beads)[0])
+    ours = bench.record().displacement
+    chain = Plain(bench.masses, bench.springs, bench.static, 0.0, 0.0, 2.0 * np.pi / time)
+    apart = np.full(beads + 1, 0.0)
+    apart[[0, -1]] = -1e6
+    true = solved(Plain(chain.masses, chain.springs, apart, 0.0, 0.0, chain.beta),
+                  np.concatenate([np.zeros(beads), np.eye(beads)[0]]), bench.time, rtol=3e-14)[:, :beads]
+    return float(np.abs(ours - true).max() / np.abs(true).max())
+
+
+def solitary(beads: int) -> tuple[float, float]:
+    """Errors of the solitary wave's speed against 0.9055158 F^{1/6} and 0.9074701 v^{1/5}, half way down the chain."""
+    bench = Bench(beads, float(beads), 64 * beads, ends=(0.0, 1.0), tolerance=1e-11)
+    bench.throw(np.eye(beads)[0])
+    kept = bench.record()
+    first, second = beads // 2, beads // 2 + beads // 6
+    tops = [_top(bench.time, kept.force[:, c]) for c in (first, second)]
+    speed = (second - first) / (tops[1][0] - tops[0][0])
+    force = 0.5 * (tops[0][1] + tops[1][1])
+    velocity = _top(bench.time, kept.velocity[:, (first + second) // 2])[1]
+    return abs(speed / (0.9055158 * force ** (1 / 6)) - 1.0), abs(speed / (0.9074701 * velocity**0.2) - 1.0)
+
+
+def _top(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
+    """Time and height of a smooth pulse: the quartic through the highest sample and its neighbours."""
+    i, h = int(values.argmax()), time[1] - time[0]
+    fit = np.polynomial.Polynomial.fit(np.arange(-2.0, 3.0), values[i - 2 : i + 3], 4)
+    roots = fit.deriv().roots()
+    inside = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots.real) < 1.0)].real
+    where = float(inside[np.argmin(np.abs(inside))])
+    return time[i] + where * h, float(fit(where))
+
+
+def collisions(quick: bool) -> list[Figure]:
+    """Hertz collision, unequal beads, cradle, a bead on a chain, solitary wave."""
+    duration, peak, loss = np.max([hertz(v, s) for v in (0.01, 1.0, 10.0) for s in (1.0, 2.0**1.5)], axis=0)
+    masses = (1e-3, 0.5, 1.0, 3.0, 1e3)
+    by_force, by_speed = solitary(60 if quick else 120)
+    return [
+        Figure("Hertz collision, duration", float(duration), 1e-7, "its constant is known to eight digits"),
+        Figure("Hertz collision, peak force", float(peak), 1e-7, "its constant is known to eight digits"),
+        Figure("Hertz collision, speed after", float(loss), 1e-10),
+        Figure("unequal beads, velocities after", max(unequal(m) for m in masses), 1e-10),
+        Figure("Newton's cradle of five beads", free_pulse(5, [1.0] * 5), 1e-9),
+        Figure("heavy bead on a chain", free_pulse(5, [0.1, *([1.0] * 4)]), 1e-9),
+        Figure("light bead on a chain", free_pulse(5, [10.0, *([1.0] * 4)]), 1e-9),
+        Figure("solitary wave, speed by its force", by_force, 1e-7, "its constant is known to seven digits"),
+        Figure("solitary wave, speed by its velocity", by_speed, 1e-7, "its constant is known to seven digits"),
+    ]
+
+
+def collisions_picture() -> Picture:
+    """Velocities of a cradle's first and last bead, and where plain RK4 with ten steps a contact sends the last one."""
+    traces = []
+    for method, refine, label in (("dop853", 1.0, "granchain"), ("rk4-naive", 0.5, "plain RK4, ten steps a contact")):
+        bench = Bench(5, 20.0, 100, ends=(1e-9, 1e-9), method=method, refine=refine)
+        bench.throw(np.eye(5)[0])
+        velocity = bench.record().velocity
+        traces += [Trace(f"{label}: bead {i}", velocity[:, i - 1]) for i in (4, 5)]
+    return Picture(bench.time, "time", "velocity over the first bead's", tuple(traces))

@@ -1,0 +1,119 @@
+"""Hard cases of damping: dashpots far too strong for explicit steps, and every law's restitution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..errors import NumbersFailed
+from ..integrate import Engine, Setting
+from ..kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from ..run import run
+from ..scene import Scene, scene
+from .case import Figure, Picture, Trace
+from .chains import Bench, contact_time
+from .oracle import Plain, restitution, solved
+
+
+def overdamped(times: float, beads: int = 3) -> Scene:
+    """The rig with so many times its damping."""
+    return scene("rig").evolve(N=beads, D=35.4 * times, f=160.0, accuracy=1e-7)
+
+
+def implicit_error(chosen: Scene, samples: int = 16) -> float:
+    """Largest difference of `run` from Radau in (u, v) in the first period from rest, over the largest displacement."""
+    ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
+    chain = Plain.of(chosen)
+    times = chain.period * np.arange(samples + 1) / samples
+    true = solved(chain, np.zeros(2 * chosen.N), times, "Radau", 1e-10)[:, : chosen.N]
+    return float(np.abs(ours - true).max() / np.abs(true).max())
+
+
+def strong_damping(quick: bool) -> list[Figure]:
+    """Error against an implicit reference from the rig's damping to 10^4 times it."""
+    return [Figure(f"error at {t:g} times the rig's damping", implicit_error(overdamped(t)), 1e-6)
+            for t in ((1e2, 1e4) if quick else (1.0, 1e1, 1e2, 1e3, 1e4))]
+
+
+def strong_damping_picture() -> Picture:
+    """First bead at 10^4 times the rig's damping: ours, and plain RK4 with two and a half times our step."""
+    chosen, samples = overdamped(1e4), 100
+    ours = run(chosen, periods=0, record=1, samples=samples).displacement[:, 0] / chosen.A0
+    naive, kept = Engine(chosen, Setting("rk4-naive", 0.4), samples), np.full(samples + 1, np.nan)
+    for row in range(samples):
+        try:
+            kept[row : row + 2] = naive.record(1).displacement[:, 0]
+        except NumbersFailed:
+            break
+    kept[np.abs(kept) > 3.0] = np.nan
+    return Picture(np.arange(samples + 1) / samples, "drive periods", "first bead, in amplitudes",
+                   (Trace("granchain", ours), Trace("plain RK4, until it explodes", kept)))
+
+
+# --- restitution ------------------------------------------------------------------------------------------
+
+_LAWS = {"linear": LinearDashpot, "tsuji": Tsuji, "kuwabara-kono": KuwabaraKono}
+
+
+def bounce(law: str, strength: float, cut: bool, speed: float = 1.0) -> float:
+    """Restitution of a bead thrown against the wall."""
+    time = 4.0 * contact_time(speed, 1.0) * (1.0 + 3.0 * strength)
+    bench = Bench(1, time, 4, _LAWS[law](strength), ends=(0.0, 1.0), cut=cut, tolerance=1e-15)
+    bench.throw([speed])
+    return float(-bench.record().velocity[-1, 0]) / speed
+
+
+def tsuji_strength(e: float) -> float:
+    """The coefficient with which Tsuji's law has restitution e at every speed."""
+    loss = -np.log(e)
+    return float(np.sqrt(5.0) * loss / np.hypot(np.pi, loss))
+
+
+def restitutions(quick: bool) -> list[Figure]:
+    """Every law with tension allowed and cut, and what the cut is for."""
+    strengths = (0.1, 0.6) if quick else (0.01, 0.1, 0.3, 0.6, 1.0)
+    exact = max(abs(bounce("tsuji", tsuji_strength(e), False, v) - e)
+                for e in (0.95, 0.7, 0.3) for v in ((1.0,) if quick else (0.01, 1.0, 10.0)))
+    found = [Figure("Tsuji, tension allowed, closed form", exact, 1e-8)]
+    for law in _LAWS:
+        for cut in (False, True):
+            worst = max(abs(bounce(law, s, cut) - restitution(law, s, cut)) for s in strengths)
+            found.append(Figure(f"{law}, tension {'cut' if cut else 'allowed'}, quadrature", worst, 1e-8))
+    return [*found, *_pulls(2 if quick else 20)]
+
+
+def _pulls(periods: int) -> list[Figure]:
+    """The largest pull of any contact over the largest push, cut; and that without the cut there is one."""
+    forces = {}
+    for tension in ("cut", "allowed"):
+        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), Setting("dop853", tolerance=1e-10), 256)
+        force = engine.record(256 * periods).force
+        forces[tension] = float(max(0.0, -force.min()) / force.max())
+    return [Figure("largest pull of a cut contact over its largest push", forces["cut"], 1e-14),
+            Figure("least pull expected where tension is allowed, over the pull found",
+                   0.01 / forces["allowed"] if forces["allowed"] > 0.0 else np.inf, 1.0)]
+
+
+def naive_bounce(strength: float, steps: float) -> float:
+    """The restitution with the dashpot that plain RK4 in (u, v) finds with so many steps in a contact."""
+    h, state = contact_time(1.0, 1.0) / steps, np.array([-0.3 * contact_time(1.0, 1.0) / steps, 1.0])
+
+    def slope(y: np.ndarray) -> np.ndarray:
+        return np.array([y[1], -(y[0] ** 1.5 + strength * y[1]) if y[0] > 0.0 else 0.0])
+
+    while state[0] > 0.0 or state[1] > 0.0:
+        k1 = slope(state)
+        k2 = slope(state + 0.5 * h * k1)
+        k3 = slope(state + 0.5 * h * k2)
+        state = state + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + slope(state + h * k3))
+    return float(-state[1])
+
+
+def restitution_picture() -> Picture:
+    """Error of the restitution over steps in a contact: ours at its certified setting, and plain RK4."""
+    steps = np.array([10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0])
+    true = restitution("linear", 0.3, False)
+    ours = max(1e-16, abs(bounce("linear", 0.3, False) - true))
+    naive = [abs(naive_bounce(0.3, n) - true) for n in steps]
+    return Picture(np.log10(steps), "steps in a contact, log10", "error of the restitution, log10",
+                   (Trace("granchain, certified", np.full(len(steps), np.log10(ours))),
+                    Trace("plain RK4", np.log10(naive))))

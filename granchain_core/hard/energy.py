@@ -1,0 +1,175 @@
+"""Hard cases of energy and momentum: nothing is lost where nothing can be, and accounts close."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..integrate import Engine, Setting, State
+from ..kernels.effects.driver import Harmonic
+from ..orbits.flow import StroboscopicMap
+from ..scene import Scene, scene
+from ..steady.curve import iter_curve
+from ..steady.lyapunov import exponents
+from .case import Figure, Picture, Trace
+from .chains import Bench, contact_time
+
+_BEADS = 7
+
+
+def _thrown(seed: int) -> np.ndarray:
+    """Velocities of a confined chain, the fastest bead at 1."""
+    velocity = np.random.default_rng(seed).uniform(-1.0, 1.0, _BEADS)
+    return velocity / np.abs(velocity).max()
+
+
+def confined(times: int, method: str, refine: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """Time in shortest contact times and relative change of energy of a chain between two walls, without damping."""
+    shortest = contact_time(2.0)
+    bench = Bench(_BEADS, 10.0 * shortest, 8, method=method, tolerance=1e-16, refine=refine)
+    bench.throw(_thrown(1))
+    energy = bench.energy(bench.record(times // 10))
+    return np.arange(len(energy)) * 10.0 / 8.0, energy / energy[0] - 1.0
+
+
+def free_chain(quick: bool) -> list[Figure]:
+    """Energy, its trend and momentum without damping."""
+    times = 2_000 if quick else 10_000
+    clock, change = confined(times, "dop853")
+    slope = np.polyfit(clock, change, 1)[0]
+    bench = Bench(11, 40.0, 64, ends=(0.0, 0.0), tolerance=1e-14)
+    bench.throw(np.eye(11)[0])
+    kept = bench.record(10)
+    momentum, energy = bench.momentum(kept), bench.energy(kept)
+    return [
+        Figure(f"energy over {times} shortest contact times", float(np.abs(change).max()), 1e-9),
+        Figure("trend of the energy, its straight line over the whole run", float(abs(slope) * clock[-1]), 1e-11),
+        Figure("energy of the free chain after the impact", float(np.abs(energy / energy[0] - 1.0).max()), 1e-9),
+        Figure("momentum of the free chain", float(np.abs(momentum / momentum[0] - 1.0).max()), 1e-13),
+    ]
+
+
+def free_chain_picture() -> Picture:
+    """Change of energy: ours, a symplectic method's and plain RK4's with 40 steps in the shortest contact."""
+    clock, ours = confined(1_000, "dop853")
+    finer = contact_time(2.0) / 40.0
+    traces = [Trace("granchain, certified", ours)]
+    for method, label in (("verlet-naive", "velocity Verlet, symplectic"), ("rk4-naive", "plain RK4")):
+        traces.append(Trace(label, confined(1_000, method, 0.2 / finer)[1]))
+    return Picture(clock, "time in shortest contact times", "change of energy over energy", tuple(traces))
+
+
+# --- driven without damping -------------------------------------------------------------------------------
+
+
+def undamped(frequency: float = 340.0, beads: int = 11) -> Scene:
+    """Section 2's chain without any damping: a Hamiltonian system, which has no attractors."""
+    return scene("sec2").evolve(dissipation="none", f=frequency, N=beads)
+
+
+def driven_chaos(quick: bool) -> list[Figure]:
+    """Energy account, Lyapunov exponent by two methods, and no periodic verdict."""
+    engine = Engine(undamped(), Setting("dop853", tolerance=1e-14), 1, balance=True)
+    energy = engine.record(20 if quick else 100).energy
+    stored, work, lost = (energy - energy[0]).T
+    largest = max(np.abs(work).max(), np.abs(energy[:, 0]).max())
+    count = 16 if quick else 200
+    points = list(iter_curve(undamped(), np.linspace(200.0, 1200.0, count)))
+    periodic = sum(p.regime.name == "periodic" for p in points)
+    difference, shadow, tangent = two_exponents(15 if quick else 100)
+    return [
+        Figure("energy balance", float(np.abs(work - lost - stored).max() / largest), 1e-8),
+        Figure("Lyapunov exponents of two methods, difference over their stated errors", difference, 2.0,
+               f"per period {shadow[0]:.3f} ± {shadow[1]:.3f} by a shadow, {tangent[0]:.3f} ± {tangent[1]:.3f} else"),
+        Figure(f"of {count} undamped motions called periodic", float(periodic), 0.0),
+    ]
+
+
+def two_exponents(blocks: int) -> tuple[float, tuple[float, float], tuple[float, float]]:
+    """The exponent of three undamped beads by a shadow trajectory and by the map's derivative, each ± standard error.
+
+    Returns their difference over the combined error, and both.
+    """
+    chosen = undamped(1000.0, 3)
+    engine = Engine(chosen, Setting("rk4-split"), 1)
+    engine.periods(100)
+    strobe = StroboscopicMap(chosen, 1)
+    x = strobe.inner(engine.y)
+    found, _ = exponents(engine, blocks, 10)
+    vector = np.ones(len(x)) / np.sqrt(len(x))
+    growth = np.zeros((blocks + 1) * 10)
+    for p in range(len(growth)):
+        flow = strobe(x)
+        x, vector = flow.end, flow.derivative @ vector
+        growth[p] = np.log(np.linalg.norm(vector))
+        vector /= np.linalg.norm(vector)
+    one, two = _mean(found), _mean(growth[10:].reshape(blocks, 10).mean(axis=1))
+    return abs(one[0] - two[0]) / float(np.hypot(one[1], two[1])), one, two
+
+
+def _mean(values: np.ndarray) -> tuple[float, float]:
+    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(len(values)))
+
+
+def chaos_picture() -> Picture:
+    """Strobes of the last bead: two starts that differ by 1e-12 of an amplitude part, and no period is there."""
+    chosen = undamped(beads=5)
+    traces = []
+    for label, nudge in (("from rest", 0.0), ("from 1e-12 of an amplitude beside it", 1e-12)):
+        engine = Engine(chosen, Setting("dop853", tolerance=1e-13), 1)
+        engine.start(State(np.array([nudge * chosen.A0, 0.0, 0.0, 0.0, 0.0]), np.zeros(5)))
+        traces.append(Trace(label, engine.periods(60)[0][:, 0, -1]))
+    return Picture(np.arange(61), "drive period", "last bead at phase 0, in amplitudes", tuple(traces))
+
+
+# --- drives that are switched -----------------------------------------------------------------------------
+
+#: Samples a period: Simpson's rule misses 0.0024 v^{3/2} h^{5/2} beside an opening or closing contact, 1e-11 here.
+_SWITCHED = 1 << 16
+
+
+def _segment(chosen: Scene, state: State, amplitude: float, samples: int) -> tuple[State, float, float]:
+    """Carry `state` through `samples` samples with the driver's amplitude times `amplitude`.
+
+    Returns the state, the impulse of driver less wall [N s], the largest momentum on the way [N s].
+    """
+    engine = Engine(chosen, Setting("dop853", tolerance=1e-13), _SWITCHED)
+    slots = engine.lowered.slots
+    engine.lowered = replace(engine.lowered, slots=slots._replace(driver=Harmonic(amplitude, engine.lowered.beta)))
+    engine.start(state)
+    phase = state.phase
+    kept = engine.record(samples)
+    scales, masses = engine.lowered.scales, chosen.masses()
+    # the dashpot's impulse is that of an exact derivative, D·[δ]_+, and only the elastic one needs a quadrature
+    ends = np.maximum(np.stack([amplitude * np.sin(2.0 * np.pi * (phase + np.arange(samples + 1) / _SWITCHED))
+                                - kept.displacement[:, 0], kept.displacement[:, -1]]), 0.0)
+    push = (ends[0] ** 1.5 - chosen.wall_factor * ends[1] ** 1.5) * scales.force
+    spacing = chosen.period / _SWITCHED
+    impulse = spacing / 3.0 * (push[0] + 4.0 * push[1::2].sum() + 2.0 * push[2:-1:2].sum() + push[-1])
+    dashpot = chosen.D * scales.length * (ends[0] - ends[1])
+    impulse += dashpot[-1] - dashpot[0]
+    largest = float(np.abs((masses * kept.velocity * scales.velocity).sum(axis=1)).max())
+    return engine.state, float(impulse), largest
+
+
+def switched(steps: list[tuple[float, float, int]], phase: float, beads: int = 4) -> float:
+    """Change of momentum less impulse over the largest momentum, for a drive of (frequency, amplitude, samples)."""
+    base = scene("sec2").evolve(N=beads, D=60.0)
+    state, total, largest = State(np.zeros(beads), np.zeros(beads), phase), 0.0, 0.0
+    for frequency, amplitude, samples in steps:
+        state, impulse, top = _segment(base.evolve(f=frequency), state, amplitude, samples)
+        total, largest = total + impulse, max(largest, top)
+    return abs(float((base.masses() * state.velocity).sum()) - total) / largest
+
+
+def switched_drives(quick: bool) -> list[Figure]:
+    """Impulse balance of a jump, a ramp, a chirp and a stop."""
+    half, whole, bar = _SWITCHED // 2, _SWITCHED, 1e-9
+    count = 6 if quick else 40
+    return [
+        Figure("jump", switched([(340.0, 1.0, whole)], 0.25), bar),
+        Figure("ramp", switched([(340.0, (i + 1) / count, half) for i in range(count)], 0.0), bar),
+        Figure("chirp", switched([(200.0 * 1.1**i, 1.0, half) for i in range(count)], 0.0), bar),
+        Figure("stop", switched([(340.0, 1.0, whole), (340.0, 0.0, whole)], 0.0), bar),
+    ]

@@ -1,0 +1,233 @@
+"""Hard cases of size: the smallest and largest amplitudes, frequencies, chains, masses and preloads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..integrate import Engine, Setting, State
+from ..kernels.effects.dissipation import LinearDashpot
+from ..kernels.effects.driver import Harmonic
+from ..run import run
+from ..scene import Scene, scene
+from .case import Figure, Picture, Trace
+from .oracle import Plain, solved
+
+
+def scaled_difference(frequency: float, setting: Setting, times: tuple[float, ...]) -> float:
+    """How far scaled motions of (sA0, s^{1/4} f, s^{1/4} D) are from that of s = 1, over the largest displacement."""
+    base = scene("sec2").evolve(A0=1e-8, N=5, kappa=0.002, f=frequency)
+    true = Engine(base, setting, 16).record(16).displacement
+    worst = 0.0
+    for s in times:
+        other = base.evolve(A0=s * base.A0, f=s**0.25 * base.f, D=s**0.25 * base.D, kappa=0.002)
+        worst = max(worst, float(np.abs(Engine(other, setting, 16).record(16).displacement - true).max()))
+    return worst / float(np.abs(true).max())
+
+
+def statics_error(frequency: float) -> float:
+    """How far a slowly driven, pressed chain is from statics over one period, in drive amplitudes.
+
+    All contacts carry the same force F, and their overlaps add up: Σ(F/K_c)^{2/3} = Σ(F0/K_c)^{2/3} + u_0.
+    """
+    chosen = scene("sec2").evolve(F0=10.0, N=5, D=3.0, f=frequency, accuracy=1e-7)
+    found = run(chosen, periods=1, record=1, samples=16)
+    soft = chosen.contact_stiffness() ** (-2.0 / 3.0)
+    rest = float(chosen.static_overlap().sum())
+    overlap = (rest + found.drive_displacement[:, None]) * soft / soft.sum()
+    true = found.drive_displacement[:, None] - np.cumsum(overlap - chosen.static_overlap(), axis=1)[:, :-1]
+    return float(np.abs(found.displacement - true).max()) / chosen.A0
+
+
+def lattice_error(ratio: float) -> float:
+    """How far a weakly driven, pressed chain above its cut-off is from the linear lattice, in drive amplitudes.
+
+    The answer of the linear lattice is Im(U e^{iωt}) with U from a complex tridiagonal system.
+    """
+    base = scene("sec2").evolve(F0=10.0, N=8, A0=1e-12, D=200.0, accuracy=1e-7)
+    driven = base.evolve(f=min(1e6, ratio * cut_off(base)))
+    # the slowest mode decays at 400 a second; after 0.06 s e^-24 of it is left
+    found = run(driven, periods=int(0.06 * driven.f), record=1, samples=16)
+    omega = 2.0 * np.pi * driven.f
+    slope = 1.5 * base.contact_stiffness() * np.sqrt(base.static_overlap()) + 1j * omega * base.D
+    answer = np.linalg.solve(_tridiagonal(slope) - omega**2 * np.diag(base.masses()), np.eye(8)[0] * slope[0] * base.A0)
+    expected = np.imag(np.outer(np.exp(2j * np.pi * np.arange(17) / 16), answer))
+    return float(np.abs(found.displacement - expected).max()) / base.A0
+
+
+def cut_off(chosen: Scene) -> float:
+    """Highest frequency of small waves, (1/π)√(1.5 K^{2/3} F0^{1/3}/m) [Hz]."""
+    return float(np.sqrt(1.5 * chosen.K ** (2 / 3) * chosen.F0 ** (1 / 3) / chosen.bead(1).mass) / np.pi)
+
+
+def _tridiagonal(slope: np.ndarray) -> np.ndarray:
+    return np.diag(slope[:-1] + slope[1:]) - np.diag(slope[1:-1], 1) - np.diag(slope[1:-1], -1)
+
+
+def amplitudes(quick: bool) -> list[Figure]:
+    """Scaling, statics and the stop band."""
+    times = (1e-4, 1e4) if quick else tuple(10.0**p for p in range(-4, 5))
+    drives = (340.0,) if quick else (10.0, 340.0, 3000.0, 1e5)
+    fixed = max(scaled_difference(f, Setting("rk4-split", 2.0), times) for f in drives)
+    certified = max(scaled_difference(f, Setting("dop853", 1.0, 1e-15), times) for f in drives)
+    return [
+        Figure("scaling from 1e-12 to 1e-4 m, fixed steps", fixed, 1e-12),
+        Figure("scaling from 1e-12 to 1e-4 m, certified", certified, 1e-12),
+        Figure("statics at 1 Hz" if quick else "statics at 0.1 Hz", statics_error(1.0 if quick else 0.1), 1e-6),
+        Figure("stop band, a quarter above the cut-off", lattice_error(1.25), 1e-6),
+        Figure("stop band, 100 kHz" if quick else "stop band, 1 MHz", lattice_error(12.0 if quick else 1e3), 1e-6),
+    ]
+
+
+def amplitudes_picture() -> Picture:
+    """First bead driven at 1e-9 m: ours, and SciPy's solve_ivp in metres with its default tolerances."""
+    from scipy.integrate import solve_ivp
+
+    chosen = scene("sec2").evolve(A0=1e-9, N=3, f=340.0 * 0.002**0.25)
+    ours = run(chosen, periods=0, record=2, samples=100).displacement[:, 0] / chosen.A0
+    stiffness, mass = chosen.contact_stiffness(), chosen.masses()
+
+    def slope(t: float, state: np.ndarray) -> np.ndarray:
+        angle = 2.0 * np.pi * chosen.f * t
+        u = np.concatenate([[chosen.A0 * np.sin(angle)], state[:3], [0.0]])
+        v = np.concatenate([[chosen.A0 * 2.0 * np.pi * chosen.f * np.cos(angle)], state[3:], [0.0]])
+        gap, rate = u[:-1] - u[1:], v[:-1] - v[1:]
+        force = np.where(gap > 0.0, stiffness * np.abs(gap) ** 1.5 + chosen.D * rate, 0.0)
+        return np.concatenate([state[3:], (force[:-1] - force[1:]) / mass])
+
+    times = np.linspace(0.0, 2.0 * chosen.period, 201)
+    naive = solve_ivp(slope, (0.0, times[-1]), np.zeros(6), t_eval=times).y[0] / chosen.A0
+    return Picture(times / chosen.period, "drive periods", "first bead, in amplitudes",
+                   (Trace("granchain", ours), Trace("SciPy solve_ivp, default tolerances", naive)))
+
+
+# --- chains of every length, masses and stiffnesses apart ---------------------------------------------------
+
+
+def plain_error(chosen: Scene, samples: int = 16, method: str = "DOP853") -> float:
+    """Largest difference of `run` from SciPy restarted at every contact event, over the first period from rest."""
+    ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
+    chain = Plain.of(chosen)
+    times = chain.period * np.arange(samples + 1) / samples
+    true = solved(chain, np.zeros(2 * chosen.N), times, method, 1e-11)[:, : chosen.N]
+    return float(np.abs(ours - true).max() / np.abs(true).max())
+
+
+def long_chain_error(beads: int) -> float:
+    """Largest difference of two methods on a long chain with one moving front, over the largest displacement."""
+    chosen = scene("sec2").evolve(N=beads, f=3000.0)
+    ours = Engine(chosen, Setting("rk4-split", 8.0), 8).record(16).displacement
+    true = Engine(chosen, Setting("dop853", 1.0, 1e-12), 8).record(16).displacement
+    return float(np.abs(ours - true).max() / np.abs(true).max())
+
+
+def cost_growth(beads: int, rounds: int = 5) -> float:
+    """Seconds per step and bead of a long chain over those of one of 100 beads, by turns, the fastest of each."""
+    import time
+
+    engines = [Engine(scene("sec2").evolve(N=n, f=3000.0, F0=1.0), Setting("rk4-split"), 1) for n in (100, beads)]
+    best = [np.inf, np.inf]
+    for _ in range(rounds):
+        for i, engine in enumerate(engines):
+            before, began = engine.counts.steps, time.perf_counter()
+            engine.periods(max(1, 2000 // engine.lowered.beads))
+            spent = time.perf_counter() - began
+            best[i] = min(best[i], spent / (engine.counts.steps - before) / engine.lowered.beads)
+    return best[1] / best[0]
+
+
+def unequal(masses: dict[int, float], beads: int, modulus: float = 1.0) -> Scene:
+    """Section 2's chain with some masses multiplied, and bead 2's Young's modulus by `modulus`."""
+    base = scene("sec2").evolve(N=beads, accuracy=1e-7, f=1000.0)
+    steel = base.bead(1)
+    changed = {place: replace(steel, mass=times * steel.mass) for place, times in masses.items()}
+    if modulus != 1.0:
+        changed[2] = replace(changed.get(2, steel), young=modulus * steel.young)
+    return replace(base, impurities=tuple(changed.items()))
+
+
+def sizes(quick: bool) -> list[Figure]:
+    """One bead, two, ten thousand; a mass and a stiffness a million apart."""
+    found = [
+        Figure("error of one bead", plain_error(scene("sec2").evolve(N=1, accuracy=1e-7)), 1e-6),
+        Figure("error of two beads", plain_error(scene("sec2").evolve(N=2, accuracy=1e-7)), 1e-6),
+        Figure("error with a bead of 10^6 times the mass", plain_error(unequal({2: 1e6}, 3)), 1e-6),
+        Figure("error with beads of 10^3 and 10^-3 times the mass", plain_error(unequal({2: 1e3, 3: 1e-3}, 4)), 1e-6),
+        Figure("error with one soft bead, 10^-6 of the modulus", plain_error(unequal({}, 3, 1e-6)), 1e-6),
+    ]
+    beads = 1_000 if quick else 10_000
+    return [*found, Figure(f"error of {beads} beads, two methods", long_chain_error(beads), 1e-6),
+            Figure(f"time per bead and step, {beads} beads over 100", cost_growth(beads, 3 if quick else 10), 2.0)]
+
+
+# --- preload ----------------------------------------------------------------------------------------------
+
+
+def mode(chosen: Scene, number: int) -> tuple[float, np.ndarray]:
+    """Frequency [Hz] and shape of a small wave about the pressed rest, from the linear eigenvalue problem."""
+    slope = 1.5 * chosen.contact_stiffness() * np.sqrt(chosen.static_overlap())
+    root = 1.0 / np.sqrt(chosen.masses())
+    squares, shapes = np.linalg.eigh(root[:, None] * _tridiagonal(slope) * root)
+    shape = root * shapes[:, number]
+    return float(np.sqrt(squares[number]) / (2.0 * np.pi)), shape / np.abs(shape).max()
+
+
+def swing(chosen: Scene, frequency: float, shape: np.ndarray, amplitude: float, periods: int = 3) -> np.ndarray:
+    """Displacements over the amplitude (49, N) of a bead chain let go from a mode's shape, driver at rest, undamped."""
+    engine = Engine(chosen.evolve(f=frequency / periods), Setting("dop853", 1.0, 1e-15), 48)
+    lowered = engine.lowered
+    slots = lowered.slots._replace(driver=Harmonic(0.0, lowered.beta), dissipation=LinearDashpot(0.0))
+    engine.lowered = replace(lowered, slots=slots)
+    engine.start(State(amplitude * shape, np.zeros(chosen.N)))
+    return engine.record(48).displacement * lowered.scales.length / amplitude
+
+
+def mode_errors(preload: float, number: int, beads: int = 11) -> tuple[float, float]:
+    """Error of a linear mode's swing with the even part of the answer taken off, and the growth of the whole
+    deviation from an amplitude to ten times it, less 10.
+
+    The force's next term is quadratic: half the difference of a swing and its opposite is linear to a²; what is left
+    of a hundred-thousandth of the overlap is 1e-10.
+    """
+    chosen = scene("sec2").evolve(F0=preload, N=beads)
+    chosen = chosen.evolve(A0=min(1e-4, float(chosen.static_overlap()[0])))  # the unit of length, the driver rests
+    frequency, shape = mode(chosen, number)
+    static = float(chosen.static_overlap()[0])
+    linear = np.outer(np.cos(2.0 * np.pi * 3.0 * np.arange(49) / 48.0), shape)
+    there, back = (swing(chosen, frequency, sign * shape, 1e-5 * static) for sign in (1.0, -1.0))
+    odd = 0.5 * (there - back)
+    deviations = [float(np.abs(swing(chosen, frequency, shape, a * static) - linear).max()) for a in (1e-4, 1e-3)]
+    return float(np.abs(odd - linear).max()), abs(deviations[1] / deviations[0] / 10.0 - 1.0)
+
+
+def cut_off_error(beads: int) -> float:
+    """How far the highest mode that the chain swings in is from f_c cos(π/2(N+1)), as a part of it.
+
+    A wrong frequency shows as a phase at the end of the swing: the chain is let go in the formula's mode.
+    """
+    chosen = scene("sec2").evolve(F0=10.0, N=beads)
+    place = np.arange(1, beads + 1)
+    shape = np.sin(beads * np.pi * place / (beads + 1))
+    frequency = cut_off(chosen) * np.cos(np.pi / (2.0 * (beads + 1)))
+    static, periods = float(chosen.static_overlap()[0]), 20
+    ends = [swing(chosen, frequency, sign * shape, 1e-5 * static, periods)[-2:] for sign in (1.0, -1.0)]
+    odd = 0.5 * (ends[0] - ends[1])
+    # 5/12 of the mode's period before the end: there cos is steep, and its argument is the phase
+    found = float(odd[0] @ shape / (shape @ shape))
+    angle = 2.0 * np.pi * periods * 47.0 / 48.0
+    return abs(found - np.cos(angle)) / abs(np.sin(angle)) / angle
+
+
+def preloads(quick: bool) -> list[Figure]:
+    """Linear modes from a millionth of a newton to ten thousand, and the limit without preload."""
+    forces = (1e-6, 10.0) if quick else (1e-6, 1e-3, 1.0, 10.0, 100.0, 1e4)
+    errors = [mode_errors(f, n) for f in forces for n in (0, 10)]
+    weak = (1e-9,) if quick else (1e-12, 1e-9, 1e-6)
+    limit = max(plain_error(scene("sec2").evolve(N=3, F0=f, accuracy=1e-7)) for f in weak)
+    return [
+        Figure("linear modes, in amplitudes", max(e[0] for e in errors), 1e-8),
+        Figure("deviation over ten times the amplitude, less ten times", max(e[1] for e in errors), 0.05),
+        Figure("cut-off frequency", cut_off_error(40 if quick else 200), 1e-8),
+        Figure("error towards the sonic vacuum, from rest", limit, 1e-6),
+    ]

@@ -1,0 +1,92 @@
+"""Hard cases of long runs: the drive keeps its phase, and a run that was cut is the run that was not."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..integrate import METHODS, Engine, Setting
+from ..integrate.checkpoint import Checkpoint, checkpoint, resumed
+from ..scene import scene
+from .case import Figure, Picture, Trace
+
+_SAMPLES = 8
+
+
+def cut_and_gone_on(method: str, periods: int, cuts: int, seed: int = 1) -> float:
+    """Numbers of the final state and of the samples on the way that a run with random cuts has otherwise.
+
+    Each cut takes a checkpoint through its bytes into a new engine. Methods with fixed steps are cut at any sample,
+    those with error control at whole periods.
+    """
+    chosen = scene("sec2").evolve(f=1130.0, N=5)
+    setting = Setting(method, 1.0, 1e-9 if METHODS[method].adaptive else 0.0)
+    total = periods * _SAMPLES
+    unit = _SAMPLES if METHODS[method].adaptive else 1
+    rng = np.random.default_rng(seed)
+    where = unit * np.sort(rng.choice(np.arange(1, total // unit), min(cuts, total // unit - 1), replace=False))
+    whole, pieces = Engine(chosen, setting, _SAMPLES), Engine(chosen, setting, _SAMPLES)
+    differs, done = 0, 0
+    for end in [*where, total]:
+        count = int(end - done)
+        one, other = whole_part(whole, count), whole_part(pieces, count)
+        differs += int((one != other).sum()) + int((whole.y != pieces.y).sum())
+        pieces = resumed(chosen, Checkpoint.from_bytes(checkpoint(pieces).to_bytes()))
+        done = int(end)
+    return float(differs)
+
+
+def whole_part(engine: Engine, count: int) -> np.ndarray:
+    """Displacements of the next `count` samples."""
+    return engine.record(count).displacement
+
+
+def uninterrupted(method: str, periods: int, cuts: int) -> float:
+    """Numbers of the final state of one call over all periods that differ from those of many cut ones."""
+    chosen = scene("sec2").evolve(f=1130.0, N=5)
+    setting = Setting(method, 1.0, 1e-9 if METHODS[method].adaptive else 0.0)
+    whole, pieces = Engine(chosen, setting, 1), Engine(chosen, setting, 1)
+    whole.periods(periods, watch=False)
+    where = np.sort(np.random.default_rng(2).choice(np.arange(1, periods), min(cuts, periods - 1), replace=False))
+    for count in np.diff([0, *where, periods]):
+        pieces.periods(int(count), watch=False)
+        pieces = resumed(chosen, Checkpoint.from_bytes(checkpoint(pieces).to_bytes()))
+    return float((whole.y != pieces.y).sum())
+
+
+def phase_error(periods: int) -> tuple[float, float]:
+    """How far the driver is from sin 2πft after `periods` periods and one more, in amplitudes; periods miscounted."""
+    engine = Engine(scene("sec2").evolve(N=1, f=3000.0), Setting("rk4-split"), _SAMPLES)
+    left = periods
+    while left > 0:
+        engine.periods(min(left, 10_000))
+        left -= 10_000
+    worst = abs(float(engine.y[0]))
+    for j in range(1, _SAMPLES + 1):
+        engine.record(1)
+        worst = max(worst, abs(float(engine.y[0]) - np.sin(2.0 * np.pi * j / _SAMPLES)))
+    return worst, abs(engine.elapsed - (periods + 1.0))
+
+
+def long_runs(quick: bool) -> list[Figure]:
+    """Drive phase and bitwise restarts."""
+    periods = 20_000 if quick else 100_000
+    phase, counted = phase_error(periods)
+    found = [Figure(f"drive phase after {periods} periods, in amplitudes", phase, 1e-15),
+             Figure("periods counted wrongly", counted, 0.0)]
+    cuts = 40 if quick else 1_000
+    for method in METHODS:
+        run = 2 * cuts if quick else periods // (10 if METHODS[method].adaptive else 1)
+        differs = cut_and_gone_on(method, 2 * cuts, cuts) + uninterrupted(method, run, cuts)
+        found.append(Figure(f"numbers that {cuts} random cuts change, {method}", differs, 0.0,
+                            f"{run} periods in one call, and {2 * cuts} sample by sample"))
+    return found
+
+
+def long_runs_picture() -> Picture:
+    """Phase error of a clock that adds its steps, t += dt, in amplitudes of the driver, over the periods; ours is 0."""
+    frequency, steps, marks = 340.0, 200, np.array([1, 10, 100, 1_000, 10_000, 50_000])
+    dt = 1.0 / frequency / steps
+    times = np.add.accumulate(np.full(int(marks[-1]) * steps, dt))[marks * steps - 1]
+    wrong = np.abs(np.sin(2.0 * np.pi * frequency * times)) + 1e-17
+    return Picture(np.log10(marks), "drive periods, log10", "error of the driver in amplitudes, log10",
+                   (Trace("granchain", np.full(len(marks), -17.0)), Trace("t += dt", np.log10(wrong))))

@@ -1,0 +1,151 @@
+"""Hard cases of the numbers themselves: not-a-number anywhere, and numbers too small to be quick with."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from ..errors import NumbersFailed
+from ..integrate import METHODS, Engine, Setting
+from ..scene import scene
+from .case import Figure, Picture, Trace
+
+#: What is injected.
+_VALUES = (np.nan, np.inf, -np.inf)
+_SAMPLES = 4
+
+
+class Injector:
+    """An engine into which a bad number is put at random, again and again, from the same state."""
+
+    def __init__(self, method: str, beads: int) -> None:
+        self.method, self.beads = method, beads
+        setting = Setting(method, 1.0, 1e-6 if METHODS[method].adaptive else 0.0)
+        self.engine = Engine(scene("sec2").evolve(N=beads, f=1130.0), setting, _SAMPLES)
+        self.engine.record(3 * _SAMPLES)
+        self._kept = self.engine.y.copy(), self.engine.work.k[0].copy(), self.engine.grid_index, self.engine.elapsed
+
+    def restore(self) -> None:
+        """Back to where it was."""
+        engine = self.engine
+        engine.y[:], engine.work.k[0] = self._kept[0], self._kept[1]
+        engine.grid_index, engine.elapsed = self._kept[2], self._kept[3]
+        self.renew()
+
+    def renew(self) -> None:
+        """New vectors from the present parameters, where the method has any."""
+        if not METHODS[self.method].adaptive:
+            self.engine.work = self.engine.work._replace(along=self.engine.new_along())
+
+    def into_state(self, rng: np.random.Generator) -> bool:
+        """Whether a bad displacement or w of a bead is said at once, with bead, time and step."""
+        row, bead = self.engine.lowered.row, int(rng.integers(1, self.beads + 1))
+        self.engine.y[bead + row * int(rng.integers(2))] = _VALUES[rng.integers(3)]
+        found = self.outcome()
+        step = None if METHODS[self.method].adaptive else self._kept[2]
+        return found is not None and (found.bead, found.step) == (bead, step)
+
+    def into_contact(self, rng: np.random.Generator) -> bool:
+        """Whether a contact whose stiffness is NaN is said in the first step, at one of its two beads."""
+        springs, contact = self.engine.lowered.slots.chain.stiffness, int(rng.integers(self.beads + 1))
+        before, springs[contact] = springs[contact], np.nan
+        self.renew()
+        found = self.outcome()
+        springs[contact] = before
+        self.renew()
+        beads = {min(max(b, 1), self.beads) for b in (contact, contact + 1)}
+        step = None if METHODS[self.method].adaptive else self._kept[2]
+        return found is not None and found.bead in beads and found.step == step
+
+    def into_drive(self, rng: np.random.Generator) -> bool:
+        """Whether a driver that is NaN in one step is said in that step, at bead 1."""
+        n = self.engine.grid
+        step = int(rng.integers(n // _SAMPLES))
+        row = 2 * step + 2  # its end; what a step that is split has in its middle is not from this table
+        before = self.engine.drive[row].copy()
+        self.engine.drive[row] = np.nan
+        found = self.outcome()
+        self.engine.drive[row] = before
+        return found is not None and (found.bead, found.step) == (1, step)
+
+    def outcome(self) -> NumbersFailed | None:
+        """The typed failure of the next sample, None if nobody noticed."""
+        try:
+            self.engine.record(1)
+        except NumbersFailed as found:
+            return found if found.status == "not-finite" and found.time is not None else None
+        finally:
+            self.restore()
+        return None
+
+
+def injections(count: int) -> tuple[int, int]:
+    """Injections made, and those not caught where they were made."""
+    rng = np.random.default_rng(4)
+    injectors = [Injector(m, n) for m in ("rk4", "rk4-split", "dop853", "dopri5") for n in (1, 11)]
+    wrong = 0
+    for i in range(count):
+        one = injectors[i % len(injectors)]
+        where = rng.random()
+        if where < 0.6 or (where >= 0.9 and METHODS[one.method].adaptive):
+            wrong += not one.into_state(rng)
+        elif where < 0.9:
+            wrong += not one.into_contact(rng)
+        else:
+            wrong += not one.into_drive(rng)
+    return count, wrong
+
+
+def slowing(method: str, beads: int, rounds: int) -> float:
+    """Time of a chain ahead of whose wave there are subnormal numbers over that of one with ordinary small ones.
+
+    Displacements fall from 1 by the same factor from bead to bead, to 1e-310 or to 1e-160; by turns, the fastest of
+    each.
+    """
+    best = [np.inf, np.inf]
+    chosen = scene("sec2").evolve(N=beads, f=3000.0, k=1e4)
+    for _ in range(rounds):
+        for i, last in enumerate((-310.0, -160.0)):
+            engine = Engine(chosen, Setting(method, 1.0, 1e-6), 1)
+            row = engine.lowered.row
+            engine.y[1 : row - 1] = -10.0 ** np.maximum(np.linspace(0.0, 2.0 * last, beads), last)
+            engine.place()
+            began = time.perf_counter()
+            engine.periods(2, watch=False)
+            best[i] = min(best[i], time.perf_counter() - began)
+    return best[0] / best[1]
+
+
+def bad_numbers(quick: bool) -> list[Figure]:
+    """Injections, and the cost of subnormal numbers."""
+    count, wrong = injections(2_000 if quick else 100_000)
+    found = [Figure(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
+    for method, beads in (("rk4-split", 30), ("rk4-split", 200), ("dop853", 200)):
+        found.append(Figure(f"time with a subnormal tail over that without, {method}, {beads} beads",
+                            slowing(method, beads, 20 if quick else 60), 1.2))
+    return found
+
+
+def bad_numbers_picture() -> Picture:
+    """A NaN in bead 6: what a solver shows whose contacts ask `if overlap > 0`: beads that calmly go on."""
+    chosen = scene("sec2").evolve(N=11)
+    engine = Engine(chosen, Setting("rk4", 1.0), 100)
+    ours = np.full(201, np.nan)
+    ours[:101] = engine.record(100).force[:, -1]
+    naive, h = np.zeros(201), chosen.period / 200.0
+    u, v, mass, stiffness = np.zeros(13), np.zeros(13), chosen.bead(1).mass, chosen.contact_stiffness()
+    for j in range(401):
+        u[0] = chosen.A0 * np.sin(2.0 * np.pi * j / 200.0)
+        if j == 200:
+            u[6] = np.nan
+        force = np.zeros(12)
+        for c in range(12):
+            if u[c] - u[c + 1] > 0.0:  # the trap: a NaN is not above zero, and the chain is cut in silence
+                force[c] = stiffness[c] * (u[c] - u[c + 1]) ** 1.5 + chosen.D * (v[c] - v[c + 1])
+        v[1:12] += h * (force[:-1] - force[1:]) / mass
+        u[1:12] += h * v[1:12]
+        if j % 2 == 0:
+            naive[j // 2] = force[-1] / (stiffness[0] * chosen.A0**1.5)
+    return Picture(np.arange(201) / 100.0, "drive periods", "output force, scaled",
+                   (Trace("granchain, which stops and says so", ours), Trace("`if overlap > 0`", naive)))

@@ -1,0 +1,131 @@
+"""An independent solver to measure against: SciPy, in (u, v), restarted wherever a contact opens or closes.
+
+It shares no equation, no variable and no line with the kernels: contacts are gated by flags that events flip, forces
+are those of Zhang et al. 2016, eq. (1), in scaled units, and the method may be implicit (Radau) where a dashpot is
+stiff.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ..errors import NumbersFailed
+from ..scene import Scene
+
+#: Most contact events of one solution; more are an accident.
+_MOST_EVENTS = 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class Plain:
+    """A chain in scaled units, with the linear dashpot only: masses and foundation (N,), contacts (N+1,)."""
+
+    masses: np.ndarray
+    springs: np.ndarray
+    static: np.ndarray
+    damping: float
+    foundation: float
+    beta: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> Plain:
+        """The plain form of a scene; its dissipation must be the linear dashpot or none, its tension allowed."""
+        mass, stiffness, length = scene.bead(1).mass, scene.K, scene.A0
+        rate = np.sqrt(stiffness * np.sqrt(length) / mass)
+        damping = scene.D / (mass * rate) if scene.dissipation == "linear" else 0.0
+        return cls(scene.masses() / mass, scene.contact_stiffness() / stiffness, scene.static_overlap() / length,
+                   damping, scene.k / (stiffness * np.sqrt(length)), 2.0 * np.pi * scene.f / rate)
+
+    @property
+    def period(self) -> float:
+        """Drive period in scaled time."""
+        return 2.0 * np.pi / self.beta
+
+    def overlaps(self, t: float, state: np.ndarray) -> np.ndarray:
+        """Overlap of every contact."""
+        bodies = np.concatenate([[np.sin(self.beta * t)], state[: len(self.masses)], [0.0]])
+        return bodies[:-1] - bodies[1:] + self.static
+
+    def rates(self, t: float, state: np.ndarray) -> np.ndarray:
+        """How fast the overlaps grow."""
+        bodies = np.concatenate([[self.beta * np.cos(self.beta * t)], state[len(self.masses) :], [0.0]])
+        return bodies[:-1] - bodies[1:]
+
+    def slope(self, t: float, state: np.ndarray, closed: np.ndarray) -> np.ndarray:
+        """(u̇, v̇) while exactly the contacts in `closed` act."""
+        n = len(self.masses)
+        pressed = np.maximum(self.overlaps(t, state), 0.0)
+        force = closed * (self.springs * pressed**1.5 + self.damping * self.rates(t, state))
+        return np.concatenate([state[n:], (force[:-1] - force[1:] - self.foundation * state[:n]) / self.masses])
+
+
+def solved(chain: Plain, start: np.ndarray, times: np.ndarray, method: str = "DOP853",
+           rtol: float = 1e-12) -> np.ndarray:
+    """States (T, 2N) of displacements and velocities at `times` from `start` at the first of them.
+
+    Raises `NumbersFailed` where SciPy gives up.
+    """
+    n = len(chain.masses)
+    out = np.zeros((len(times), 2 * n))
+    out[0], row = start, 1
+    t, state = float(times[0]), np.array(start, dtype=float)
+    gaps = chain.overlaps(t, state)
+    closed = (gaps > 0.0) | ((gaps == 0.0) & (chain.rates(t, state) > 0.0))
+    for _ in range(_MOST_EVENTS):
+        found: Any = solve_ivp(lambda s, y, c=closed: chain.slope(s, y, c), (t, times[-1]), state, method=method,
+                               rtol=max(rtol, 3e-14), atol=1e-2 * rtol, dense_output=True, max_step=chain.period / 16.0,
+                               events=[_event(chain, c, bool(closed[c])) for c in range(n + 1)])
+        if found.status < 0:
+            raise NumbersFailed(f"SciPy's {method} gave up at scaled time {t:.6g}: {found.message}", "solver-gave-up")
+        end = float(found.t[-1])
+        while row < len(times) and times[row] <= end:
+            out[row] = found.sol(times[row])
+            row += 1
+        if found.status == 0:
+            return out
+        changed = next(c for c in range(n + 1) if len(found.t_events[c]))
+        closed = closed.copy()
+        closed[changed] = not closed[changed]
+        t, state = end, found.y[:, -1]
+    raise NumbersFailed(f"SciPy's {method} met more than {_MOST_EVENTS} contact events.", "chatter")
+
+
+def _event(chain: Plain, contact: int, closed: bool) -> Callable[[float, np.ndarray], float]:
+    def gap(t: float, state: np.ndarray) -> float:
+        return float(chain.overlaps(t, state)[contact])
+
+    gap.terminal, gap.direction = True, -1.0 if closed else 1.0  # type: ignore[attr-defined]
+    return gap
+
+
+def restitution(law: str, strength: float, cut: bool) -> float:
+    """Speed after over speed before of a bead of mass 1 that meets a contact K = 1 at speed 1.
+
+    The force is δ^{3/2} + strength·g(δ)·δ̇ with g = 1, δ^{1/4} or δ^{1/2}. Integrated in s = t^{1/4}, in which the
+    motion behind the onset is smooth; with a cut it ends where the force does, else where the overlap does.
+    """
+    power = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}[law]
+
+    def force(state: np.ndarray) -> float:
+        d = max(state[0], 0.0)
+        return float(d**1.5 + strength * d**power * state[1])
+
+    def slope(s: float, state: np.ndarray) -> np.ndarray:
+        return 4.0 * s**3 * np.array([state[1], -force(state)])
+
+    def over(s: float, state: np.ndarray) -> float:
+        if s < 1e-3:
+            return 1.0
+        # both laws' forces vanish with the overlap; divided by d^power the end of the force is a simple root
+        d = max(state[0], 0.0)
+        return float(d ** (1.5 - power) + strength * state[1]) if cut and state[1] < 0.0 else float(state[0])
+
+    over.terminal, over.direction = True, -1.0  # type: ignore[attr-defined]
+    found: Any = solve_ivp(slope, (0.0, 10.0), [0.0, 1.0], method="DOP853", rtol=3e-14, atol=1e-16, events=over,
+                           max_step=0.02)
+    return -float(found.y[1, -1])

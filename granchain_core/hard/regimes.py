@@ -1,0 +1,191 @@
+"""Hard cases of claims on the long run: what is settled, which attractor it is, and what drifts away."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..drift import observer_drift
+from ..integrate import Engine, Setting
+from ..orbits import periodic_orbit
+from ..run import run
+from ..scene import scene
+from ..steady.curve import CurvePoint, iter_curve
+from ..steady.regime import find_period
+from ..steady.settle import settled
+from .case import Figure, Picture, Trace
+
+#: Strobes of a normal form that are looked at, and its dimension.
+_STROBES, _BEADS = 400, 3
+
+
+def normal_form(rng: np.random.Generator, kind: str, closeness: float,
+                count: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Strobes (count + 1, 2, N) of a map near a bifurcation, its orbit (q, 2, N) and the orbit's period q.
+
+    In the coordinates of the normal form one direction has the multiplier 1 − ε (fold), −(1 − ε) (flip) or a pair
+    (1 − ε)e^{±iθ} (Neimark–Sacker) with a quadratic or cubic term; the others decay fast. A random linear change of
+    coordinates hides it, and rounding of 1e-15 is added. Beyond a flip the orbit has period 2.
+    """
+    size = 2 * _BEADS
+    basis = np.linalg.qr(rng.standard_normal((size, size)))[0] + 0.2 * rng.standard_normal((size, size))
+    middle, fast = rng.standard_normal(size), rng.uniform(-0.6, 0.6, size)
+    x = np.concatenate([rng.uniform(-0.3, 0.3, 2), rng.standard_normal(size - 2)])
+    if kind == "fold":
+        x[0], x[1] = abs(x[0]), 0.0
+    turn = (1.0 - closeness) * np.exp(1j * rng.uniform(0.3, 2.8))
+    out = np.zeros((count + 1, size))
+    for i in range(count + 1):
+        out[i] = middle + basis @ x + 1e-15 * rng.standard_normal(size)
+        new = fast * x
+        if kind == "fold":
+            new[0], new[1] = (1.0 - closeness) * x[0] - 0.5 * x[0] ** 2, 0.0
+        elif kind == "flip":
+            new[0], new[1] = -(1.0 - closeness) * x[0] + 0.5 * x[0] ** 3, 0.3 * x[1]
+        elif kind == "doubled":
+            new[0], new[1] = -(1.0 + 0.5 * closeness) * x[0] + x[0] ** 3, 0.3 * x[1]
+        else:
+            z = turn * (x[0] + 1j * x[1]) * (1.0 - 0.5 * abs(x[0] + 1j * x[1]) ** 2)
+            new[0], new[1] = z.real, z.imag
+        x = new
+    # beyond the flip the two points ±√(ε/2) are exchanged, with multiplier (1 − ε)² there
+    orbit = np.array([0.0]) if kind != "doubled" else np.sqrt(0.5 * closeness) * np.array([1.0, -1.0])
+    points = np.stack([middle + basis[:, 0] * a for a in orbit])
+    return out.reshape(-1, 2, _BEADS), points.reshape(-1, 2, _BEADS), len(orbit)
+
+
+def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
+    """Largest relative distance of a state (2, N) from the nearest point of an orbit (q, 2, N)."""
+    return float((np.abs(orbit - state).max(axis=2) / scale).max(axis=1).min())
+
+
+def claims(count: int, seed: int) -> tuple[int, int, int]:
+    """Of `count` maps near a bifurcation: settled claims, claims whose bound or period is wrong, slow ones claimed.
+
+    A slow one has a multiplier so near 1 that it cannot have settled within its strobes.
+    """
+    rng = np.random.default_rng(seed)
+    made, wrong, slow = 0, 0, 0
+    for _ in range(count):
+        kind = str(rng.choice(["fold", "flip", "doubled", "neimark-sacker"]))
+        closeness = 10.0 ** rng.uniform(-5.0, -0.5)
+        strobes, orbit, period = normal_form(rng, kind, closeness, _STROBES)
+        found = find_period(strobes)
+        if found.name != "periodic":
+            continue
+        made += 1
+        assert found.distance is not None
+        scale = np.abs(strobes).max(axis=(0, 2))
+        # the strobes themselves are rounded to 1e-15, and the orbit's place is known to no more than that
+        far = distance(strobes[-1], orbit, scale) > found.distance + 1e-13
+        wrong += far or found.period != period
+        slow += closeness < 1e-3 and far
+    return made, wrong, slow
+
+
+def near_bifurcation(quick: bool) -> list[Figure]:
+    """Distance bounds near bifurcations, by normal forms and in the chain."""
+    count = 600 if quick else 10_000
+    made, wrong, slow = claims(count, 3)
+    checked, outside = chain_claims(4 if quick else 60)
+    return [
+        Figure("claims of a settled motion with a wrong bound, part", wrong / max(1, made), 1e-3,
+               f"{made} claims on {count} maps, {wrong} of them wrong"),
+        Figure("slow transients called settled", float(slow), 0.0),
+        Figure("settled chains further from their orbit than stated, part", outside / max(1, checked), 1e-3,
+               f"{checked} chains"),
+    ]
+
+
+def chain_claims(count: int) -> tuple[int, int]:
+    """Settled chains near the flip of section 2's chain, and those further from Newton's orbit than they state."""
+    checked, outside = 0, 0
+    for frequency in np.linspace(560.0, 640.0, count):
+        chosen = scene("sec2").evolve(f=float(frequency))
+        found = settled(chosen)
+        if found.regime.name != "periodic":
+            continue
+        orbit = periodic_orbit(chosen, found.regime.period, found.state)
+        largest = float(np.abs(found.run.displacement).max())
+        apart = float(np.abs(orbit.state.displacement - found.state.displacement).max()) / largest
+        checked += 1
+        assert found.regime.distance is not None and found.run.error_estimate is not None
+        outside += apart > found.run.error_estimate
+    return checked, outside
+
+
+def near_bifurcation_picture() -> Picture:
+    """Distance from the orbit of a slow approach, what the change per period says, and our bound where claimed."""
+    strobes, orbit, _ = normal_form(np.random.default_rng(8), "flip", 0.02, 1_000)
+    scale, marks = np.abs(strobes).max(axis=(0, 2)), np.arange(20, 1_000, 20)
+    true = [distance(strobes[i], orbit, scale) for i in marks]
+    change = [float((np.abs(strobes[i] - strobes[i - 2]).max(axis=1) / scale).max()) for i in marks]
+    bounds = [find_period(strobes[max(0, i - 420) : i + 1]).distance for i in marks]
+    ours = np.array([np.nan if b is None else b for b in bounds])
+    small = 1e-17
+    return Picture(marks, "drive periods", "relative distance from the orbit, log10", (
+        Trace("true", np.log10(np.array(true) + small)),
+        Trace("granchain's bound, where it claims one", np.log10(ours)),
+        Trace("change over two periods, as if it were the distance", np.log10(np.array(change) + small))))
+
+
+# --- several attractors -----------------------------------------------------------------------------------
+
+#: A frequency at which section 2's chain has orbits of period 1 and of period 3, both stable, and sweeps towards it.
+_SHARED, _BELOW, _ABOVE = 885.7627, 800.0, 1000.0
+
+
+def arrivals() -> dict[str, CurvePoint]:
+    """The steady state at one frequency, by the start it came from."""
+    chosen, found = scene("sec2"), {}
+    for start, far in (("up", _BELOW), ("down", _ABOVE)):
+        points = list(iter_curve(chosen, np.linspace(far, _SHARED, 12), start))
+        found[start] = points[-1]
+    return found
+
+
+def two_attractors(quick: bool) -> list[Figure]:
+    """Both orbits found, both stable by their multipliers, and every result says which start it is from."""
+    found, chosen = arrivals(), scene("sec2").evolve(f=_SHARED)
+    orbits = {start: periodic_orbit(chosen, p.regime.period, p.state) for start, p in found.items()}
+    forces = [p.max_output_force for p in found.values()]
+    again = {start: settled(chosen, p.state) for start, p in found.items()}
+    same = max(abs(again[s].run.max_output_force / found[s].max_output_force - 1.0) for s in found)
+    leading = max(float(np.abs(o.multipliers).max()) for o in orbits.values())
+    named = [settled(chosen).start == "rest", *(one.start == "previous state" for one in again.values()),
+             run(chosen, periods=0, record=1, samples=4).start == "rest",
+             run(chosen, periods=0, record=1, samples=4, start=found["up"].state).start == "given state"]
+    return [
+        Figure("orbits missing, of two", 2.0 - len({p.regime.period for p in found.values()}), 0.0,
+               ", ".join(f"{s}: period {p.regime.period}, {p.max_output_force:.4f} N" for s, p in found.items())),
+        Figure("largest multiplier of either orbit", leading, 1.0),
+        Figure("smaller force over the larger", min(forces) / max(forces), 0.9),
+        Figure("change of either when gone on from", float(same), 1e-3),
+        Figure("results that do not say their start", float(len(named) - sum(named)), 0.0),
+    ]
+
+
+def two_attractors_picture() -> Picture:
+    """Output force on both orbits over three drive periods, and from rest, which is all one run shows."""
+    chosen, traces = scene("sec2").evolve(f=_SHARED), []
+    for start, point in arrivals().items():
+        engine = Engine(chosen, Setting("dop853", 1.0, 1e-10), 100)
+        engine.start(point.state)
+        force = engine.record(300).force[:, -1] * engine.lowered.scales.force
+        traces.append(Trace(f"swept {start}", force))
+    return Picture(np.arange(301) / 100.0, "drive periods", "output force in N", tuple(traces))
+
+
+# --- drift ------------------------------------------------------------------------------------------------
+
+
+def drifting(quick: bool) -> list[Figure]:
+    """The observer without a foundation drifts and that is said by name; with one it does not, and nothing is said."""
+    wrong = []
+    for base, drifts in (("fig11-free", True), ("fig11-founded", False)):
+        for frequency in ((100.0,) if quick else (100.0, 200.0)):
+            chosen = scene(base).evolve(f=frequency)
+            wrong.append((observer_drift(periodic_orbit(chosen, observer=True)) is not None) != drifts)
+    bead = scene("fig11-free").evolve(N=1, f=340.0)
+    alone = observer_drift(periodic_orbit(bead, observer=True))
+    return [Figure("observers of whose drift the wrong thing is said", float(sum(wrong)), 0.0),
+            Figure("free beads whose drift is not named", float(alone is None), 0.0, str(alone))]

@@ -1,0 +1,35 @@
+"""Running the table on two processes, the longest cases first."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+
+from .case import Check, run_case
+from .table import CASES
+
+
+def _run(name: str, quick: bool) -> list[Check]:
+    return run_case(next(case for case in CASES if case.name == name), quick)
+
+
+def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, list[Check]]]:
+    """Case names with their rows as they are finished; closing the generator ends what has not begun.
+
+    Processes, because much of the oracles is Python, which threads would run by turns.
+    """
+    count = workers or min(2, os.cpu_count() or 1)
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    try:
+        running: dict[Future[list[Check]], str] = {pool.submit(_run, case.name, quick): case.name for case in CASES}
+        for done in as_completed(running):
+            yield running[done], done.result()
+    finally:
+        pool.shutdown(wait=False, cancel_futures=True)
+
+
+def in_order(rows: dict[str, list[Check]]) -> list[Check]:
+    """All rows in the order of the table."""
+    return [row for case in CASES for row in rows.get(case.name, ())]

@@ -1,0 +1,84 @@
+"""Stopping an engine and going on later, bit for bit as if it had never stopped.
+
+A `State` in SI is the physics of an instant, and rounded on its way there and back. A checkpoint is the engine's own
+numbers: the scaled state, its slope, the step the error control would try next, and where in the period the drive is.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from ..scene import Scene
+from .engine import Engine
+from .methods import METHODS, Setting
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """An engine's numbers: y (M,) and its slope, control (3,) of an adaptive method, grid index, drive periods run.
+
+    `digest`, `method`, `refine`, `tolerance` and `samples` say which engine may go on from here.
+    """
+
+    digest: str
+    method: str
+    refine: float
+    tolerance: float
+    samples: int
+    y: np.ndarray
+    slope: np.ndarray
+    control: np.ndarray
+    grid_index: int
+    elapsed: float
+
+    def to_bytes(self) -> bytes:
+        """The checkpoint as an .npz archive."""
+        out = io.BytesIO()
+        np.savez(out, **self.__dict__)
+        return out.getvalue()
+
+    @classmethod
+    def from_bytes(cls, data: bytes) -> Checkpoint:
+        """The checkpoint that `to_bytes` wrote; `BadInput` for anything else."""
+        try:
+            with np.load(io.BytesIO(data), allow_pickle=False) as kept:
+                fields = {name: kept[name] for name in cls.__dataclass_fields__}
+        except (ValueError, KeyError, OSError, EOFError) as problem:
+            raise BadInput(f"This is not a checkpoint: {problem}.") from None
+        return cls(**{name: value if value.ndim else value.item() for name, value in fields.items()})
+
+
+def checkpoint(engine: Engine) -> Checkpoint:
+    """Where `engine` is now.
+
+    A method with error control can be cut at whole drive periods only, where its steps end in any case: a cut inside
+    would end one that an uninterrupted run takes whole. Raises `BadInput` there.
+    """
+    adaptive = METHODS[engine.setting.method].adaptive
+    if adaptive and engine.grid_index != 0:
+        raise BadInput(f"{engine.setting.method} can be stopped at whole drive periods only; the nearest is "
+                       f"{engine.grid - engine.grid_index} of {engine.grid} grid points ahead.")
+    control = np.array([engine.clock[0], *engine.work.scale]) if adaptive else np.zeros(0)
+    setting = engine.setting
+    return Checkpoint(engine.lowered.scene.digest, setting.method, float(setting.refine), setting.tolerance,
+                      engine.samples, engine.y.copy(), engine.work.k[0].copy(), control, engine.grid_index,
+                      float(engine.elapsed))
+
+
+def resumed(scene: Scene, kept: Checkpoint, stop: np.ndarray | None = None) -> Engine:
+    """A new engine that goes on from a checkpoint of the same scene; `BadInput` for one of another scene."""
+    if scene.digest != kept.digest:
+        raise BadInput(f"This checkpoint belongs to scene {kept.digest}, not to {scene.digest} ({scene.name}); "
+                       f"go on with the scene it was taken from.")
+    row = scene.N + 2
+    engine = Engine(scene, Setting(kept.method, kept.refine, kept.tolerance), kept.samples,
+                    balance=len(kept.y) > 2 * row, stop=stop)
+    engine.y[:], engine.work.k[0] = kept.y, kept.slope
+    if len(kept.control):
+        engine.clock[0], engine.work.scale[:] = kept.control[0], kept.control[1:]
+    engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed
+    return engine

@@ -1,0 +1,139 @@
+"""The checks can fail: with the core broken on purpose the rows that are meant to notice do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from granchain_core import NumbersFailed, scene
+from granchain_core.hard import (
+    Case,
+    Figure,
+    brushes,
+    contacts,
+    damping,
+    energy,
+    extremes,
+    long_runs,
+    numbers,
+    regimes,
+    run_case,
+)
+from granchain_core.integrate import Engine, checkpoint
+from granchain_core.integrate.methods import Setting
+from granchain_core.steady.regime import Regime
+
+
+def worst(figures: list[Figure]) -> Figure:
+    """The figure furthest above its bar."""
+    return max(figures, key=lambda f: np.inf if not f.value <= f.bar else f.value - f.bar)
+
+
+def failed(figures: list[Figure]) -> list[str]:
+    """Names of the figures above their bars."""
+    return [f.name for f in figures if not f.value <= f.bar]
+
+
+def test_nan_is_above_every_bar() -> None:
+    case = Case("x", "", "", "", lambda quick: [Figure("nan", float("nan"), 1.0), Figure("good", 0.5, 1.0)])
+    assert [row.passed for row in run_case(case, True)] == [False, True]
+
+
+def test_a_case_that_cannot_be_computed_is_a_row_that_did_not_pass() -> None:
+    def refuse(quick: bool) -> list[Figure]:
+        raise NumbersFailed("bead 3", "not-finite")
+
+    row, = run_case(Case("x", "", "", "", refuse), True)
+    assert not row.passed and row.note == "bead 3"
+
+
+def test_a_tolerance_that_is_too_loose_loses_energy(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Loose(energy.Bench):
+        def __init__(self, *words: object, **names: object) -> None:
+            super().__init__(*words, **{**names, "tolerance": 1e-8})  # type: ignore[arg-type]
+
+    monkeypatch.setattr(energy, "Bench", Loose)
+    assert "energy of the free chain after the impact" in failed(energy.free_chain(True))
+
+
+def test_a_plain_dashpot_without_events_misses_its_restitution(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(damping, "bounce", lambda law, strength, cut, speed=1.0: damping.naive_bounce(strength, 200.0))
+    assert len(failed(damping.restitutions(True))) >= 7
+
+
+def test_steps_over_brief_touches_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = brushes.run
+
+    def blind(cases: np.ndarray, driven: bool) -> np.ndarray:
+        found = real(cases, driven)
+        found[(cases[:, brushes.DEPTH] > 0.0) & (cases[:, brushes.DEPTH] < 2e-7), brushes.ONSETS] = 0.0
+        return found
+
+    monkeypatch.setattr(brushes, "run", blind)
+    assert worst(contacts.brushed(True)).value > 0.0
+    assert failed(contacts.brushed(True))
+
+
+def test_a_checkpoint_rounded_to_si_and_back_is_another_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    def rounded(chosen, kept, stop=None):  # type: ignore[no-untyped-def]
+        engine = checkpoint.resumed(chosen, kept, stop)
+        engine.start(engine.state)
+        return engine
+
+    monkeypatch.setattr(long_runs, "resumed", rounded)
+    assert long_runs.cut_and_gone_on("rk4", 20, 10) > 0.0
+
+
+def test_a_clock_that_adds_its_steps_is_out_of_phase() -> None:
+    naive = long_runs.long_runs_picture().traces[1].values
+    assert naive[-1] > -8.0  # 1e-8 of an amplitude after 50,000 periods
+
+
+def test_wrong_scaling_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = extremes.scene
+
+    def other(name: str):  # type: ignore[no-untyped-def]
+        return replace(real(name), k=1.0)  # a foundation in N/m does not scale
+
+    monkeypatch.setattr(extremes, "scene", other)
+    base = extremes.scene("sec2")
+    assert base.k == 1.0
+    one = Engine(base.evolve(A0=1e-8), Setting("rk4-split"), 16).record(16).displacement
+    two = Engine(base.evolve(A0=1e-7, f=10**0.25 * base.f, D=10**0.25 * base.D), Setting("rk4-split"), 16).record(16).displacement
+    assert np.abs(one - two).max() > 1e-12 * np.abs(one).max()
+
+
+def test_change_per_period_taken_for_the_distance_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    def gullible(strobes: np.ndarray) -> Regime:
+        change = float(np.abs(strobes[-1] - strobes[-2]).max() / np.abs(strobes).max())
+        return Regime("periodic" if change < 1e-4 else "unsettled", 1, 0.5, change, len(strobes))
+
+    monkeypatch.setattr(regimes, "find_period", gullible)
+    made, wrong, slow = regimes.claims(100, 3)
+    assert wrong > 0.1 * made
+    assert slow > 0
+
+
+def test_a_nan_that_nobody_sees_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numbers.Injector, "outcome", lambda self: self.restore())
+    count, wrong = numbers.injections(40)
+    assert wrong == count
+
+
+def test_an_asymmetric_chain_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Crooked(contacts.Bench):
+        def __init__(self, beads: int, *words: object, **names: object) -> None:
+            super().__init__(beads, *words, **{**names, "stiffness": [1.0 + 1e-9, *([1.0] * beads)]})  # type: ignore[arg-type]
+
+    monkeypatch.setattr(contacts, "Bench", Crooked)
+    assert contacts.mirrored(5, 200.0) > 1e-13
+
+
+def test_a_drive_whose_impulse_is_not_counted_is_noticed() -> None:
+    base = scene("sec2").evolve(N=4, D=60.0)
+    engine = Engine(base, Setting("dop853", 1.0, 1e-12), 64)
+    kept = engine.record(64)
+    momentum = kept.velocity.sum(axis=1)
+    assert abs(momentum[-1] - momentum[0]) > 1e-3  # what the balance has to explain

@@ -1,0 +1,38 @@
+"""Every hard case, in its quick form, holds: each against the oracle that its row of the table names."""
+
+from __future__ import annotations
+
+import functools
+
+import pytest
+
+from granchain_core.hard import CASES, Check, run_case
+
+#: Rows that are timings; on a machine that does other things they are not a test.
+TIMINGS = ("time per bead", "time with a subnormal tail")
+
+
+@functools.cache
+def rows(name: str) -> list[Check]:
+    """The rows of one case."""
+    return run_case(next(case for case in CASES if case.name == name), quick=True)
+
+
+@pytest.mark.parametrize("name", [case.name for case in CASES])
+def test_the_case_holds(name: str) -> None:
+    missed = [f"{r.case}: {r.figure:.2e} > {r.bar:.1e} ({r.oracle})" for r in rows(name)
+              if not r.passed and not any(words in r.case for words in TIMINGS)]
+    assert not missed
+
+
+@pytest.mark.parametrize("name", [case.name for case in CASES])
+def test_timings_are_within_twice_their_bar(name: str) -> None:
+    for row in rows(name):
+        if any(words in row.case for words in TIMINGS):
+            assert row.figure < 2.0 * row.bar
+
+
+def test_the_table_is_the_issues() -> None:
+    """Sixteen rows, each with its oracle, what is hard and what a naive solver does."""
+    assert len({case.name for case in CASES}) == 16
+    assert all(case.oracle and case.hard and case.naive for case in CASES)

@@ -1,0 +1,46 @@
+"""`granchain check` prints the rows of the contract and says with its status whether all passed."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from app.cli import main
+from granchain_core.hard import CASES, Check, runner
+
+
+def pretend(figure: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows at once, the last case's with this figure against a bar of 1."""
+
+    def rows(quick: bool, workers: int | None = None):  # type: ignore[no-untyped-def]
+        for case in CASES:
+            value = figure if case is CASES[-1] else 0.5
+            yield case.name, [Check(f"{case.name}: one", value, 1.0, value <= 1.0, 0.1, case.hard, case.naive, case.oracle)]
+
+    monkeypatch.setattr(runner, "run_cases", rows)
+
+
+def test_json_has_the_contracts_rows(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    pretend(0.9, monkeypatch)
+    assert main(["check", "--quick", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)["rows"]
+    assert len(rows) == len(CASES)
+    assert set(rows[0]) == {"case", "figure", "bar", "passed", "seconds"}
+    assert all(row["passed"] for row in rows)
+
+
+@pytest.mark.parametrize("figure", [1.1, float("nan")])
+def test_a_row_above_its_bar_is_status_3(figure: float, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    pretend(figure, monkeypatch)
+    assert main(["check", "--json"]) == 3
+    told = capsys.readouterr()
+    assert [row["passed"] for row in json.loads(told.out)["rows"]].count(False) == 1
+    assert CASES[-1].name in told.err
+
+
+def test_without_json_a_student_reads_what_is_hard(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    pretend(0.9, monkeypatch)
+    assert main(["check"]) == 0
+    shown = capsys.readouterr().out
+    assert all(case.hard in shown and case.naive in shown for case in CASES)

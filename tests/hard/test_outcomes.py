@@ -1,0 +1,191 @@
+"""Every computation ends in one outcome; each is provoked here, and carried by the command line and the files."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+
+import h5py
+import numpy as np
+import pytest
+
+from app.cli import main
+from granchain_core import BadInput, Cancelled, NumbersFailed, State, run, scene
+from granchain_core.budget import estimate
+from granchain_core.errors import FAILURES, OverBudget
+from granchain_core.integrate import Engine, Setting, method_for
+from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
+from granchain_core.integrate.engine import new_stop
+from granchain_core.orbits import periodic_orbit
+from granchain_core.run import warnings
+from granchain_core.scene.validity import ONSET_OF_YIELD, YIELD_STRESS, peak_pressures
+from granchain_core.store import load, save
+
+
+def test_done_with_its_figures() -> None:
+    result = run(scene("sec2"), periods=1, record=1, samples=8)
+    assert result.status == "done"
+    assert result.cost.steps > 0 and result.error_estimate is not None and result.energy_residual is not None
+
+
+def test_cancelled() -> None:
+    stop = new_stop()
+    stop[0] = 1
+    with pytest.raises(Cancelled):
+        run(scene("sec2"), periods=5, record=1, samples=8, stop=stop)
+
+
+def test_accuracy_not_reached_in_chaos() -> None:
+    result = run(scene("sec2").evolve(dissipation="none", N=3, f=1000.0, accuracy=1e-5), periods=40, record=2, samples=4)
+    assert result.status == "accuracy-not-reached"
+    assert result.error_estimate > 1e-5
+
+
+@pytest.mark.parametrize("knobs", [{"N": 10_000, "f": 0.1}, {"f": 0.1, "D": 3e4}, {"N": 10_000, "f": 10.0, "A0": 1e-4}])
+def test_over_budget_is_refused_in_a_tenth_of_a_second_with_what_would_fit(knobs: dict[str, float]) -> None:
+    chosen = scene("sec2").evolve(**knobs)
+    spent = []
+    for _ in range(5):
+        began = time.perf_counter()
+        with pytest.raises(OverBudget, match=r"would fit|needed") as caught:
+            run(chosen, periods=10_000, record=1, samples=8)
+        spent.append(time.perf_counter() - began)
+    assert min(spent) < 0.1
+    assert caught.value.estimate > caught.value.budget
+    assert isinstance(caught.value, BadInput)
+
+
+def test_what_would_fit_fits() -> None:
+    chosen = scene("sec2").evolve(f=1.0)
+    with pytest.raises(OverBudget) as caught:
+        run(chosen, periods=99, record=1, samples=8, budget=2.0)
+    periods = int(str(caught.value).split("budget is")[1].split(": ")[1].split(" period")[0])
+    assert 1 <= periods < 100
+    assert estimate(chosen, method_for(chosen.accuracy), periods, 8, 1).seconds <= 2.0
+
+
+@pytest.mark.parametrize("knobs", [{}, {"f": 50.0}, {"f": 2.0}, {"N": 1}, {"N": 40}, {"N": 200, "f": 900.0}, {"F0": 5.0}, {"D": 2e4},
+                                   {"accuracy": 1e-9}, {"accuracy": 1e-3}, {"kappa": 0.001, "wall": "rigid"}])
+def test_the_steps_of_a_run_are_estimated_within_a_factor_of_two(knobs: dict[str, float]) -> None:
+    chosen = scene("sec2").evolve(**knobs)
+    periods = 1 if chosen.f < 10.0 else 10
+    found = estimate(chosen, method_for(chosen.accuracy), periods + 1, 16, 1)
+    result = run(chosen, periods=periods, record=1, samples=16)
+    assert 0.5 < result.cost.steps / found.steps < 2.0
+
+
+def test_a_finer_computation_that_does_not_fit_is_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    """This run needs a third computation; where that is taken for a very long one the second is what is returned."""
+    monkeypatch.setattr(sys.modules["granchain_core.run"], "_TWICE", 1e9)
+    result = run(scene("sec2"), periods=20, record=1, samples=8)
+    assert result.status == "over-budget"
+    assert result.error_estimate > result.scene.accuracy
+
+
+def test_not_finite_says_bead_time_and_step() -> None:
+    chosen = scene("sec2")
+    engine = Engine(chosen, Setting("rk4"), 8)
+    engine.record(16)
+    engine.y[7] = np.inf
+    with pytest.raises(NumbersFailed, match=r"bead 7 .* in step 0 ") as caught:
+        engine.record(1)
+    found = caught.value
+    assert (found.status, found.bead, found.step) == ("not-finite", 7, 0)
+    assert found.time == pytest.approx(2 * chosen.period, rel=1e-12)
+
+
+def test_a_step_in_the_middle_of_a_long_call_is_found_again() -> None:
+    engine = Engine(scene("sec2"), Setting("rk4-split"), 1)
+    engine.periods(3)
+    step = engine.grid // 3
+    engine.drive[2 * step + 2] = np.nan
+    with pytest.raises(NumbersFailed) as caught:
+        engine.periods(4)
+    assert (caught.value.bead, caught.value.step) == (1, step)
+
+
+def test_step_too_small() -> None:
+    """A contact so stiff that no step is small enough, met on the way."""
+    engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
+    engine.record(1)
+    engine.lowered.slots.chain.stiffness[:] = 1e30
+    engine.clock[0] = 1e-14
+    with pytest.raises(NumbersFailed, match="shrank to nothing") as caught:
+        engine.record(8)
+    assert caught.value.status == "step-too-small"
+
+
+def test_chatter() -> None:
+    """One bead between a slow driver and the wall, undamped: thousands of touches in one drive period."""
+    engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=1.0), Setting("dop853", 1.0, 1e-4), 1)
+    engine.start(State(np.zeros(1), np.array([0.5])))
+    with pytest.raises(NumbersFailed, match="without end") as caught:
+        engine.periods(1)
+    assert caught.value.status == "chatter"
+
+
+def test_no_convergence_with_its_history() -> None:
+    with pytest.raises(NumbersFailed, match=r"residuals were \d") as caught:
+        periodic_orbit(scene("rig").evolve(f=140.0), period=1)
+    assert caught.value.status == "no-convergence"
+
+
+def test_every_failure_has_a_known_name() -> None:
+    assert {"not-finite", "step-too-small", "chatter", "no-convergence"} <= set(FAILURES)
+
+
+def test_outside_validity_is_a_warning() -> None:
+    gentle, strong = scene("sec2"), scene("sec2").evolve(A0=1e-5, F0=1e4)
+    assert warnings(run(gentle, periods=0, record=1, samples=8)) == []
+    found = warnings(run(strong, periods=0, record=1, samples=64))
+    assert len(found) == 2
+    assert "Hertz's law" in found[0] and "yield" in found[1]
+
+
+@pytest.mark.parametrize("wall", ["bead", "same-material", "rigid"])
+def test_peak_pressure_is_hertzs(wall: str) -> None:
+    """p0 = (1/π)(6 F E*²/R*²)^{1/3}, written with the force; two spheres of section 2 yield at an overlap of 14 µm."""
+    chosen = scene("sec2").evolve(wall=wall)
+    overlaps = np.full(chosen.N + 1, 1e-6)
+    force = chosen.contact_stiffness() * overlaps**1.5
+    steel = chosen.bead(1)
+    modulus = np.full(chosen.N + 1, steel.young / (2 * (1 - steel.poisson**2)))
+    radius = np.full(chosen.N + 1, steel.radius / 2)
+    if wall != "bead":
+        radius[-1] = steel.radius
+    if wall == "rigid":
+        modulus[-1] *= 2.0
+    expected = (6.0 * force * modulus**2 / radius**2) ** (1.0 / 3.0) / np.pi
+    assert peak_pressures(chosen, overlaps) == pytest.approx(expected, rel=1e-12)
+    limit = 1e-6 * (ONSET_OF_YIELD * YIELD_STRESS / expected[0]) ** 2
+    assert 1.3e-5 < limit < 1.5e-5
+
+
+def test_files_carry_status_start_and_warnings(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    result = run(scene("sec2").evolve(A0=1e-4, accuracy=1e-4), periods=0, record=1, samples=8)
+    save(result, tmp_path / "run.h5")
+    back = load(tmp_path / "run.h5")
+    assert (back.status, back.start) == (result.status, "rest")
+    with h5py.File(tmp_path / "run.h5") as file:
+        assert json.loads(file.attrs["warnings"]) == warnings(result)
+
+
+def test_the_command_line_refuses_what_does_not_fit(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "sec2", "--set", "f=1", "--budget", "0.001", "--json"]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert "the budget is 0.001 s" in told.err
+
+
+def test_checkpoints_belong_to_their_scene_and_are_refused_inside_a_period() -> None:
+    engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
+    engine.record(4)
+    with pytest.raises(BadInput, match="whole drive periods only"):
+        checkpoint(engine)
+    engine.record(4)
+    kept = checkpoint(engine)
+    with pytest.raises(BadInput, match="belongs to scene"):
+        resumed(scene("rig"), kept)
+    with pytest.raises(BadInput, match="not a checkpoint"):
+        Checkpoint.from_bytes(b"nonsense")
