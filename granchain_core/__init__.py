@@ -4,6 +4,11 @@
     result = run(scene("sec2").evolve(f=340.0))
 """
 
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from .errors import BadInput, Cancelled, NumbersFailed
 from .integrate import State
 from .live import LiveChain
@@ -17,8 +22,24 @@ from .steady.settle import Settled, settled, settling
 
 __version__ = "0.1.0"
 
+if TYPE_CHECKING:
+    from .accuracy import work_precision
+    from .orbits import continue_branch, periodic_orbit
+    from .store import load, save
+
+#: Imported when they are first asked for: a page or a run that needs none of them starts sooner.
+_LATER = {"work_precision": "accuracy", "continue_branch": "orbits", "periodic_orbit": "orbits", "load": "store",
+          "save": "store"}
+
 __all__ = [
     "BadInput", "Cancelled", "Cost", "Curve", "CurvePoint", "LiveChain", "NumbersFailed", "Regime", "Run", "Scene",
-    "Settled", "State", "iter_curve", "observe", "resonance_curve", "run", "scene", "scene_names",
-    "settled", "settling",
+    "Settled", "State", "continue_branch", "iter_curve", "load", "observe", "periodic_orbit", "resonance_curve", "run",
+    "save", "scene", "scene_names", "settled", "settling", "work_precision",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """The names that are imported late."""
+    if name in _LATER:
+        return getattr(importlib.import_module(f".{_LATER[name]}", __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
