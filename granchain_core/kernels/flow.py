@@ -14,8 +14,11 @@ from .jit import kernel, term
 from .landing import flow_step
 from .motion import copy
 from .root_time import held_slope, time_at
-from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, first_not_finite
+from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite
 from .tangent import Tangent, carry
+
+#: Steps in one period after which it is given up.
+_MOST_STEPS = 5_000_000
 
 
 @term
@@ -57,8 +60,13 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
     begin(slots, y, path)
     path.logged[0] = 0
     for p in range(periods):
-        t = 0.0
+        t, steps = 0.0, 0
         while t < period:
+            steps += 1
+            if stop[0] != 0:
+                return CANCELLED, p, trace
+            if steps > _MOST_STEPS:
+                return STEP_TOO_SMALL, p, trace
             held_slope(slots, beta, t, path.closed, y, path.first, work.forces)
             status, time, h, contact = flow_step(method, slots, beta, t, period, onset, y, work, path, clock, tangent,
                                                  counts)
@@ -80,6 +88,4 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
         onset -= period
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p, trace
-        if stop[0] != 0:
-            return CANCELLED, p, trace
     return DONE, periods, trace

@@ -21,6 +21,8 @@ _AIM = 1.5
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 #: Attempts at one landing, and at one step.
 _TRIALS, _ATTEMPTS = 8, 60
+#: The next step to try is never less than this, in t: two events that rounding sets side by side leave no trace in it.
+_LEAST = 1e-9
 #: A first step behind an onset goes at most this part of the way to a release that it meets.
 _PART = 0.5
 #: What aiming came to besides a kernel's status.
@@ -173,4 +175,4 @@ def next_dt(time, h, error, before, limit):
     """The next step in t after an accepted one of size h in x; not less than before where only the limit cut it."""
     end = time_at(time, h)
     dt = time_at(time, h + grown(h, error)) - end
-    return max(dt, before) if end >= limit else dt
+    return max(dt, before, _LEAST) if end >= limit else max(dt, _LEAST)

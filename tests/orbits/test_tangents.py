@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from linear_chain import linear_multipliers
 
-from granchain_core import BadInput, scene
-from granchain_core.integrate.engine import rest
+from granchain_core import BadInput, Cancelled, scene
+from granchain_core.integrate.engine import new_stop, rest
 from granchain_core.orbits import orbit as orbits
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
@@ -105,3 +105,20 @@ def leading(strobe: StroboscopicMap, x: np.ndarray, observer: bool, count: int) 
 def test_multipliers_of_any_matrix_are_sorted_by_modulus() -> None:
     sizes = np.abs(sorted_multipliers(np.random.default_rng(7).standard_normal((9, 9))))
     assert np.all(np.diff(sizes) <= 0.0)
+
+
+def test_a_contact_that_rounding_closes_again_at_once_stops_nobody() -> None:
+    # After a release at t = 34.3 this contact closes again 5e-13 later; no step may become too small to move t.
+    shown = scene("sec2").evolve(N=1, D=30.0, f=403.89217825350806)
+    strobe = StroboscopicMap(shown, 3)
+    x = np.array([-0.05948783164245709, 0.15173847516946406])
+    assert np.all(np.isfinite(strobe.end(x)))
+    assert strobe.engine.counts.steps < 10_000
+
+
+def test_a_flow_stops_when_it_is_told_to() -> None:
+    stop = new_stop()
+    strobe = StroboscopicMap(scene("sec2"), 1, stop)
+    stop[0] = 1
+    with pytest.raises(Cancelled):
+        strobe.end(np.zeros(22))
