@@ -23,6 +23,7 @@ from ..kernels.wide import BLOCK, KEPT, WIDTHS, Wide
 from ..lower import Lowered, lower
 from ..scene import Scene
 from .failures import check_start, raise_for
+from .flushed import flushed
 from .methods import METHODS, Setting
 
 #: Grid points for following force maxima lie at most this far apart in scaled time; a Hertzian pulse lasts about 6.
@@ -223,6 +224,7 @@ class Engine:
         energy = np.zeros((rows, 3)) if self.lowered.slots.balance is not None else None
         return sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)
 
+    @flushed
     def record(self, count: int) -> sampling.Samples:
         """Advance by `count` samples and keep them, the present one first: count + 1 rows.
 
@@ -254,6 +256,7 @@ class Engine:
         """The largest input, output and elastic output force since then, in scaled units."""
         return self.peaks[::ROWS].copy()
 
+    @flushed
     def periods(self, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:
         """Advance by whole periods from phase 0.
 
