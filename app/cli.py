@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import commands, observe_command
+from app import commands, observe_command, orbit_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import unknown_name
 
@@ -53,6 +53,9 @@ def _parser() -> _Parser:
     orbit.add_argument("scene", metavar="SCENE")
     orbit.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     orbit.add_argument("--period", type=int, metavar="n", help="drive periods; else those of the settled motion")
+    orbit.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
+                       help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
+    orbit.add_argument("--seed", type=int, default=0, help="of the random start")
     orbit.add_argument("--observer", action="store_true", help="multipliers of the observer of model (4) too")
     orbit.add_argument("--json", action="store_true", help="print one JSON object on stdout")
     accuracy = command("accuracy", "what accuracy costs: error against time for every method")
@@ -79,7 +82,7 @@ def _scene_command(parser: _Parser) -> _Parser:
 
 _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
-    "curve": commands.curve, "orbit": commands.orbit, "accuracy": commands.accuracy,
+    "curve": commands.curve, "orbit": orbit_command.orbit, "accuracy": commands.accuracy,
     "observe": observe_command.observe,
 }
 

@@ -18,7 +18,7 @@ LAYERS = {
     "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
     "run": {"errors", "scene", "kernels", "integrate", "result", "steady"},
     "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "lower", "scene", "steady"},
-    "orbits": {"errors", "scene", "kernels", "integrate", "steady"},
+    "orbits": {"errors", "scene", "kernels", "lower", "integrate", "steady"},
     "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
     "store": {"errors", "quantities", "observe", "result", "scene", "steady", ""},
