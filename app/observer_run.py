@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from granchain_core import NumbersFailed, Scene, Settled, State
+from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
 from granchain_core.integrate.engine import rest
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import (
@@ -83,8 +83,8 @@ class ObserverRun:
         try:
             self.orbit = periodic_orbit(self.scene, picture.regime.period, picture.state, observer=True,
                                         stop=self.pair.engine.stop)
-        except NumbersFailed as problem:
-            self.failure = problem.sentence
+        except (NumbersFailed, BadInput) as problem:  # the latter where tension is cut
+            self.failure = str(problem)
 
     @property
     def leading(self) -> complex | None:

@@ -17,5 +17,6 @@ def compile_observer(scene: Scene) -> None:
     """Compile the pair's motion and the observer's tangents for the scene's structure, or load them from the cache."""
     short = scene.evolve(f=max(scene.f, 1000.0))
     Pair(short, 2).engine.record(2)
-    StroboscopicMap(short, 1)(np.zeros(2 * short.N), observer=True)
+    if not scene.cuts_tension:  # such a scene has no multipliers to compute (orbits/flow.py)
+        StroboscopicMap(short, 1)(np.zeros(2 * short.N), observer=True)
     mark_warm(scene, OBSERVER_PIECE)

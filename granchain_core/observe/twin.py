@@ -42,7 +42,7 @@ class Twin:
     `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is its
     distance's factor per orbit period as measured in time, `measured` one or two leading multipliers read off from
     it (None and empty where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is
-    not periodic. `translation` is how much of the last linear difference is one shift of all beads.
+    not periodic, or cuts tension. `translation` is how much of the last linear difference is one shift of all beads.
     """
 
     scene: Scene
@@ -119,10 +119,10 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     _check(periods, samples)
     began = time.perf_counter()
     way = settle(scene, None, stop)
-    orbit, start, n = None, way.engine.state, 1
-    if way.regime.period is not None:
-        orbit = periodic_orbit(scene, way.regime.period, start, observer=True, stop=stop)
-        start, n = orbit.state, orbit.period
+    orbit, start, n = None, way.engine.state, way.regime.period or 1
+    if way.regime.period is not None and not scene.cuts_tension:
+        orbit = periodic_orbit(scene, n, start, observer=True, stop=stop)
+        start = orbit.state
     pair = Pair(scene, samples, stop)
     pair.start(start, observer_start(scene, start, perturbation))
     u, force, difference = _follow(pair, periods)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from app.observer_run import NUDGE, ObserverRun
 from app.views.observer import step_message
 from granchain_core import scene, settled
-from granchain_core.integrate.engine import new_stop
+from granchain_core.integrate.engine import new_stop, rest
 
 FOUNDED = scene("fig11-founded")
 
@@ -37,6 +39,14 @@ def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
     for _ in range(60):
         run.step()
     assert run.measured == pytest.approx(run.predicted, rel=0.02)
+
+
+def test_without_multipliers_it_says_why_and_runs() -> None:
+    cut = FOUNDED.evolve(f=340.0, dissipation="tsuji", tension="cut")
+    run = ObserverRun(cut, None, new_stop(), None)
+    run.predict(SimpleNamespace(regime=SimpleNamespace(period=1), state=rest(cut)))  # type: ignore[arg-type]
+    assert run.predicted is None and "tension = cut" in run.sentence
+    assert run.step().distance[0] > 0.0
 
 
 def test_a_knob_that_is_turned_goes_on_from_where_both_are() -> None:
