@@ -1,4 +1,4 @@
-"""The command line: serve, scenes, warm, run, curve, orbit, accuracy, map.
+"""The command line: serve, scenes, warm, run, curve, orbit, branch, observe, map, accuracy, check.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled. With --json one object goes to stdout and nothing else; progress goes to stderr.
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from app import commands, map_command
+from app import branch_command, commands, map_command, observe_command, orbit_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import unknown_name
 
@@ -53,12 +53,17 @@ def _parser() -> _Parser:
     orbit.add_argument("scene", metavar="SCENE")
     orbit.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     orbit.add_argument("--period", type=int, metavar="n", help="drive periods; else those of the settled motion")
+    orbit.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
+                       help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
+    orbit.add_argument("--seed", type=int, default=0, help="of the random start")
     orbit.add_argument("--observer", action="store_true", help="multipliers of the observer of model (4) too")
     orbit.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    branch_command.add_options(_scene_command(command("branch", "branch of periodic orbits and its special points")))
     accuracy = command("accuracy", "what accuracy costs: error against time for every method")
     accuracy.add_argument("scene", metavar="SCENE")
     accuracy.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     accuracy.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    observe_command.add_options(_scene_command(command("observe", "push a scene's chain by a measured force")))
     curve = _scene_command(command("curve", "resonance curve: largest forces over frequency"))
     curve.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
     curve.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
@@ -79,8 +84,8 @@ def _scene_command(parser: _Parser) -> _Parser:
 
 _COMMANDS = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
-    "curve": commands.curve, "orbit": commands.orbit, "accuracy": commands.accuracy,
-    "map": map_command.map_scene,
+    "curve": commands.curve, "orbit": orbit_command.orbit, "branch": branch_command.branch,
+    "observe": observe_command.observe, "map": map_command.map_scene, "accuracy": commands.accuracy,
 }
 
 

@@ -37,7 +37,8 @@ def say(*words: object) -> None:
     print(*words, file=sys.stderr, flush=True)
 
 
-def _show_json(data: dict[str, Any]) -> None:
+def show_json(data: dict[str, Any]) -> None:
+    """Print the one JSON object of a command."""
     print(json.dumps(data, allow_nan=False))
 
 
@@ -86,7 +87,7 @@ def scenes(arguments: argparse.Namespace) -> None:
     """List the scenes."""
     found = [scene(name) for name in scene_names()]
     if arguments.json:
-        _show_json({"scenes": [{"name": s.name, "title": s.title, "look_at": s.look_at, "paper": s.paper,
+        show_json({"scenes": [{"name": s.name, "title": s.title, "look_at": s.look_at, "paper": s.paper,
                                 "knobs": s.knobs, "effects": s.effects} for s in found]})
         return
     for one in found:
@@ -123,7 +124,7 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.out:
         save(result, arguments.out)
     if arguments.json:
-        _show_json({
+        show_json({
             "scene": chosen.name, "knobs": chosen.knobs, "effects": chosen.effects, "status": result.status,
             "regime": result.regime.name, "period": result.regime.period,
             "max_output_force": result.max_output_force,
@@ -181,7 +182,7 @@ def curve(arguments: argparse.Namespace) -> None:
     if arguments.out:
         save_curve(swept, arguments.out)
     if arguments.json:
-        _show_json({
+        show_json({
             "frequency": [p.frequency for p in swept.points],
             **{name: [_null(getattr(p, name)) for p in swept.points]
                for name in ("max_output_force", "max_output_force_elastic", "max_input_force")},
@@ -195,39 +196,6 @@ def curve(arguments: argparse.Namespace) -> None:
         print(f"{p.frequency:12.6g}  {p.max_output_force:18.6g}  {p.max_output_force_elastic:9.6g}  "
               f"{p.max_input_force:17.6g}  {regime}")
     say(f"{len(swept.points)} points in {swept.wall_s:.2f} s")
-
-
-def orbit(arguments: argparse.Namespace) -> None:
-    """The periodic orbit of a scene and its multipliers."""
-    from granchain_core.orbits import periodic_orbit
-
-    chosen = chosen_scene(arguments)
-    found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, observer=arguments.observer, stop=stop))
-    if arguments.json:
-        data: dict[str, Any] = {
-            "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
-            "multipliers": _pairs(found.multipliers), "stable": found.stable,
-        }
-        if found.observer_multipliers is not None:
-            data["observer_multipliers"] = _pairs(found.observer_multipliers)
-            data["observer_stable"] = found.observer_stable
-        _show_json(data)
-        return
-    print(f"{chosen.name}: orbit of period {found.period}, {'stable' if found.stable else 'unstable'}, "
-          f"residual {found.residual:.1e} after {len(found.newton_residuals) - 1} Newton iterations")
-    _show_multipliers("multipliers", found.multipliers)
-    if found.observer_multipliers is not None:
-        _show_multipliers("observer", found.observer_multipliers)
-
-
-def _pairs(multipliers: Any) -> list[list[float]]:
-    return [[float(mu.real), float(mu.imag)] for mu in multipliers]
-
-
-def _show_multipliers(title: str, multipliers: Any) -> None:
-    shown = ", ".join(f"{mu.real:+.4f}{mu.imag:+.4f}i (|μ| {abs(mu):.4f})" for mu in multipliers[:4])
-    outside = sum(abs(mu) > 1.0 for mu in multipliers)
-    print(f"{title}: {outside} of {len(multipliers)} outside the unit circle; leading {shown}")
 
 
 def _null(value: float) -> float | None:
@@ -250,7 +218,7 @@ def accuracy(arguments: argparse.Namespace) -> None:
     found = in_background(lambda stop: work_precision(chosen, stop, progress))
     if arguments.json:
         rows = [{**asdict(row), "error": _null(row.error)} for row in found.rows]
-        _show_json({"reference": {"method": found.reference, "agreement": _null(found.agreement),
+        show_json({"reference": {"method": found.reference, "agreement": _null(found.agreement),
                                   "second": found.second, "disagreement": found.disagreement}, "rows": rows,
                     "naive": _naive(found)})
         return

@@ -15,7 +15,8 @@ from pathlib import Path
 
 from granchain_core import Scene
 from granchain_core.accuracy import compiled
-from granchain_core.orbits.compiled import ORBIT_PIECE, compile_orbit
+from granchain_core.observe.compiled import OBSERVER_PIECE, compile_observer
+from granchain_core.orbits.compiled import BRANCH_PIECE, ORBIT_PIECE, compile_branch, compile_orbit
 from granchain_core.warm import is_warm, structure, warm
 
 from .jobs import BACKGROUND, Stop
@@ -36,6 +37,10 @@ def load(scene: Scene, piece: str) -> None:
         compiled.compile_piece(scene, piece)
     elif piece == ORBIT_PIECE:
         compile_orbit(scene)
+    elif piece == BRANCH_PIECE:
+        compile_branch(scene)
+    elif piece == OBSERVER_PIECE:
+        compile_observer(scene)
     else:
         warm(scene, (piece,))
 

@@ -9,10 +9,11 @@ from typing import Any
 
 from bokeh.document import Document
 
-from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, settling
+from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, State, settling
 
 from .account import with_account
 from .accuracy import AccuracyPage
+from .branches import BranchesPage
 from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
 from .curves import Curves
 from .diagrams import MapTab
@@ -21,10 +22,12 @@ from .exchange import Exchange
 from .frames import samples_for
 from .jobs import LatestWins, Stop
 from .live import LivePicture, LiveRun
+from .observer import ObserverPage
 from .painter import Painter
 from .promptness import in_one_go, send_at_once
 from .session import LOOKS, SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
+from .stability import StabilityPage
 from .transport import Transport
 from .views.knobs import foundation_words, knob_state
 from .views.shell import Views
@@ -46,9 +49,13 @@ class Controller:
         self.live: LiveRun | None = None
         self.curves = Curves(self.views, self.later, self.after, lambda: self.busy)
         self.exchange = Exchange(self)
+        self.observer = ObserverPage(self)
         self.accuracy = AccuracyPage(self)
+        self.branches = BranchesPage(self)
         self.effects = EffectsPanel(self)
+        self.stability = StabilityPage(self)
         self.map = MapTab(self)
+        self.parts = (self.accuracy, self.branches, self.effects, self.map, self.observer, self.stability)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
@@ -58,8 +65,8 @@ class Controller:
             "lock": self._lock, "curve": self._curve,
             "curve-visible": lambda m: self.curves.visible(bool(m.get("value")), self.session.scene),
             "cover": self._cover, "curve-stop": lambda _: self.curves.stop(),
-            **Transport(self).actions, **self.exchange.actions, **self.accuracy.actions, **self.effects.actions,
-            **self.map.actions,
+            **Transport(self).actions, **self.exchange.actions,
+            **{name: action for part in self.parts for name, action in part.actions.items()},
         }
 
     # Coming in and going out
@@ -113,11 +120,8 @@ class Controller:
 
     def close(self, session_context: object) -> None:
         """The visitor left."""
-        self.jobs.close()
-        self.curves.close()
-        self.accuracy.close()
-        self.effects.close()
-        self.map.close()
+        for part in (self.jobs, self.curves, *self.parts):
+            part.close()
 
     @property
     def busy(self) -> bool:
@@ -131,19 +135,21 @@ class Controller:
 
     # Computing and painting
 
-    def compute(self) -> None:
-        """A new picture for the knobs as they are now."""
+    def compute(self, start: State | None = None) -> None:
+        """A new picture for the knobs as they are now, from `start` or from where the visitor chose."""
+        self.stability.moved()
         if self.session.mode == "live":
             if self.live is not None:
                 self.live.change(self.session.scene)
             self.idle()
         else:
-            self.jobs.submit(partial(self._settled, self.session.scene))
+            self.jobs.submit(partial(self._settled, self.session.scene, start))
 
-    def _settled(self, scene: Scene, stop: Stop) -> Iterator[Settled]:
+    def _settled(self, scene: Scene, start: State | None, stop: Stop) -> Iterator[Settled]:
         """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
         self._await_live_kernels(scene, stop)
-        pictures = settling(scene, start=self.session.previous_state(), samples=samples_for(scene), stop=stop)
+        self.session.began = start or self.session.previous_state()
+        pictures = settling(scene, start=self.session.began, samples=samples_for(scene), stop=stop)
         yield next(pictures)
         if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
             for picture in pictures:
@@ -172,6 +178,7 @@ class Controller:
         if isinstance(picture, Settled):
             self.session.picture = picture
             self.accuracy.describe()
+            self.stability.arrived(picture)
         if self.session.notice:
             self.note("")
         self._painter.offer(picture)
@@ -221,7 +228,9 @@ class Controller:
 
     def _describe(self) -> None:
         scene = self.session.scene
+        self.observer.changed()
         self.accuracy.describe()
+        self.branches.describe()
         self.effects.changed()
         self.map.moved()
         self.views.equation.display(latex=scene.equation_latex())
@@ -258,6 +267,13 @@ class Controller:
         self.session.switch(name, on)
         self._echo()
         self._turned(name)
+
+    def turn_to(self, scene: Scene, start: State) -> None:
+        """The same chain with several knobs turned at once, from a given state."""
+        self.session.scene = scene
+        self._echo()
+        self._describe()
+        self.compute(start)
 
     def _cover(self, message: dict[str, Any]) -> None:
         """A page over the pictures was opened or closed."""

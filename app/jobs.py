@@ -19,6 +19,9 @@ _CORES = os.cpu_count() or 1
 
 PICTURES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="picture")
 BACKGROUND = ThreadPoolExecutor(max_workers=max(1, _CORES // 2), thread_name_prefix="background")
+ANALYSES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="analysis")
+"""What follows a picture while the knobs rest: short, and given up when a knob moves."""
+
 MEASUREMENTS = ThreadPoolExecutor(max_workers=1, thread_name_prefix="measurement")
 """What measures times, one after the other for all visitors: two at once would measure each other."""
 
@@ -49,9 +52,11 @@ class LatestWins:
     repainted during a drag.
     """
 
-    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None]) -> None:
+    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
+                 pool: ThreadPoolExecutor = PICTURES) -> None:
         self._deliver = deliver
         self._fail = fail
+        self._pool = pool
         self._lock = threading.Lock()
         self._waiting: Work | None = None
         self._running = False
@@ -75,7 +80,7 @@ class LatestWins:
             if self._running:
                 return
             self._running = True
-        PICTURES.submit(self._drain)
+        self._pool.submit(self._drain)
 
     def close(self) -> None:
         """Give up: nothing more is computed or delivered."""

@@ -7,7 +7,7 @@ import time
 from collections import deque
 from dataclasses import dataclass
 
-from granchain_core import LiveChain, Run, Scene
+from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.live import joined
 
 from .frames import LIVE_PERIODS, Frames, LiveWindow, samples_for
@@ -26,11 +26,11 @@ class LivePicture:
 
 
 class LiveRun:
-    """One chain that keeps running; `step` is called from a worker thread, the rest from the page."""
+    """One chain that keeps running, from rest or from `start`; `step` is for a worker thread, the rest for the page."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, start: State | None = None) -> None:
         self.samples = samples_for(scene)
-        self._chain = LiveChain(scene, samples=self.samples)
+        self._chain = LiveChain(scene, samples=self.samples, start=start)
         self._window = LiveWindow(self.samples)
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None

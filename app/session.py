@@ -31,6 +31,7 @@ class Session:
     speed: float = 1.0
     playing: bool = True
     picture: Settled | None = None
+    began: State | None = None
     sentence: str = ""
     notice: str = ""
     account: bool = False

@@ -7,6 +7,7 @@
 from .errors import BadInput, Cancelled, NumbersFailed
 from .integrate import State
 from .live import LiveChain
+from .observe import observe
 from .result import Cost, Run
 from .run import run
 from .scene import Scene, scene, scene_names
@@ -18,5 +19,6 @@ __version__ = "0.1.0"
 
 __all__ = [
     "BadInput", "Cancelled", "Cost", "Curve", "CurvePoint", "LiveChain", "NumbersFailed", "Regime", "Run", "Scene",
-    "Settled", "State", "iter_curve", "resonance_curve", "run", "scene", "scene_names", "settled", "settling",
+    "Settled", "State", "iter_curve", "observe", "resonance_curve", "run", "scene", "scene_names",
+    "settled", "settling",
 ]

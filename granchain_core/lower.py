@@ -65,8 +65,8 @@ class Lowered:
 
     @property
     def beads(self) -> int:
-        """Number of beads N."""
-        return self.scene.N
+        """Number of bodies that move: N, for a chain with its observer those of both and the wall between."""
+        return self.row - 2
 
     @property
     def period(self) -> float:
@@ -75,8 +75,8 @@ class Lowered:
 
     @property
     def row(self) -> int:
-        """Length of one row of the state, N + 2 bodies."""
-        return self.scene.N + 2
+        """Length of one row of the state: all bodies, N + 2 for one chain."""
+        return len(self.slots.chain.inverse_mass)
 
     @property
     def size(self) -> int:
@@ -85,7 +85,7 @@ class Lowered:
 
     def forces(self) -> Forces:
         """A workspace for one evaluation."""
-        contacts = self.scene.N + 1
+        contacts = self.row - 1
         return Forces(np.zeros(contacts), np.zeros(contacts) if self.slots.dissipation is not None else None)
 
     @cached_property

@@ -30,8 +30,12 @@ def reference(name: str) -> dict:
 
 def reference_scene(name: str) -> Scene:
     """The stored case as a scene of the product, knob by knob."""
-    given = reference(name)["record"]["scene"]
-    base = scene("rig" if name.startswith("rig") else "sec2")
+    return recorded_scene(reference(name)["record"]["scene"])
+
+
+def recorded_scene(given: dict) -> Scene:
+    """The scene in a record of tests/reference as one of the product, knob by knob."""
+    base = scene("rig" if given["name"].startswith("rig") else "sec2")
     chosen = base.evolve(f=given["frequency"], A0=given["amplitude"], D=given["damping"], N=given["beads"],
                          kappa=given["kappa"], wall=given["wall"], dissipation=given["law"],
                          tension=given["tension"], F0=given["preload"])

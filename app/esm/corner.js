@@ -7,6 +7,8 @@ const paragraph = (text, className = "") => Object.assign(document.createElement
 
 // Draws the small picture of accuracy again; set while its tab is open.
 let drawSmall = () => {};
+// The same of the observer's.
+let drawObserver = () => {};
 
 const TABS = {
   "look at": ({ state }) => [paragraph(state.look_at ?? ""), paragraph(state.paper ?? "", "soft")],
@@ -19,6 +21,11 @@ const TABS = {
       list.append(item);
     }
     return [list, paragraph("solid from rest, dashed sweeping up, dotted sweeping down; ● with a ring is now", "soft")];
+  },
+  stability: () => {
+    const { show, content } = stabilityTab();
+    drawSmall = show;
+    return content;
   },
   accuracy: (model) => {
     const page = window.granchain;
@@ -42,6 +49,25 @@ const TABS = {
   },
   map: mapTab,
   effects: effectsTab,
+  branches: branchesTab,
+  observer: () => {
+    const page = window.granchain;
+    const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
+    open.addEventListener("click", () => page.cover("observer"));
+    const host = Object.assign(document.createElement("div"), { className: "small" });
+    const said = paragraph("");
+    const show = () => {
+      said.textContent = page.observer?.sentence || "A copy of the chain that feels its input force and nothing else.";
+      if (host.isConnected && page.observer) distancePicture(host, page.observer.history, page.observer.told, true);
+    };
+    page.observerTab = host;  // while it is on the screen the observer runs
+    drawObserver = show;
+    requestAnimationFrame(show);
+    const row = Object.assign(document.createElement("div"), { className: "row top" });
+    row.append(said, open);
+    document.getElementById("curves").classList.add("roomy");
+    return [row, host];
+  },
   data: (model) => {
     const row = document.createElement("div");
     row.className = "row";
@@ -80,7 +106,10 @@ export function render({ model }) {
   });
   const show = () => {
     const focused = root.getRootNode().activeElement?.dataset?.name;
-    for (const tab of tabs.querySelectorAll("[role=tab]")) tab.setAttribute("aria-selected", String(tab.textContent === chosen));
+    for (const tab of tabs.querySelectorAll("[role=tab]")) {
+      tab.setAttribute("aria-selected", String(tab.textContent === chosen));
+      tab.tabIndex = tab.textContent === chosen ? 0 : -1;
+    }
     body.replaceChildren(...TABS[chosen](model));
     if (focused) body.querySelector(`[data-name="${focused}"]`)?.focus();
   };
@@ -89,10 +118,11 @@ export function render({ model }) {
   const choose = (name) => {
     const before = chosen;
     chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "map"].includes(name));
+    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "stability", "branches", "map"].includes(name));
     if (before === "effects" || name === "effects") looking();
     if (before === "map" || name === "map") model.send_msg({ do: "map-visible", value: name === "map" });
     show();
+    window.granchain.emit("tab", name);
   };
   for (const name of Object.keys(TABS)) {
     const tab = Object.assign(document.createElement("button"), { textContent: name, type: "button" });
@@ -100,11 +130,24 @@ export function render({ model }) {
     tab.addEventListener("click", () => choose(name));
     tabs.append(tab);
   }
+  // One stop for the Tab key; arrows, Home and End go from tab to tab.
+  tabs.addEventListener("keydown", (event) => {
+    const all = [...tabs.querySelectorAll("[role=tab]")], here = all.indexOf(event.target);
+    const to = { ArrowRight: here + 1, ArrowLeft: here - 1, Home: 0, End: all.length - 1 }[event.key];
+    if (here < 0 || to === undefined) return;
+    event.preventDefault();
+    const next = all[(to + all.length) % all.length];
+    next.click();
+    next.focus();
+  });
   tabs.append(larger);
+  model.on("state", show);
+  window.granchain.on("observer", () => { if (chosen === "observer") drawObserver(); });
   // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
   model.on("state", () => { if (chosen !== "map") show(); });
   model.on("msg:custom", mapMessage);
   window.granchain.on("accuracy", () => { if (chosen === "accuracy") drawSmall(); });
+  window.granchain.on("stability", () => { if (chosen === "stability") drawSmall(); });
   window.granchain.on("cover", () => { if (chosen === "effects") looking(); });
   show();
   return root;

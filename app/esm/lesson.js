@@ -1,16 +1,5 @@
 // What naive steps would have drawn: the output force dashed over the certified one, and their difference below.
 
-const extent = (array) => array.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [0, 0]);
-const round3 = (value) => Number(value.toPrecision(3));
-
-function ticks(low, high, count) {
-  const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].find((m) => m * power >= raw) * power;
-  const found = [];
-  for (let v = Math.ceil(low / step) * step; v <= high + 1e-9 * step; v += step) found.push(Number(v.toPrecision(6)));
-  return found;
-}
-
 function lessonPicture(host, lesson, chosen, colour) {
   const f = frame(host, { left: 62, right: 12, top: 8, bottom: 42 }, "output force, certified and naive");
   const { svg } = f;

@@ -32,6 +32,7 @@ window.granchain = (() => {
   const cover = (name) => {
     covered = name;
     document.getElementById("page").classList.toggle("covered", name !== null);
+    for (const one of document.querySelectorAll("[data-cover]")) one.hidden = one.dataset.cover !== name;
     emit("cover", name);
   };
   document.addEventListener("keydown", (event) => { if (event.key === "Escape" && covered) cover(null); });

@@ -30,6 +30,18 @@ const decades = (low, high) => {
   return [from, Math.max(to, from + 1)];
 };
 
+const extent = (array) => array.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [0, 0]);
+const round3 = (value) => Number(value.toPrecision(3));
+
+// Round values between low and high, about `count` of them.
+function ticks(low, high, count) {
+  const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].find((m) => m * power >= raw) * power;
+  const found = [];
+  for (let v = Math.ceil(low / step) * step; v <= high + 1e-9 * step; v += step) found.push(Number(v.toPrecision(6)));
+  return found;
+}
+
 // A frame with a scale in both directions; `box` is where data go.
 function frame(host, { left, right, top, bottom }, label) {
   const width = Math.max(60, host.clientWidth), height = Math.max(60, host.clientHeight);

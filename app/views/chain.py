@@ -17,7 +17,7 @@ from .component import Component, text
 class Chain(Component):
     """Beads, contacts, driver and wall; the frames come as single-precision arrays."""
 
-    _esm = text("stage.js") + text("chain.js")
+    _esm = text("stage.js") + text("chaindrawing.js") + text("chain.js")
     _stylesheets = [text("chain.css")]  # noqa: RUF012  (Panel's own class attribute)
 
 

@@ -8,8 +8,10 @@ from .component import Component, text
 class Corner(Component):
     """Tabs; the data tab sends the text of a CSV file."""
 
-    _esm = text("plot.js") + text("effects.js") + text("map.js") + text("corner.js")
-    _stylesheets = [text("controls.css"), text("drawing.css"), text("corner.css"), text("map.css")]  # noqa: RUF012
+    _esm = "".join(text(f"{name}.js") for name in (
+        "plot", "observerplot", "effects", "multipliers", "stabilitysmall", "branchpicture", "map", "corner"))
+    _stylesheets = [text(f"{name}.css")  # noqa: RUF012
+                    for name in ("controls", "drawing", "multipliers", "corner", "map")]
 
 
 class CurveBar(Component):

@@ -13,6 +13,7 @@ from granchain_core import Settled
 
 from .accuracy import Accuracy
 from .badge import Badge
+from .branches import Branches
 from .chain import PALETTE, Chain
 from .component import text
 from .corner import Corner, CurveBar
@@ -22,8 +23,12 @@ from .equation import Equation
 from .figures import BOTTOM, GAP, TOP, pane
 from .header import Header
 from .knobs import Knobs
+from .observer import Observer, first_state
+from .stability import Stability
 from .trains import Trains
 
+#: Pages over the pictures; each has its place in page.html.
+PAGES = ("accuracy", "stability", "branches", "observer")
 _APP = Path(__file__).resolve().parent.parent
 
 
@@ -43,6 +48,9 @@ class Views:
         self.corner = Corner(received, sizing_mode="stretch_both", state={"regimes": [
             {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
         self.accuracy = Accuracy(received, sizing_mode="stretch_both")
+        self.stability = Stability(received, sizing_mode="stretch_both")
+        self.branches = Branches(received, sizing_mode="stretch_both")
+        self.observer = Observer(received, sizing_mode="stretch_both", state=first_state())
         self.badge = Badge(received)
         self.shown: Settled | None = None
 
@@ -54,7 +62,7 @@ class Views:
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)
         page.add_variable("gap", GAP)
-        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "accuracy", "badge"):
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "badge", *PAGES):
             page.add_panel(name, getattr(self, name))
         page.add_panel("left", pane(self.trains.left))
         page.add_panel("map", pane(self.energy.figure))

@@ -13,6 +13,7 @@ from ..kernels.along import Along
 from ..kernels.certified import run_certified
 from ..kernels.dop853 import ALL_STAGES, Dop853, Work
 from ..kernels.dopri5 import Dopri5, run_without_events
+from ..kernels.effects.driver import Harmonic
 from ..kernels.events import ENDS
 from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.motion import place
@@ -84,13 +85,14 @@ def new_stop() -> np.ndarray:
 class Engine:
     """Carries a state of `scene` through time; all arrays are allocated here, none in a kernel.
 
-    `samples` is the number of recorded samples a period. `stop` is a flag from `new_stop`.
+    `samples` is the number of recorded samples a period. `stop` is a flag from `new_stop`. `lowered` may be given where
+    more than the scene's own chain moves.
     """
 
     def __init__(self, scene: Scene, setting: Setting, samples: int = 1, balance: bool = False,
-                 stop: np.ndarray | None = None) -> None:
+                 stop: np.ndarray | None = None, lowered: Lowered | None = None) -> None:
         self._in_uv = METHODS[setting.method].variables == "uv"
-        self.lowered: Lowered = lower(scene, balance and not self._in_uv)
+        self.lowered = lower(scene, balance and not self._in_uv) if lowered is None else lowered
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
@@ -102,7 +104,7 @@ class Engine:
             self._prepare_adaptive()
         else:
             self._prepare_fixed()
-        self.start(rest(scene))
+        self.start(rest(scene) if lowered is None else State(np.zeros(lowered.beads), np.zeros(lowered.beads)))
 
     # --- set-up --------------------------------------------------------------------------------------------
 
@@ -121,9 +123,11 @@ class Engine:
         self.grid = n
 
     def _along(self) -> Along | Wide | None:
-        """The workspace of SIMD steps, where there is neither a tension cut nor an energy account in the equations."""
+        """The workspace of SIMD steps: neither tension cut nor energy account in the equations, and one chain."""
         lo, slots = self.lowered, self.lowered.slots
         if self.setting.method != "rk4-split" or slots.tension is not None or slots.balance is not None:
+            return None
+        if not isinstance(slots.driver, Harmonic):
             return None
         width = next((lanes for lanes in WIDTHS if lo.row <= lanes), 0)
         if width:

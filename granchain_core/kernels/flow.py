@@ -10,15 +10,22 @@ import numpy as np
 
 from .dop853 import new_scale
 from .effects.preload import overlap
-from .jit import kernel
+from .jit import kernel, term
 from .landing import flow_step
 from .motion import copy
 from .root_time import held_slope, time_at
 from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, first_not_finite
-from .tangent import carry
+from .tangent import Tangent, carry
 
-#: Overlaps below this, in units of the largest displacement, are those of contacts that change at the same moment.
-_SAME = 2e-14
+
+@term
+def jump(tangent, slots, c, closes):
+    """Let tangents jump where contact c opens or closes. Absent: there are none, or they are continuous in w."""
+
+
+@jump.of(Tangent)
+def _(tangent, slots, c, closes):
+    pass
 
 
 @kernel
@@ -29,28 +36,15 @@ def begin(slots, y, path):
 
 
 @kernel
-def note(path, c, t):
+def change(slots, path, tangent, c, t):
     """Change contact c at time t; returns whether it closed."""
     closes = path.closed[c] == 0
     path.closed[c] = 1 if closes else 0
+    jump(tangent, slots, c, closes)
     row = path.logged[0]
     path.log[row, 0], path.log[row, 1] = c + 1.0 if closes else -c - 1.0, t
     path.logged[0] = row + 1
     return closes
-
-
-@kernel
-def change(slots, y, work, path, c, t):
-    """Change contact c, and with it all that touch or part at the very same moment; returns whether any closed."""
-    closed = note(path, c, t)
-    nearest = _SAME * max(1.0, work.scale[0])
-    for other in range(path.closed.size):
-        if other == c or abs(overlap(slots.preload, y, other)) > nearest or path.logged[0] >= path.log.shape[0]:
-            continue
-        speed = work.slope[other] - work.slope[other + 1]
-        if (path.closed[other] == 0 and speed > 0.0) or (path.closed[other] != 0 and speed < 0.0):
-            closed = note(path, other, t) or closed
-    return closed
 
 
 @kernel
@@ -80,8 +74,7 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
             if contact >= 0:
                 if path.logged[0] >= path.log.shape[0]:
                     return CHATTER, p, trace
-                held_slope(slots, beta, t, path.closed, y, work.slope, work.forces)
-                if change(slots, y, work, path, contact, p * period + t):
+                if change(slots, path, tangent, contact, p * period + t):
                     onset = t
                 counts[2] += 1
         onset -= period

@@ -20,6 +20,7 @@ from .effects.dissipation import damping, keep_primitive, shifted, velocity
 from .effects.driver import driver_displacement, driver_velocity
 from .effects.foundation import foundation_energy, pull_back
 from .effects.preload import overlap
+from .effects.pushed import hand_on_force, hand_on_primitive
 from .effects.tension import cut_tension
 from .jit import kernel
 
@@ -55,9 +56,11 @@ def motion(slots, u0, v0, y, dy, forces):
         d = positive_part(overlap(slots.preload, y, c))
         e[c] = elastic_force(stiffness[c], d)
         keep_primitive(slots.dissipation, G, c, d)
+    hand_on_primitive(slots.driver, slots, y, G)
     for i in range(1, m - 1):
         dy[i] = velocity(slots.dissipation, inverse_mass, y[m + i], G, i)
     cut_tension(slots.tension, slots, y, dy, e)
+    hand_on_force(slots.driver, dy, e)
     for i in range(1, m - 1):
         dy[m + i] = inverse_mass[i] * pull_back(slots.foundation, e[i - 1] - e[i], y[i])
     account(slots.balance, slots, y, dy, e)
@@ -86,6 +89,7 @@ def place(slots, theta, y, dy, forces, from_velocity):
     if from_velocity:
         for c in range(m - 1):
             keep_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
+        hand_on_primitive(slots.driver, slots, y, forces.G)
         for i in range(1, m - 1):
             y[m + i] = shifted(slots.dissipation, slots.chain.inverse_mass, y[m + i], forces.G, i)
     motion(slots, u0, driver_velocity(slots.driver, theta), y, dy, forces)

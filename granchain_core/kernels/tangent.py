@@ -45,10 +45,16 @@ class Tangent(NamedTuple):
     first_contact: int
 
 
+@kernel
+def stage_gaps(slots, state, stage, gaps):
+    """Write the overlaps of one stage's state."""
+    for c in range(gaps.shape[1]):
+        gaps[stage, c] = overlap(slots.preload, state, c)
+
+
 @keep_gaps.of(Tangent)
 def _(tangent, slots, state, stage):
-    for c in range(tangent.gaps.shape[1]):
-        tangent.gaps[stage, c] = overlap(slots.preload, state, c)
+    stage_gaps(slots, state, stage, tangent.gaps)
 
 
 @term

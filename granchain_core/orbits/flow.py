@@ -9,10 +9,13 @@ import numpy as np
 from ..errors import BadInput
 from ..integrate import Engine, Setting
 from ..kernels.dop853_tableau import STAGES
+from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.flow import run_flow
 from ..kernels.flow_step import Path
+from ..kernels.saltation import VelocityTangent
 from ..kernels.simd import LANES, aligned
 from ..kernels.tangent import Tangent
+from ..lower import Lowered
 from ..scene import Scene
 
 #: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
@@ -36,6 +39,13 @@ class Flow:
     changes: np.ndarray
 
 
+def refuse_cut(scene: Scene) -> None:
+    """`BadInput` for a scene that cuts tension."""
+    if scene.cuts_tension:
+        raise BadInput("tension = cut has contact forces whose end at F = 0 is not located, so orbits and "
+                       "multipliers are not computed; the nearest valid value is tension = allowed.")
+
+
 class StroboscopicMap:
     """x → the state n drive periods later, for scaled x = (u, w) at phase 0.
 
@@ -43,9 +53,7 @@ class StroboscopicMap:
     """
 
     def __init__(self, scene: Scene, periods: int, stop: np.ndarray | None = None) -> None:
-        if scene.cuts_tension:
-            raise BadInput("tension = cut has contact forces whose end at F = 0 is not located, so orbits and "
-                           "multipliers are not computed; the nearest valid value is tension = allowed.")
+        refuse_cut(scene)
         self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), 1, stop=stop)
         self.periods = periods
         row = self.engine.lowered.row
@@ -67,6 +75,23 @@ class StroboscopicMap:
         trace = self._run(x, tangent)
         return Flow(self.inner(self.engine.y), _columns(tangent, start.shape[1]), trace, self.changes)
 
+    def second_route(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
+        """The derivative (2N, 2N) by tangents in (u, v) with their jumps at contact events, as one of (u, w).
+
+        Without `jumps` it is wrong: what one gets who forgets the saltation, to be shown beside the right one.
+        Raises `BadInput` for a damping that is not the linear dashpot's.
+        """
+        lo = self.engine.lowered
+        if lo.slots.dissipation is not None and not isinstance(lo.slots.dissipation, LinearDashpot):
+            raise BadInput(f"dissipation = {lo.scene.dissipation} has no constant saltation; the second route knows "
+                           "linear and none.")
+        rows = len(x)
+        before = velocity_from_w(lo, x)
+        tangent = VelocityTangent(before, np.zeros((STAGES + 1, lo.row - 1)), np.zeros((STAGES, rows, rows)),
+                                  np.zeros((rows, rows)), float(jumps))
+        self._run(x, tangent)
+        return np.linalg.solve(velocity_from_w(lo, self.inner(self.engine.y)), tangent.matrix)
+
     def end(self, x: np.ndarray) -> np.ndarray:
         """Where n periods lead from x, without tangents."""
         self._run(x, None)
@@ -79,7 +104,7 @@ class StroboscopicMap:
         found[:, 1] /= self.engine.lowered.period
         return found
 
-    def _run(self, x: np.ndarray, tangent: Tangent | None) -> float:
+    def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent | None) -> float:
         engine = self.engine
         engine.start_scaled(x)
         lo = engine.lowered
@@ -101,6 +126,23 @@ def _tangent(start: np.ndarray, contacts: int, first_contact: int) -> Tangent:
     matrix[:] = padded.reshape(rows, blocks, LANES).transpose(1, 0, 2).reshape(blocks * rows, LANES)
     return Tangent(matrix, np.zeros((STAGES + 1, contacts)), np.zeros((STAGES, contacts)), np.zeros((STAGES, contacts)),
                    aligned(STAGES * rows), aligned(rows), np.zeros((STAGES + 1, STAGES)), first_contact)
+
+
+def velocity_from_w(lowered: Lowered, x: np.ndarray) -> np.ndarray:
+    """Derivative (2N, 2N) of (u, v) with respect to (u, w) at state x, phase 0, for the linear dashpot or none."""
+    n = lowered.beads
+    matrix = np.eye(2 * n)
+    if lowered.slots.dissipation is None:
+        return matrix
+    u = np.concatenate([[0.0], x[:n], [0.0]])
+    static = lowered.slots.preload.static if lowered.slots.preload is not None else 0.0
+    gate = lowered.slots.dissipation.coefficient * (u[:-1] - u[1:] + static > 0.0)  # ∂G/∂δ of every contact
+    inverse = lowered.slots.chain.inverse_mass[1:-1]
+    rows = np.arange(n)
+    matrix[n + rows, rows] = -inverse * (gate[:-1] + gate[1:])
+    matrix[n + rows[1:], rows[:-1]] = inverse[1:] * gate[1:-1]
+    matrix[n + rows[:-1], rows[1:]] = inverse[:-1] * gate[1:-1]
+    return matrix
 
 
 def _columns(tangent: Tangent, columns: int) -> np.ndarray:

@@ -15,13 +15,19 @@ import numpy as np
 from ..errors import BadInput, NumbersFailed
 from ..integrate import State
 from ..integrate.lane_block import scaled_state, state_of
+from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settle import settle
-from .flow import Flow, StroboscopicMap
+from .flow import Flow, StroboscopicMap, refuse_cut
+from .krylov import leading_multipliers, newton_step
 
 #: Residual, relative to the largest displacement and w, at which an orbit is found; and Newton's iterations at most.
 CONVERGED, MOST_ITERATIONS = 1e-11, 12
+#: Beads up to which the whole derivative is computed; of longer chains only the leading multipliers are.
+DENSE = 100
+#: Multipliers smaller than this part of the largest have no digit that is not rounding.
+_ROUNDING = 1e-13
 #: Damping of a Newton step is halved at most this often before it is called a failure.
 _MOST_HALVINGS = 6
 
@@ -31,8 +37,10 @@ class Orbit:
     """A periodic orbit of `period` drive periods through `state` at phase 0.
 
     `residual` is the map's remaining change over the state's largest entry, `newton_residuals` its history.
-    `multipliers` (2N,) are sorted by modulus, largest first. `liouville` is the relative difference between the
-    product of the multipliers and exp ∫ trace.
+    `multipliers` (2N,) are sorted by modulus, largest first; of chains of more than `DENSE` beads they are the leading
+    ones. `liouville` is the difference between the logarithm of their product and ∫ trace, relative to the latter;
+    None where not all are known, or where the smallest are mere rounding. `changes` are the contact events along the
+    orbit, as in `Flow`.
     """
 
     scene: Scene
@@ -41,7 +49,8 @@ class Orbit:
     residual: float
     newton_residuals: tuple[float, ...]
     multipliers: np.ndarray
-    liouville: float
+    liouville: float | None
+    changes: np.ndarray
     observer_multipliers: np.ndarray | None = None
 
     @property
@@ -67,7 +76,8 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     if period is not None and not 1 <= period <= LONGEST_PERIOD:
         raise BadInput(f"period {period} is outside 1 to {LONGEST_PERIOD}; the nearest valid value is "
                        f"{min(max(period, 1), LONGEST_PERIOD)}.")
-    n, x = period, None
+    refuse_cut(scene)
+    n = period
     if start is None:
         way = settle(scene, None, stop)
         n = n or way.regime.period or 1
@@ -79,15 +89,25 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     return _orbit(scene, n, strobe, x, flow, history, observer)
 
 
+def random_state(scene: Scene, seed: int) -> State:
+    """A state to start from that says nothing: normal displacements and velocities of the drive's size."""
+    scales = scales_of(scene)
+    draw = np.random.default_rng(seed).standard_normal((2, scene.N))
+    return State(draw[0] * scales.length, draw[1] * scales.velocity)
+
+
 def _newton(strobe: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, list[float]]:
     """Damped Newton iterations; the residual is taken relative to the largest displacement and the largest w."""
-    flow = strobe(x)
+    flow = _flow(strobe, x)
     history = [_residual(flow.end - x, x)]
     while history[-1] > CONVERGED and len(history) <= MOST_ITERATIONS:
-        step = np.linalg.solve(flow.derivative - np.eye(len(x)), x - flow.end)
+        step = _newton_step(strobe, x, flow)
         for halving in range(_MOST_HALVINGS):
             trial = x + step / 2**halving
-            after = strobe(trial)
+            try:
+                after = _flow(strobe, trial)
+            except NumbersFailed:  # a state too far away to be followed: a shorter step is nearer
+                continue
             if _residual(after.end - trial, trial) < history[-1]:
                 break
         else:
@@ -101,6 +121,25 @@ def _newton(strobe: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, l
     return x, flow, history
 
 
+def _dense(x: np.ndarray) -> bool:
+    return len(x) <= 2 * DENSE
+
+
+def _flow(strobe: StroboscopicMap, x: np.ndarray) -> Flow:
+    """Where the map leads, with the derivative where it is computed as a whole."""
+    return strobe(x) if _dense(x) else strobe(x, directions=np.zeros((len(x), 0)))
+
+
+def _newton_step(strobe: StroboscopicMap, x: np.ndarray, flow: Flow) -> np.ndarray:
+    if not _dense(x):
+        return newton_step(strobe, x, flow.end)
+    try:
+        return np.linalg.solve(flow.derivative - np.eye(len(x)), x - flow.end)
+    except np.linalg.LinAlgError:
+        raise NumbersFailed("Newton's step does not exist: a multiplier is 1, as at a fold; move the knob a little.",
+                            "no-convergence") from None
+
+
 def _residual(change: np.ndarray, x: np.ndarray) -> float:
     half = len(x) // 2
     return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
@@ -109,14 +148,26 @@ def _residual(change: np.ndarray, x: np.ndarray) -> float:
 
 def _orbit(scene: Scene, n: int, strobe: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
            observer: bool) -> Orbit:
-    multipliers = sorted_multipliers(flow.derivative)
-    product = float(np.sum(np.log(np.abs(multipliers))))
-    watched = sorted_multipliers(strobe(x, observer=True).derivative) if observer else None
+    liouville = None
+    if _dense(x):
+        multipliers = sorted_multipliers(flow.derivative)
+        liouville = _liouville(multipliers, flow.log_determinant)
+        watched = sorted_multipliers(strobe(x, observer=True).derivative) if observer else None
+    else:
+        multipliers = leading_multipliers(strobe, x)
+        watched = leading_multipliers(strobe, x, observer=True) if observer else None
     lowered, beads = strobe.engine.lowered, scene.N
     y = np.zeros(2 * lowered.row)
     y[1 : beads + 1], y[lowered.row + 1 : lowered.row + beads + 1] = x[:beads], x[beads:]
-    return Orbit(scene, n, state_of(lowered, y), history[-1], tuple(history), multipliers,
-                 abs(product - flow.log_determinant) / max(1.0, abs(flow.log_determinant)), watched)
+    return Orbit(scene, n, state_of(lowered, y), history[-1], tuple(history), multipliers, liouville, flow.changes,
+                 watched)
+
+
+def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:
+    sizes = np.abs(multipliers)
+    if sizes.min() < _ROUNDING * sizes.max():
+        return None
+    return abs(float(np.sum(np.log(sizes))) - log_determinant) / max(1.0, abs(log_determinant))
 
 
 def sorted_multipliers(derivative: np.ndarray) -> np.ndarray:

@@ -18,10 +18,11 @@ LAYERS = {
     "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
     "run": {"errors", "scene", "kernels", "integrate", "result", "steady"},
     "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "lower", "scene", "steady"},
-    "orbits": {"errors", "scene", "kernels", "integrate", "result", "steady", "warm"},
+    "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "warm"},
     "diagram": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits"},
+    "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
-    "store": {"errors", "quantities", "result", "scene", "steady", "diagram", ""},
+    "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", ""},
 }
 
 

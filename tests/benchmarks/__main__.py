@@ -6,11 +6,11 @@ import argparse
 import sys
 import time
 
-from . import curve, growth, machine, startup, trajectory
+from . import curve, growth, machine, orbits, startup, trajectory
 from .case import Case
 from .peers import PEERS, peer
 
-PARTS = ("trajectory", "curve", "growth", "startup")
+PARTS = ("trajectory", "curve", "growth", "orbits", "startup")
 
 
 def tell(word: str) -> None:
@@ -60,6 +60,8 @@ def _report(part: str, cases: list[Case], names: list[str], quick: bool) -> str:
         return trajectory.report(cases, quick, tell)
     if part == "curve":
         return curve.report(cases, quick, tell)
+    if part == "orbits":
+        return orbits.report(quick, tell)
     return growth.report(quick, tell) if part == "growth" else startup.report(names, quick, tell)
 
 

@@ -23,7 +23,7 @@ def type_into(page: Page, name: str, text: str) -> None:
 def opened(page: Page) -> Locator:
     """The Accuracy page, opened from the badge, with its first points."""
     page.get_by_role("button", name="asked").click()
-    sheet = page.locator("#cover")
+    sheet = page.locator('[data-cover="accuracy"]')
     expect(sheet.locator(".point").first).to_be_visible(timeout=COMPILED)
     return sheet
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, NumbersFailed, scene
 from granchain_core.integrate.lane_block import scaled_state
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
-from granchain_core.orbits.orbit import sorted_multipliers
 
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
@@ -54,23 +54,6 @@ def test_a_preloaded_chain_has_the_multipliers_of_its_linear_modes() -> None:
     shown = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
     orbit = periodic_orbit(shown, period=1)
     assert np.abs(orbit.multipliers) == pytest.approx(np.abs(linear_multipliers(shown)), rel=1e-4)
-
-
-def linear_multipliers(shown) -> np.ndarray:  # type: ignore[no-untyped-def]
-    """Eigenvalues of exp(A T) of the linearised chain in SI, largest modulus first."""
-    from scipy.linalg import expm
-
-    n, mass = shown.N, shown.masses()
-    spring = 1.5 * shown.contact_stiffness() * np.sqrt(shown.static_overlap())
-    joins = np.zeros((n + 1, n))  # overlap of contact c = u_{c-1} − u_c
-    for c in range(n + 1):
-        if c > 0:
-            joins[c, c - 1] = 1.0
-        if c < n:
-            joins[c, c] = -1.0
-    stiffness, damping = joins.T @ np.diag(spring) @ joins, shown.D * joins.T @ joins
-    matrix = np.block([[np.zeros((n, n)), np.eye(n)], [-stiffness / mass[:, None], -damping / mass[:, None]]])
-    return sorted_multipliers(expm(matrix * shown.period))
 
 
 def test_an_orbit_is_found_again_with_twice_its_period_and_squared_multipliers() -> None:

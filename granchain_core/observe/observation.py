@@ -1,0 +1,162 @@
+"""`observe`: model (3) of Zhang et al. 2016, the chain without driver, pushed by a measured force on its first bead.
+
+    m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
+
+The motion is computed twice, the second time with half the steps, until both agree to the accuracy asked for; and once
+more from every second sample. The first difference bounds what integration does wrong, three times the second what is
+lost between the samples: where a contact's dashpot makes the force jump, that loss goes with the spacing and with where
+in it the jump lies, so that one halving may gain little.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from ..integrate import State
+from ..integrate.engine import new_stop, rest
+from ..result import Cost
+from ..scene import Scene
+from .pushed_chain import PushedChain
+from .record import ForceRecord, force_record, prepared
+
+#: Most values recorded of one kind: samples times beads.
+MOST_VALUES = 50_000_000
+#: What the difference of two computations is multiplied by; the finer one's error is a sixteenth of it where the
+#: order is 4.
+_CAUTION = 1.5
+#: The same for the loss between samples, which is of order 1 and uneven.
+_UNEVEN = 3.0
+#: Steps are halved at most this often: beyond it rounding and the events' own error stop what can be gained.
+_MOST_HALVINGS = 7
+
+
+@dataclass(frozen=True)
+class Residual:
+    """How far a computed output force is from the measured one: root mean square and largest [N], and relative rms."""
+
+    rms: float
+    largest: float
+    relative: float
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """The motion of an observer at every sample (T,) of its input: displacement, velocity (T, N), force (T, N + 1), SI.
+
+    Column 0 of `force` is the input force. Errors are largest differences of any displacement over the largest
+    displacement: `integration_error` of the steps, `interpolation_error` of what is between the samples, and their sum.
+    `residual` compares with the measured output force, `residual_elastic` the elastic part with it.
+    """
+
+    scene: Scene
+    record: ForceRecord
+    displacement: np.ndarray
+    velocity: np.ndarray
+    force: np.ndarray
+    max_output_force: float
+    max_output_force_elastic: float
+    integration_error: float
+    interpolation_error: float
+    status: str
+    cost: Cost
+    residual: Residual | None
+    residual_elastic: Residual | None
+
+    @property
+    def time(self) -> np.ndarray:
+        """Times of the samples (T,) [s], as in the input."""
+        return self.record.time
+
+    @property
+    def input_force(self) -> np.ndarray:
+        """The force on bead 1 (T,) [N]."""
+        return self.force[:, 0]
+
+    @property
+    def output_force(self) -> np.ndarray:
+        """Total force on the wall (T,) [N]."""
+        return self.force[:, -1]
+
+    @property
+    def output_force_elastic(self) -> np.ndarray:
+        """Its elastic part, the paper's F_out (T,) [N]."""
+        return elastic_output(self.scene, self.displacement[:, -1])
+
+    @property
+    def error_estimate(self) -> float:
+        """Both errors together."""
+        return self.integration_error + self.interpolation_error
+
+
+def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,
+            offset: float | str = 0.0, gap: str = "refuse", stop: np.ndarray | None = None,
+            progress: Callable[[float], None] | None = None) -> Observation:
+    """The chain of `scene` pushed by a force given at times [s] in N; or `time` is a `ForceRecord` that was read.
+
+    `output` is a measured output force at the same times. The chain begins at rest or in `start`. `offset` [N] or
+    "median" is subtracted from the force; `gap` says what a gap is ("refuse", "zero", "interpolate"). Status is "done",
+    or "accuracy-not-reached" for an observer that amplifies every error.
+    Raises `BadInput`, `NumbersFailed`, `Cancelled`.
+    """
+    record = time if isinstance(time, ForceRecord) else force_record(time, force, output)
+    record = prepared(record, scene, offset, gap)
+    if len(record.time) * scene.N > MOST_VALUES:
+        raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_VALUES:.0e} values; "
+                       f"give at most {MOST_VALUES // scene.N} samples.")
+    began = clock.perf_counter()
+    flag = new_stop() if stop is None else stop
+    begin = rest(scene) if start is None else start
+    chain = PushedChain(scene, record, flag)
+    before, halvings = chain.run(begin, 0), 0
+    while True:
+        halvings += 1
+        now = chain.run(begin, halvings)
+        integration = _CAUTION * _difference(now.displacement, before.displacement)
+        if progress is not None:
+            progress(halvings / (_MOST_HALVINGS + 1))
+        if integration <= scene.accuracy or halvings == _MOST_HALVINGS:
+            break
+        before = now
+    thin = record.thinned()
+    coarse = PushedChain(scene, thin, flag, chain.counts).run(begin, halvings)
+    kept = np.searchsorted(record.time, thin.time)
+    tops, scales = chain.tops, chain.lowered.scales
+    displacement = now.displacement * scales.length
+    forces = now.force * scales.force
+    forces[:, 0] = record.force
+    elastic = elastic_output(scene, displacement[:, -1])
+    if progress is not None:
+        progress(1.0)
+    return Observation(
+        scene=scene, record=record, displacement=displacement, velocity=now.velocity * scales.velocity, force=forces,
+        max_output_force=float(tops[1]) * scales.force, max_output_force_elastic=float(tops[2]) * scales.force,
+        integration_error=integration,
+        interpolation_error=_UNEVEN * _difference(now.displacement[kept], coarse.displacement),
+        status="done" if integration <= scene.accuracy else "accuracy-not-reached",
+        cost=Cost.of(clock.perf_counter() - began, chain.counts, "rk4-split"),
+        residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
+    )
+
+
+def _difference(one: np.ndarray, other: np.ndarray) -> float:
+    largest = float(np.abs(one).max())
+    return float(np.abs(one - other).max()) / largest if largest > 0.0 else 0.0
+
+
+def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:
+    """Elastic force on the wall [N] for displacements of the last bead [m]."""
+    overlap = np.maximum(last + scene.static_overlap()[-1], 0.0)
+    return np.asarray(scene.contact_stiffness()[-1] * overlap**1.5)
+
+
+def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | None:
+    """How far `computed` is from `measured`; None where nothing was measured."""
+    if measured is None:
+        return None
+    rms, size = float(np.sqrt(np.mean((computed - measured) ** 2))), float(np.sqrt(np.mean(measured**2)))
+    return Residual(rms, float(np.abs(computed - measured).max()), rms / size if size > 0.0 else float("inf"))

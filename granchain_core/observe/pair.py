@@ -1,0 +1,71 @@
+"""A chain and its observer in one integration: model (4), Zhang et al. 2016.
+
+The observer is a second chain of the same beads and the same wall whose first bead feels F_in, the force of the first
+chain's driver contact, in place of a contact of its own. Bodies of the pair are those of the chain, 0..N+1, then the
+observer's beads and its wall; contact N+1, between the chain's wall and the observer's first bead, carries F_in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..integrate import Engine, Setting, State
+from ..kernels.effects.contact import Chain
+from ..kernels.effects.driver import FAR
+from ..kernels.effects.preload import Preload
+from ..kernels.effects.pushed import Echo
+from ..kernels.sampling import Samples
+from ..lower import Lowered, lower
+from ..scene import Scene
+
+#: Tolerance of one step, relative to the largest displacement and w: the pair is then followed to about 1e-11.
+TOLERANCE = 1e-13
+
+
+def lower_pair(scene: Scene) -> Lowered:
+    """Scaled arrays and slots of a chain with its observer.
+
+    The contact that carries F_in has no overlap of its own: its bodies stand FAR apart, and its stiffness is 0.
+    """
+    one = lower(scene)
+    mass, stiffness = one.slots.chain
+    static = np.zeros(scene.N + 1) if one.slots.preload is None else one.slots.preload.static
+    slots = one.slots._replace(
+        chain=Chain(np.concatenate([mass, mass[1:]]), np.concatenate([stiffness, [0.0], stiffness[1:]])),
+        preload=Preload(np.concatenate([static, [-FAR], static[1:]])),
+        driver=Echo(1.0, one.beta, scene.N + 1),
+    )
+    return replace(one, slots=slots)
+
+
+class Pair:
+    """A chain and its observer, carried through time together at `samples` samples a period by the certified method.
+
+    Both go through the same arithmetic: an observer that starts where its chain is stays there to the last bit.
+    """
+
+    def __init__(self, scene: Scene, samples: int, stop: np.ndarray | None = None) -> None:
+        self.scene = scene
+        self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop,
+                             lowered=lower_pair(scene))
+
+    def start(self, chain: State, observer: State) -> None:
+        """Put both into their states; the phase is the chain's."""
+        def both(name: str) -> np.ndarray:
+            return np.concatenate([getattr(chain, name), [0.0], getattr(observer, name)])
+
+        self.engine.start(State(both("displacement"), both("velocity"), chain.phase))
+
+    def difference(self, rows: Samples) -> np.ndarray:
+        """Observer minus chain of recorded samples (T, 2N): displacements, then velocities, in scaled units."""
+        n = self.scene.N
+        return np.hstack([row[:, n + 1 :] - row[:, :n] for row in (rows.displacement, rows.velocity)])
+
+    @property
+    def states(self) -> tuple[State, State]:
+        """Where the chain and its observer are."""
+        both, n = self.engine.state, self.scene.N
+        return (State(both.displacement[:n], both.velocity[:n], both.phase),
+                State(both.displacement[n + 1 :], both.velocity[n + 1 :], both.phase))

@@ -1,0 +1,77 @@
+"""The chain of model (3) ready for its kernel: scaled, with the force's cubics and the steps between its samples."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import BadInput, Cancelled, NumbersFailed
+from ..integrate import State
+from ..integrate.engine import Counts
+from ..kernels import sampling
+from ..kernels.effects.pushed import Sampled
+from ..kernels.events import ENDS
+from ..kernels.fixed_step import Rk4Split, Stages
+from ..kernels.motion import place
+from ..kernels.observed import run_observed
+from ..kernels.peaks import ROWS, forget
+from ..lower import lower
+from ..scene import Scene
+from .record import ForceRecord
+
+#: More steps than this are refused: minutes of computing.
+MOST_STEPS = 200_000_000
+
+
+class PushedChain:
+    """A scene's chain without its driver, pushed by a record's force; `counts` adds up over its runs."""
+
+    def __init__(self, scene: Scene, record: ForceRecord, stop: np.ndarray, counts: Counts | None = None) -> None:
+        driven = lower(scene)
+        self.lowered = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
+        self.record = record
+        self.counts = Counts() if counts is None else counts
+        self._stop = stop
+        self._peaks = np.zeros(3 * ROWS)
+        scales = driven.scales
+        self._spans = np.diff(record.time) * scales.rate
+        self._pieces = record.cubics() / scales.force / scales.rate ** np.arange(4)
+        # the live method's step is for overlaps of about A0; a stronger push makes contacts stiffer
+        overlap = (float(np.abs(record.force).max()) / scales.force) ** (2.0 / 3.0)
+        self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / driven.step).astype(np.int64)
+
+    @property
+    def tops(self) -> np.ndarray:
+        """Largest input, output and elastic output force of the last run, in scaled units."""
+        return self._peaks[::ROWS].copy()
+
+    def run(self, start: State, halvings: int) -> sampling.Samples:
+        """The motion from `start` in steps halved so many times; one row a sample, in scaled units."""
+        lo, n, row = self.lowered, self.lowered.beads, self.lowered.row
+        if len(start.displacement) != n:
+            raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
+        substeps = self._substeps * 2**halvings
+        if int(substeps.sum()) > MOST_STEPS:
+            raise BadInput(f"The record needs {float(substeps.sum()):.1e} steps; at most {MOST_STEPS:.0e} are allowed: "
+                           "give a shorter record or ask for less accuracy.")
+        y = np.zeros(lo.size)
+        y[1 : row - 1] = start.displacement / lo.scales.length
+        y[row + 1 : 2 * row - 1] = start.velocity / lo.scales.velocity
+        stages = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), np.zeros((ENDS, row - 1)),
+                        lo.forces(), None)
+        lo.slots.driver.piece[:] = self._pieces[0]
+        place(lo.slots, 0.0, y, stages.k[0], stages.forces, True)
+        forget(self._peaks)
+        rows = len(self._spans) + 1
+        samples = sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
+        status, done = run_observed(Rk4Split(0), lo.slots, self._spans, self._pieces, substeps, y, stages,
+                                    np.zeros((0, 2)), samples, self._peaks, self.counts.array, self._stop)
+        if status == sampling.CANCELLED:
+            raise Cancelled
+        if status == sampling.NOT_FINITE:
+            bead = max(1, sampling.first_not_finite(y, row))
+            raise NumbersFailed(f"The motion of bead {bead} stopped being a finite number at about "
+                                f"{self.record.time[done - 1]:.6g} s; look at the force there, or lower the damping.",
+                                "not-finite")
+        return samples

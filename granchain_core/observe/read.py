@@ -1,0 +1,142 @@
+"""A measured force from a file: strict CSV with time and force, or HDF5 as granchain writes it.
+
+CSV columns: time, force and, if there is one, output force; a header may name the units (time_ms, force_mN), else they
+are what the caller says, seconds and newtons where nothing is said.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from ..errors import BadInput, unknown_name
+from ..experiment.table import Expected, Table, read_table
+from ..integrate import State
+from .record import ForceRecord, checked
+
+#: Units that are understood, in SI.
+TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
+FORCE_UNITS = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
+#: Largest file and most rows.
+MOST_BYTES, MOST_ROWS = 50_000_000, 1_000_000
+_FORCES = {"force": ("force", "input_force", "f_in"), "output": ("output", "output_force", "f_out")}
+
+
+def _words(names: tuple[str, ...], units: dict[str, float]) -> set[str]:
+    return {*names, *(f"{name}_{unit.lower()}" for name in names for unit in units)}
+
+
+_EXPECTED = Expected(
+    columns={"time": _words(("time", "t"), TIME_UNITS),
+             **{meaning: _words(names, FORCE_UNITS) for meaning, names in _FORCES.items()}},
+    needed=("time", "force"), naming="time_s, force_N and, if there is one, output_force_N",
+    short="time_s, force_N, output_force_N", content="time in s and force in N",
+    widths="2 (time, force) or 3 (and output force)", most_bytes=MOST_BYTES, most_rows=MOST_ROWS,
+)
+
+
+def read_force(path: str | Path, time_unit: str | None = None, force_unit: str | None = None) -> ForceRecord:
+    """The force in a CSV or HDF5 file; units for a CSV whose header names none. Raises `BadInput` naming the line."""
+    path = Path(path)
+    for what, unit, known in (("time unit", time_unit, TIME_UNITS), ("force unit", force_unit, FORCE_UNITS)):
+        if unit is not None and unit not in known:
+            raise unknown_name(what, unit, known)
+    try:
+        with open(path, "rb") as file:
+            content = file.read(MOST_BYTES + 1)
+    except OSError as problem:
+        raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
+    if content.startswith(b"\x89HDF"):
+        if time_unit is not None or force_unit is not None:
+            raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")
+        return checked(_from_hdf5(path))
+    return read_force_csv(content, time_unit, force_unit)
+
+
+def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: str | None = None) -> ForceRecord:
+    """The force in the text of a CSV file."""
+    table = read_table(text, _EXPECTED)
+    seconds, told_time = _unit(table, "time", TIME_UNITS, time_unit, "s")
+    newtons, told_force = _unit(table, "force", FORCE_UNITS, force_unit, "N")
+    numbers = [number for number, _ in table.rows]
+    values = np.array([row for _, row in table.rows])
+    at = {meaning: values[:, place] for place, meaning in enumerate(table.order)}
+    output = None
+    if "output" in at:
+        output = at["output"] * _unit(table, "output", FORCE_UNITS, force_unit, "N")[0]
+    record = ForceRecord(at["time"] * seconds, at["force"] * newtons, output, lambda i: f"Line {numbers[i]}")
+    return _told(checked(record), f"time in {told_time}, force in {told_force}; {table.layout}")
+
+
+def _unit(table: Table, meaning: str, known: dict[str, float], asked: str | None, usual: str) -> tuple[float, str]:
+    """A column's unit in SI and its name: from the header, else as asked, else the usual one; both may only agree."""
+    named = None
+    if table.header:
+        last = table.header[table.order.index(meaning)].rsplit("_", 1)[-1]
+        named = next((unit for unit in known if unit.lower() == last), None)
+    if named is not None and asked is not None and known[named] != known[asked]:
+        raise BadInput(f"Line 1: the header says the {meaning} is in {named}, and {asked} was asked for; "
+                       "they must agree.")
+    unit = named or asked or usual
+    return known[unit], unit
+
+
+def _told(record: ForceRecord, units: str) -> ForceRecord:
+    output = "with" if record.output is not None else "no"
+    return replace(record, understood=(
+        f"{len(record.time)} samples from {record.time[0]:.6g} to {record.time[-1]:.6g} s, "
+        f"{round(1.0 / record.spacing):d} a second, force {record.force.min():.4g} to {record.force.max():.4g} N, "
+        f"{output} output force; {units}"))
+
+
+def _from_hdf5(path: Path) -> ForceRecord:
+    """Time, input force and output force of /run or /observation."""
+    try:
+        with h5py.File(path, "r") as file:
+            group = _group(file, path)
+            arrays = {name: _plain(group, name, path) for name in ("time", "input_force", "output_force")}
+    except (OSError, RuntimeError) as problem:
+        raise BadInput(f"{path} cannot be read as HDF5: {problem}.") from None
+    time, force, output = arrays["time"], arrays["input_force"], arrays["output_force"]
+    if time is None or force is None:
+        raise BadInput(f"{path} has no time and input_force in /run; write it with 'granchain run SCENE --out FILE'.")
+    if len({len(a) for a in (time, force, output) if a is not None}) != 1:
+        raise BadInput(f"{path}: time, input_force and output_force are not equally long.")
+    return _told(checked(ForceRecord(time, force, output)), "HDF5 in s and N")
+
+
+def _group(file: h5py.File, path: Path) -> h5py.Group:
+    for name in ("run", "observation"):
+        if isinstance(file.get(name, getlink=True), h5py.HardLink) and isinstance(file[name], h5py.Group):
+            return file[name]
+    raise BadInput(f"{path} has neither a group /run nor /observation; write it with 'granchain run SCENE --out FILE'.")
+
+
+def _plain(group: h5py.Group, name: str, path: Path) -> np.ndarray | None:
+    """One row of numbers that stand in this very file: links and outside storage could name any file."""
+    if name not in group:
+        return None
+    if not isinstance(group.get(name, getlink=True), h5py.HardLink) or not isinstance(group[name], h5py.Dataset):
+        raise BadInput(f"{path}: {name} is not data of this file.")
+    data = group[name]
+    if data.external or data.is_virtual or data.ndim != 1 or data.dtype.kind not in "fiu" or len(data) > MOST_ROWS:
+        raise BadInput(f"{path}: {name} is not one row of at most {MOST_ROWS} numbers stored in the file itself.")
+    return np.asarray(data[()], dtype=float)
+
+
+def first_state(path: str | Path, beads: int) -> State:
+    """The first displacements and velocities in an HDF5 file of granchain, where an observer may start."""
+    path = Path(path)
+    try:
+        with h5py.File(path, "r") as file:
+            group = _group(file, path)
+            rows = [group[name] for name in ("displacement", "velocity")]
+            if any(row.external or row.is_virtual or row.ndim != 2 or row.shape[1] != beads for row in rows):
+                raise BadInput(f"{path} does not hold displacements and velocities of {beads} beads.")
+            u, v = (np.asarray(row[0], dtype=float) for row in rows)
+    except (OSError, KeyError, RuntimeError, AttributeError) as problem:
+        raise BadInput(f"{path} has no state to start from ({problem}); start from rest.") from None
+    return State(u, v)

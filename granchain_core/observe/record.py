@@ -1,0 +1,181 @@
+"""A measured force over time: checked, its offset and gaps dealt with as was asked, and as a function of time.
+
+Between the samples the force is a monotone cubic (Fritsch & Carlson 1980, slopes of Fritsch & Butland 1984, as in
+scipy's PchipInterpolator): it passes through every sample, nowhere beyond its two neighbours, so that a force that is
+never negative stays so, and where two neighbours are zero it is zero. Its error is of order 2 to 3 in the spacing where
+the force is smooth, and of order 1 at the jump that a linear dashpot makes when its contact closes
+(tests/observe/test_sampling.py measures both).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import BadInput
+from ..scene import Scene
+
+#: A spacing so many times the usual (median) one is a gap.
+GAP = 1.5
+#: What may be done with gaps: refuse them, take the force as zero in them, or draw the cubic across.
+GAPS = ("refuse", "zero", "interpolate")
+#: Fewest samples over the shortest pulse of this strength, and in all.
+PULSE_SAMPLES, FEWEST = 4, 8
+#: Duration of a collision of two free beads with peak force F is this times √(m/2) K^{−1/3} F^{−1/6}: from Hertz'
+#: 3.2180655 (m*/K)^{2/5} v^{−1/5} and F = 1.1432626 K^{2/5} m*^{3/5} v^{6/5} with m* = m/2.
+_HERTZ = 3.2180655 * 1.1432626 ** (1.0 / 6.0)
+
+
+def _number(index: int) -> str:
+    return f"Sample {index}"
+
+
+@dataclass(frozen=True, eq=False)
+class ForceRecord:
+    """Samples of a force: time (T,) [s], force (T,) [N], measured output force (T,) [N] or None.
+
+    `place` names the place of a sample in its source, "Line 7" or "Sample 6", for sentences; `understood` says what
+    was read and what was done to it.
+    """
+
+    time: np.ndarray
+    force: np.ndarray
+    output: np.ndarray | None = None
+    place: Callable[[int], str] = _number
+    understood: str = ""
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def spacing(self) -> float:
+        """The usual time between samples [s]."""
+        return float(np.median(np.diff(self.time)))
+
+    def thinned(self) -> ForceRecord:
+        """Every second sample, the first and the last among them: what a sensor half as fast would have seen."""
+        kept = np.unique(np.append(np.arange(0, len(self.time), 2), len(self.time) - 1))
+        return ForceRecord(self.time[kept], self.force[kept], place=lambda i: self.place(int(kept[i])))
+
+    def cubics(self) -> np.ndarray:
+        """Coefficients (T − 1, 4) of the force in every interval, constant term first, in N and s."""
+        from scipy.interpolate import PchipInterpolator  # a quarter of a second, which only observers pay
+
+        return np.ascontiguousarray(PchipInterpolator(self.time, self.force).c[::-1].T)
+
+
+def force_record(time: object, force: object, output: object = None) -> ForceRecord:
+    """A record from arrays in SI, or `BadInput` naming the first sample that cannot be."""
+    arrays = [_array(name, values) for name, values in (("time", time), ("force", force))]
+    given = None if output is None else _array("output", output)
+    lengths = {len(a) for a in (*arrays, *(() if given is None else (given,)))}
+    if len(lengths) != 1:
+        raise BadInput(f"time, force and output must be equally long; they have "
+                       f"{' and '.join(str(n) for n in sorted(lengths))} samples.")
+    return checked(ForceRecord(arrays[0], arrays[1], given))
+
+
+def _array(name: str, values: object) -> np.ndarray:
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise BadInput(f"{name} must be numbers in one row, one a sample.") from None
+    if array.ndim != 1:
+        raise BadInput(f"{name} must be numbers in one row; its shape is {array.shape}.")
+    return array
+
+
+def checked(record: ForceRecord) -> ForceRecord:
+    """The record itself if every number is finite and time only rises."""
+    if len(record.time) < FEWEST:
+        raise BadInput(f"There are {len(record.time)} samples of the force; at least {FEWEST} are needed.")
+    for name in ("time", "force", "output"):
+        values = getattr(record, name)
+        if values is not None and not np.isfinite(values).all():
+            at = int(np.flatnonzero(~np.isfinite(values))[0])
+            raise BadInput(f"{record.place(at)}: {name} is {values[at]}, not a finite number; leave the sample out, "
+                           "which makes a gap, or repair it.")
+    steps = np.diff(record.time)
+    if (steps <= 0.0).any():
+        at = int(np.flatnonzero(steps <= 0.0)[0]) + 1
+        raise BadInput(f"{record.place(at)}: time {record.time[at]:.9g} s does not come after "
+                       f"{record.time[at - 1]:.9g} s of the sample before; "
+                       "samples must be in order of time, each time once.")
+    return record
+
+
+def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: str = "refuse") -> ForceRecord:
+    """The force that is applied: offset subtracted if asked, gaps as chosen, its sampling fine enough for `scene`.
+
+    `offset` is a force in N, or "median" for the median of all samples, which is the sensor's zero where the driver is
+    out of contact more than half of the time. Raises `BadInput` naming the sample.
+    """
+    if gap not in GAPS:
+        raise BadInput(f"gap {str(gap)[:30]!r} is not one of {', '.join(GAPS)}.")
+    notes = []
+    zero = _offset(record, offset)
+    if zero != 0.0:
+        notes.append(f"offset of {zero:.4g} N subtracted")
+    elif float(np.abs(record.force).min()) > 0.02 * float(np.abs(record.force).max()) and scene.F0 == 0.0:
+        notes.append(f"the force is nowhere below {np.abs(record.force).min():.3g} N: if that is the sensor's offset, "
+                     "have it subtracted")
+    moved = ForceRecord(record.time, record.force - zero, record.output, record.place, record.understood)
+    bridged = _bridged(moved, gap, notes)
+    _check_sampling(bridged, scene)
+    return ForceRecord(bridged.time, bridged.force, bridged.output, bridged.place, bridged.understood, tuple(notes))
+
+
+def _offset(record: ForceRecord, offset: float | str) -> float:
+    if offset == "median":
+        return float(np.median(record.force))
+    try:
+        value = float(offset)
+    except (TypeError, ValueError):
+        value = np.nan
+    if not np.isfinite(value):
+        raise BadInput(f"offset {str(offset)[:30]!r} is neither a force in newtons nor 'median'.")
+    return value
+
+
+def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
+    """Samples with their gaps treated; a gap of zero force ends one usual spacing beside its two neighbours."""
+    steps, usual = np.diff(record.time), record.spacing
+    gaps = np.flatnonzero(steps > GAP * usual)
+    if not len(gaps):
+        return record
+    at = int(gaps[0])
+    told = (f"{record.place(at + 1)}: {steps[at]:.4g} s after the sample before, where {usual:.4g} s is usual")
+    if gap == "refuse":
+        more = f" (and {len(gaps) - 1} more)" if len(gaps) > 1 else ""
+        raise BadInput(f"{told}: a gap{more}; choose zero (no force in it) or interpolate (a smooth curve across it).")
+    what = "taken as zero force" if gap == "zero" else "interpolated"
+    notes.append(f"{len(gaps)} gap{'s' if len(gaps) > 1 else ''} {what}, the first at {record.time[at]:.6g} s")
+    if gap == "interpolate":
+        return record
+    if record.output is not None:
+        raise BadInput(f"{told}: a gap in a record with an output force can only be interpolated, since there is no "
+                       "output force for samples that are put in.")
+    inside = np.sort(np.concatenate([record.time[gaps] + np.minimum(usual, 0.4 * steps[gaps]),
+                                     record.time[gaps + 1] - np.minimum(usual, 0.4 * steps[gaps])]))
+    places = np.searchsorted(record.time, inside)
+    return ForceRecord(np.insert(record.time, places, inside), np.insert(record.force, places, 0.0), None,
+                       record.place, record.understood)
+
+
+def shortest_pulse(scene: Scene, force: float) -> float:
+    """Duration of a collision of two of the chain's lightest beads whose peak is `force` [s]: no pulse is shorter."""
+    reduced = 0.5 * float(scene.masses().min())
+    stiffest = float(scene.contact_stiffness().max())
+    return float(_HERTZ * np.sqrt(reduced) * stiffest ** (-1.0 / 3.0) * force ** (-1.0 / 6.0))
+
+
+def _check_sampling(record: ForceRecord, scene: Scene) -> None:
+    largest = float(np.abs(record.force).max())
+    if largest == 0.0:
+        raise BadInput("The force is zero at every sample: nothing would move.")
+    allowed = shortest_pulse(scene, largest) / PULSE_SAMPLES
+    if record.spacing > allowed:
+        worst = int(np.argmax(np.abs(record.force)))
+        raise BadInput(f"{record.place(worst)}: a pulse of {largest:.3g} N may be as short as "
+                       f"{PULSE_SAMPLES * allowed:.3g} s in this chain, and samples {record.spacing:.3g} s apart would "
+                       f"miss it; the nearest valid spacing is {allowed:.3g} s ({1.0 / allowed:.4g} samples a second).")

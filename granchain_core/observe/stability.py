@@ -1,0 +1,127 @@
+"""What makes an observer stable: its largest multiplier against a knob, and where it crosses 1.
+
+The orbit is followed from value to value, each Newton iteration starting from the orbit before; where that ends, the
+steady state from rest is tried. A crossing is narrowed down by bisection, again on orbits and not on the interpolated
+curve.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput, NumbersFailed
+from ..orbits import Orbit, periodic_orbit
+from ..scene import Scene
+
+#: A crossing is located to this part of the distance between the two values it lies between.
+LOCATED = 1e-3
+#: Most values of one scan.
+MOST_VALUES = 2000
+
+
+@dataclass(frozen=True)
+class ObserverPoint:
+    """One value of the knob: largest observer multiplier and the chain's own; NaN where no orbit was found."""
+
+    value: float
+    observer: complex
+    chain: complex
+    period: int | None
+    failure: str
+
+    @property
+    def observer_largest(self) -> float:
+        """Modulus of the observer's leading multiplier."""
+        return abs(self.observer)
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """The observer becomes stable or unstable between `low` and `high`; `gains` says which with rising value."""
+
+    low: float
+    high: float
+    gains: bool
+
+
+@dataclass(frozen=True)
+class ObserverStability:
+    """Points in the order of the values, and every crossing of |μ| = 1 between neighbours on the same kind of orbit."""
+
+    scene: Scene
+    knob: str
+    points: tuple[ObserverPoint, ...]
+    thresholds: tuple[Threshold, ...]
+
+    def column(self, name: str) -> np.ndarray:
+        """One attribute of all points."""
+        return np.array([getattr(p, name) for p in self.points])
+
+
+def observer_stability(scene: Scene, knob: str, values: Sequence[float], period: int | None = None,
+                       stop: np.ndarray | None = None) -> ObserverStability:
+    """Largest observer multiplier of `scene` with `knob` (kappa, k, D, f, A0, F0) at each of `values`.
+
+    `period` of the orbit in drive periods; else that of the steady state at the first value. Raises `BadInput`.
+    """
+    if knob not in ("kappa", "k", "D", "f", "A0", "F0"):
+        raise BadInput(f"{knob!r} is no knob an observer is followed along; known: kappa, k, D, f, A0, F0.")
+    if not 1 <= len(values) <= MOST_VALUES:
+        raise BadInput(f"{len(values)} values are outside 1 to {MOST_VALUES}; the nearest valid number is "
+                       f"{min(max(len(values), 1), MOST_VALUES)}.")
+    scenes = [scene.evolve(**{knob: float(value)}) for value in values]
+    orbit: Orbit | None = None
+    orbits: list[Orbit | None] = []
+    points = []
+    for value, one in zip(values, scenes, strict=True):
+        orbit, failure = _follow(one, orbit, period, stop)
+        orbits.append(orbit)
+        points.append(_point(float(value), orbit, failure))
+    found = []
+    for (a, left), (b, right) in zip(list(zip(points, orbits, strict=True))[:-1],
+                                     list(zip(points, orbits, strict=True))[1:], strict=True):
+        if left is not None and right is not None and left.period == right.period \
+                and (a.observer_largest < 1.0) != (b.observer_largest < 1.0):
+            found.append(_locate(scene, knob, a, b, left, stop))
+    return ObserverStability(scene, knob, tuple(points), tuple(found))
+
+
+def _follow(scene: Scene, before: Orbit | None, period: int | None,
+            stop: np.ndarray | None) -> tuple[Orbit | None, str]:
+    """The orbit nearest to the one before, else the one reached from rest, else none and why."""
+    if before is not None:
+        try:
+            return periodic_orbit(scene, before.period, before.state, observer=True, stop=stop), ""
+        except NumbersFailed:
+            pass  # the orbit before has ended or is too far away: what the chain does from rest comes next
+    try:
+        return periodic_orbit(scene, period, observer=True, stop=stop), ""
+    except NumbersFailed as problem:
+        return None, problem.sentence
+
+
+def _point(value: float, orbit: Orbit | None, failure: str) -> ObserverPoint:
+    if orbit is None or orbit.observer_multipliers is None:
+        return ObserverPoint(value, complex(math.nan), complex(math.nan), None, failure)
+    return ObserverPoint(value, complex(orbit.observer_multipliers[0]), complex(orbit.multipliers[0]), orbit.period, "")
+
+
+def _locate(scene: Scene, knob: str, a: ObserverPoint, b: ObserverPoint, orbit: Orbit,
+            stop: np.ndarray | None) -> Threshold:
+    """Bisection of a crossing, the orbit followed to every middle."""
+    low, high, stable_at_low = a.value, b.value, a.observer_largest < 1.0
+    while abs(high - low) > LOCATED * abs(b.value - a.value):
+        middle = 0.5 * (low + high)
+        now, _ = _follow(scene.evolve(**{knob: middle}), orbit, orbit.period, stop)
+        if now is None or now.period != orbit.period:
+            break
+        if bool(now.observer_stable) == stable_at_low:
+            low, orbit = middle, now
+        else:
+            high = middle
+    rising = b.value > a.value
+    return Threshold(min(low, high), max(low, high), stable_at_low != rising)

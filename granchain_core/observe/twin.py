@@ -1,0 +1,217 @@
+"""Does an observer find its chain? Model (4) of Zhang et al. 2016, from a start that is off by a little.
+
+The distance between observer and chain, in scaled units |(Δu/A0, Δv/(A0 φ))|, changes by the observer's leading
+multiplier every period of the orbit as long as it is small. Here it is followed in time, where nothing is linearised,
+and the multiplier is read off from it: successive differences obey d_{k+1} = a d_k where one real multiplier leads, and
+d_{k+2} = a d_{k+1} + b d_k where two do, which then solve z² = a z + b.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from ..integrate import State
+from ..orbits import Orbit, periodic_orbit
+from ..result import Cost
+from ..scene import Scene
+from ..steady.settle import settle
+from .pair import Pair
+
+#: Distances between these are small enough to be linear and large enough not to be rounding.
+LINEAR, ROUNDING = 0.03, 1e-11
+#: Differences below this, all through a period, are rounding: the observer is in step and is followed no further.
+IN_STEP = 1e-12
+#: Most periods of one twin: a minute or so.
+MOST_PERIODS = 20_000
+#: Periods after which the fast multipliers are taken to have died out, as a part of the usable ones.
+_TRANSIENT = 1.0 / 3.0
+#: Fewest strobes a rate is taken from, and what one multiplier may leave unexplained before there are two.
+_FEWEST, _ONE_IS_ENOUGH = 4, 0.03
+#: A difference is called a translation when the uniform shift is so much of it (squared cosine).
+TRANSLATION = 0.7
+
+
+@dataclass(frozen=True, eq=False)
+class Twin:
+    """A chain x and its observer y in time: T samples of N beads in SI.
+
+    `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is its
+    distance's factor per orbit period as measured in time, `measured` one or two leading multipliers read off from
+    it (None and empty where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is
+    not periodic. `translation` is how much of the last linear difference is one shift of all beads.
+    """
+
+    scene: Scene
+    orbit: Orbit | None
+    period: int
+    time: np.ndarray
+    chain: np.ndarray
+    observer: np.ndarray
+    input_force: np.ndarray
+    output_force: np.ndarray
+    observer_output_force: np.ndarray
+    distance: np.ndarray
+    strobe_distance: np.ndarray
+    window: tuple[int, int]
+    rate: float | None
+    measured: tuple[complex, ...]
+    translation: float
+    cost: Cost
+
+    @property
+    def leading(self) -> complex | None:
+        """The leading observer multiplier of the orbit, what `measured` is to be compared with."""
+        if self.orbit is None or self.orbit.observer_multipliers is None:
+            return None
+        return complex(self.orbit.observer_multipliers[0])
+
+    @property
+    def multipliers(self) -> np.ndarray | None:
+        """All multipliers of the coupled system (4): the chain's own and the observer's."""
+        if self.orbit is None or self.orbit.observer_multipliers is None:
+            return None
+        return np.concatenate([self.orbit.multipliers, self.orbit.observer_multipliers])
+
+    @property
+    def offset(self) -> np.ndarray:
+        """Mean displacement of the observer's beads over that of the chain's (T,) [m]."""
+        return (self.observer - self.chain).mean(axis=1)
+
+    @property
+    def verdict(self) -> str:
+        """"synchronises", "drifts" (without foundation an offset grows), "breaks down" or "neither yet"."""
+        grows = self.rate is not None and self.rate > 1.0
+        if self.rate is None or (grows and self.leading is not None and abs(self.leading) < 1.0):
+            return "neither yet"
+        if not grows:
+            return "synchronises"
+        return "drifts" if self.scene.k == 0.0 and self.translation >= TRANSLATION else "breaks down"
+
+    @property
+    def sentence(self) -> str:
+        """What happened, for a reader."""
+        if self.verdict == "neither yet":
+            return "The distance between observer and chain shows no clear rate; give more periods."
+        every = "period" if self.period == 1 else f"{self.period} periods"
+        factor = f"the distance goes with {self.rate:.4g} every {every}"
+        if self.verdict == "synchronises":
+            return f"The observer synchronises: {factor}."
+        side = ""
+        if self.leading is not None and self.leading.real < 0.0:
+            side = ", to the other side each time"
+        if self.verdict == "drifts":
+            return f"The observer drifts: an offset of all its beads, which nothing pulls back, grows{side}; {factor}."
+        return f"The observer breaks down{side}: {factor}."
+
+
+def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,
+         stop: np.ndarray | None = None) -> Twin:
+    """Chain and observer of `scene` over `periods` drive periods, `samples` samples each, or until they are in step.
+
+    The chain starts on its settled orbit. `perturbation` is the observer's first distance: a number moves its beads at
+    random (always the same) by that part of A0, root mean square; a `State` is where it starts, `rest(scene)` for one
+    that knows nothing. Raises `BadInput`, `NumbersFailed`, `Cancelled`.
+    """
+    _check(periods, samples)
+    began = time.perf_counter()
+    way = settle(scene, None, stop)
+    orbit, start, n = None, way.engine.state, 1
+    if way.regime.period is not None:
+        orbit = periodic_orbit(scene, way.regime.period, start, observer=True, stop=stop)
+        start, n = orbit.state, orbit.period
+    pair = Pair(scene, samples, stop)
+    pair.start(start, observer_start(scene, start, perturbation))
+    u, force, difference = _follow(pair, periods)
+    distance = np.sqrt((difference**2).sum(axis=1))
+    scales, beads = pair.engine.lowered.scales, scene.N
+    chain, observer = slice(0, beads), slice(beads + 1, 2 * beads + 1)
+    strobes = difference[:: n * samples]
+    window = linear_window(distance[:: n * samples])
+    rate, measured = rates(strobes[window[0] : window[1]])
+    return Twin(
+        scene=scene, orbit=orbit, period=n, time=np.arange(len(u)) / samples * scene.period,
+        chain=u[:, chain] * scales.length, observer=u[:, observer] * scales.length,
+        input_force=force[:, 0] * scales.force, output_force=force[:, beads] * scales.force,
+        observer_output_force=force[:, -1] * scales.force, distance=distance,
+        strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
+        translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
+        cost=Cost.of(time.perf_counter() - began, pair.engine.counts, "dop853"),
+    )
+
+
+def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Displacement and force of all bodies, and the observer's difference (T, 2N), to the end or to rounding."""
+    engine = pair.engine
+    rows = engine.record(engine.samples)
+    parts, difference = [rows], [pair.difference(rows)]
+    for _ in range(1, periods):
+        if np.abs(difference[-1]).max() < IN_STEP:
+            break
+        rows = engine.record(engine.samples)
+        parts.append(rows)
+        difference.append(pair.difference(rows)[1:])
+
+    def joined(name: str) -> np.ndarray:
+        return np.concatenate([getattr(parts[0], name), *(getattr(part, name)[1:] for part in parts[1:])])
+
+    return joined("displacement"), joined("force"), np.concatenate(difference)
+
+
+def _check(periods: int, samples: int) -> None:
+    for name, value, low, high in (("periods", periods, 1, MOST_PERIODS), ("samples", samples, 1, 1000)):
+        if not low <= value <= high:
+            raise BadInput(f"{name} = {value} is outside {low} to {high}; the nearest valid value is "
+                           f"{min(max(value, low), high)}.")
+
+
+def observer_start(scene: Scene, chain: State, perturbation: float | State) -> State:
+    """Where the observer starts: in a given state, or beside the chain by a part of A0."""
+    if isinstance(perturbation, State):
+        if len(perturbation.displacement) != scene.N:
+            raise BadInput(f"The observer's start has {len(perturbation.displacement)} beads; the chain has {scene.N}.")
+        return perturbation
+    if not np.isfinite(perturbation):
+        raise BadInput(f"perturbation = {perturbation} is not a number; 1e-6 of the drive amplitude is usual.")
+    direction = np.random.default_rng(0).standard_normal(scene.N)
+    direction /= np.sqrt(np.mean(direction**2))
+    return State(chain.displacement + perturbation * scene.A0 * direction, chain.velocity, chain.phase)
+
+
+def linear_window(distance: np.ndarray) -> tuple[int, int]:
+    """First strobe and one behind the last of the longest run of linear distances, without its transient."""
+    beyond = np.flatnonzero((distance > LINEAR) | (distance < ROUNDING))
+    edges = np.concatenate([[-1], beyond, [len(distance)]])
+    longest = int(np.argmax(np.diff(edges)))
+    first, end = int(edges[longest]) + 1, int(edges[longest + 1])
+    return first + int(_TRANSIENT * (end - first)), end
+
+
+def rates(strobes: np.ndarray) -> tuple[float | None, tuple[complex, ...]]:
+    """Factor of the distance per strobe (least squares of its logarithm) and one or two leading multipliers.
+
+    `strobes` are successive differences (P, 2N). Where one real multiplier explains them a second would be invented.
+    """
+    if len(strobes) < _FEWEST:
+        return None, ()
+    size = np.sqrt((strobes**2).sum(axis=1))
+    rate = float(np.exp(np.polyfit(np.arange(len(size)), np.log(size), 1)[0]))
+    before, after = strobes[:-1] / size[:-1, None], strobes[1:] / size[:-1, None]
+    alone = float((before * after).sum() / (before**2).sum())
+    left = float(np.sqrt(((after - alone * before) ** 2).sum() / (after**2).sum()))
+    if left < _ONE_IS_ENOUGH:
+        return rate, (complex(alone),)
+    unit = 1.0 / size[:-2, None]
+    terms = np.stack([(strobes[1:-1] * unit).ravel(), (strobes[:-2] * unit).ravel()], axis=1)
+    a, b = np.linalg.lstsq(terms, (strobes[2:] * unit).ravel(), rcond=None)[0]
+    found = sorted((complex(z) for z in np.roots([1.0, -a, -b])), key=abs, reverse=True)
+    return rate, tuple(found)
+
+
+def share_of_translation(difference: np.ndarray) -> float:
+    """Squared cosine between a difference of displacements and one shift of all beads."""
+    size = float(difference @ difference)
+    return float(difference.sum() ** 2 / (len(difference) * size)) if size > 0.0 else 0.0

@@ -1,0 +1,58 @@
+"""Long chains: Newton's step and the leading multipliers from products of the derivative with single directions.
+
+The derivative of a chain of a thousand beads has four million entries; its product with one direction costs little
+more than the motion. Disturbances shrink in almost all directions, so a Krylov space of a few dozen holds what matters.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, gmres
+
+from ..errors import NumbersFailed
+from .flow import StroboscopicMap
+
+#: Multipliers computed for a long chain, and how exact, relative to the largest.
+LEADING, _EXACT = 24, 1e-9
+#: Newton's step is solved to this; its error is that times the residual.
+_SOLVED = 1e-6
+_RESTART, _ROUNDS = 80, 5
+
+
+def derivative_at(strobe: StroboscopicMap, x: np.ndarray, observer: bool = False) -> LinearOperator:
+    """The derivative of the map at x as an operator (2N, 2N)."""
+    def product(direction: np.ndarray) -> np.ndarray:
+        return strobe(x, observer, directions=np.asarray(direction, dtype=float).reshape(-1, 1)).derivative[:, 0]
+
+    return LinearOperator((len(x), len(x)), matvec=product, dtype=float)
+
+
+def newton_step(strobe: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """The step d of Newton's method towards a fixed point: (M − I) d = x − end, by GMRES.
+
+    Raises `NumbersFailed` where it does not converge: the derivative then has a multiplier close to 1.
+    """
+    derivative = derivative_at(strobe, x)
+    system = LinearOperator(derivative.shape, matvec=lambda d: derivative @ d - d, dtype=float)
+    step, status = gmres(system, x - end, rtol=_SOLVED, restart=_RESTART, maxiter=_ROUNDS)
+    if status != 0:
+        raise NumbersFailed(f"Newton's step was not found in {_RESTART * _ROUNDS} products with the derivative: a "
+                            f"multiplier is close to 1; move the knob a little.", "no-convergence")
+    return np.asarray(step)
+
+
+def leading_multipliers(strobe: StroboscopicMap, x: np.ndarray, observer: bool = False,
+                        count: int = LEADING) -> np.ndarray:
+    """The `count` multipliers of largest modulus at the fixed point x, largest first, by Arnoldi iteration.
+
+    Raises `NumbersFailed` where they do not converge.
+    """
+    # the start is fixed, so that the same chain gives the same digits
+    start = np.random.default_rng(0).standard_normal(len(x))
+    try:
+        found = eigs(derivative_at(strobe, x, observer), k=count, which="LM", v0=start, tol=_EXACT,
+                     return_eigenvectors=False)
+    except ArpackNoConvergence as problem:
+        raise NumbersFailed(f"Only {len(problem.eigenvalues)} of {count} leading multipliers converged; the others are "
+                            f"too close together.", "no-convergence") from None
+    return found[np.argsort(-np.abs(found), kind="stable")]

@@ -1,0 +1,85 @@
+"""Finding an unstable orbit near a motion that does not settle on it.
+
+A chaotic or quasi-periodic motion passes near unstable periodic orbits. States that nearly come back after n periods
+are near one of period n (Auerbach et al. 1987); and the orbit that a period doubling or a Neimark–Sacker bifurcation
+left unstable lies in the middle of what became of it. Newton's method on the stroboscopic map is started from the
+present state, from the middle of the section and from the closest returns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..errors import NumbersFailed
+from ..integrate import State
+from ..integrate.lane_block import scaled_state
+from ..scene import Scene
+from .flow import StroboscopicMap
+from .orbit import Orbit, periodic_orbit
+
+#: Closest returns from which Newton's method is started, and periods that lie at least between two of them.
+_STARTS, _APART = 4, 5
+#: States of the section whose mean is its middle: a multiple of all short periods.
+_MIDDLE = 120
+#: Relative change after a part of the period at which the orbit is one of that shorter period.
+_SAME = 1e-8
+
+
+def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
+                 stop: np.ndarray | None = None) -> Orbit:
+    """An orbit of `period` drive periods near `start` or near where its section passes one.
+
+    `strobes` (P, 2, N) are states at phase 0 in SI, the transient left out; P may be 0. Of an orbit that repeats sooner
+    the least period is returned. Raises `BadInput` for a period out of range, `NumbersFailed` where no start leads to
+    an orbit, and `Cancelled`.
+    """
+    tried = 0
+    for begin in (start, *_middle(strobes, period), *_close_returns(strobes, period)):
+        tried += 1
+        try:
+            found = periodic_orbit(scene, period, begin, stop=stop)
+        except NumbersFailed as failure:
+            if failure.status != "no-convergence":
+                raise
+            continue
+        least = least_period(found, stop)
+        return found if least == period else periodic_orbit(scene, least, found.state, stop=stop)
+    raise NumbersFailed(f"Newton's method found no orbit of {period} drive periods from the present state or from "
+                        f"{tried - 1} places of the section; try another period.", "no-convergence")
+
+
+def _middle(strobes: np.ndarray, period: int) -> Iterator[State]:
+    """The mean of every n-th late state."""
+    late = strobes[-_MIDDLE:][::period]
+    if len(late) > 1:
+        yield State(*np.asarray(late, dtype=float).mean(axis=0))
+
+
+def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
+    """States of the section that come back nearest after `period` periods, closest first, not two of one passage."""
+    if len(strobes) <= period:
+        return
+    size = np.maximum(1e-300, np.abs(strobes).max(axis=(0, 2)))[:, None]
+    missed = (np.abs(strobes[period:] - strobes[:-period]) / size).max(axis=(1, 2))
+    taken: list[int] = []
+    for place in np.argsort(missed):
+        if all(abs(int(place) - other) >= _APART for other in taken):
+            taken.append(int(place))
+            yield State(*np.asarray(strobes[place], dtype=float))
+        if len(taken) == _STARTS:
+            return
+
+
+def least_period(orbit: Orbit, stop: np.ndarray | None = None) -> int:
+    """The smallest number of drive periods after which the orbit is back."""
+    for shorter in range(1, orbit.period):
+        if orbit.period % shorter:
+            continue
+        strobe = StroboscopicMap(orbit.scene, shorter, stop)
+        x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+        end = strobe(x, directions=np.zeros((len(x), 0))).end
+        if np.abs(end - x).max() < _SAME * np.abs(x).max():
+            return shorter
+    return orbit.period

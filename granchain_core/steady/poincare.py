@@ -1,0 +1,83 @@
+"""The Poincaré section: a chain's motion looked at once per drive period, at any phase of the drive.
+
+A driven chain's section at phase p is the set of states at t = (j + p)T, j = 0, 1, …: n points for a period-n orbit, a
+closed curve for a quasi-periodic motion, a cloud with structure for a chaotic one. The motion is recorded at many
+phases of each period at once, so that another phase or bead needs no new run.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..integrate import Engine, Setting, State
+from ..integrate.engine import rest
+from ..scene import Scene
+
+#: Most values of displacement that a section keeps: it holds fewer periods of a longer chain.
+MOST_VALUES = 1_500_000
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """States of every bead at `samples` phases of each of P periods since the start, phase 0 first.
+
+    displacement, velocity (P, samples, N) [m, m/s]; a long one is in single precision, which is enough for pictures and
+    for Newton's starts.
+    """
+
+    scene: Scene
+    displacement: np.ndarray
+    velocity: np.ndarray
+
+    @property
+    def samples(self) -> int:
+        """Phases per period."""
+        return int(self.displacement.shape[1])
+
+    @property
+    def periods(self) -> int:
+        """Periods recorded so far."""
+        return len(self.displacement)
+
+    def points(self, bead: int, phase: int) -> np.ndarray:
+        """(P, 2) displacement and velocity of bead 1..N at the phase with that number [m, m/s]."""
+        return np.stack([self.displacement[:, phase, bead - 1], self.velocity[:, phase, bead - 1]], axis=1)
+
+    def strobes(self) -> np.ndarray:
+        """(P, 2, N) all beads at phase 0 [m, m/s]."""
+        return np.stack([self.displacement[:, 0], self.velocity[:, 0]], axis=1)
+
+
+def most_periods(scene: Scene, samples: int, wanted: int) -> int:
+    """How many of the periods wanted are kept."""
+    return max(1, min(wanted, MOST_VALUES // (samples * scene.N)))
+
+
+def iter_section(scene: Scene, start: State | None, periods: int, samples: int = 48, seconds: float = 0.15,
+                 stop: np.ndarray | None = None) -> Iterator[Section]:
+    """The section from `start` (None is the scene's own start), by the live method, ever longer: about every `seconds`.
+
+    It ends after `most_periods` of `periods`. Raises `NumbersFailed`, `Cancelled`.
+    """
+    engine = Engine(scene, Setting("rk4-split"), samples, stop=stop)
+    engine.start(start if start is not None else rest(scene))
+    most = most_periods(scene, samples, periods)
+    displacement = np.zeros((most, samples, scene.N), dtype=np.float32)
+    velocity = np.zeros_like(displacement)
+    scales = engine.lowered.scales
+    done, chunk = 0, 1
+    while done < most:
+        until = time.perf_counter() + seconds
+        while done < most and time.perf_counter() < until:
+            began, chunk = time.perf_counter(), min(chunk, most - done)
+            record, part = engine.record(chunk * samples), slice(done, done + chunk)
+            displacement[part] = record.displacement[:-1].reshape(chunk, samples, -1) * scales.length
+            velocity[part] = record.velocity[:-1].reshape(chunk, samples, -1) * scales.velocity
+            done += chunk
+            if time.perf_counter() - began < 0.1 * seconds:
+                chunk *= 2
+        yield Section(scene, displacement[:done], velocity[:done])

@@ -1,0 +1,176 @@
+"""Branches in HDF5: every orbit, every special point, and what it takes to go on.
+
+/branch          point, component, bead, contact; knob (the knob's unit), arclength, max_input_force, max_output_force,
+                 max_output_force_elastic [N], stable, unstable, residual, arm (point); state, multiplier_real,
+                 multiplier_imag (point, component); tangent (point, coordinate); closings (point, contact)
+/special         kind, knob, knob_low, knob_high, multiplier_real, multiplier_imag, contact, event, arm (special)
+/special_before, /special_after   the two orbits around each special point, as in /branch
+/turns           overlap's turning points of each arm's last orbit, which the next step is compared with
+Components are the beads' displacements, then their w, scaled by the chain's own A0 and A0·φ (docs/model.md).
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+
+from ..errors import BadInput
+from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
+from ..quantities import QUANTITIES
+from ..scene import Scene
+from .files import SCHEMA, _provenance, _scale, _variable, _write
+
+_FORCES = ("max_input_force", "max_output_force", "max_output_force_elastic")
+_NONE = -1
+
+
+def save_branch(branch: Branch, path: str | Path) -> Path:
+    """Write a branch, finished or not; returns the path. Raises `BadInput` where it cannot be written."""
+
+    def write(file: h5py.File) -> None:
+        _provenance(file, branch.axis.scene, "dop853", None)
+        file.attrs["branch"] = json.dumps({
+            "knob": branch.axis.knob, "start": branch.axis.start, "end": branch.axis.end, "period": branch.period,
+            "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
+                     for arm in branch.arms]})
+        numbered = [(place, point) for place, arm in enumerate(branch.arms) for point in arm.points]
+        group = _orbits(file, "branch", branch, [point for _, point in numbered])
+        _variable(group, "arm", np.array([place for place, _ in numbered]), ("point",), "1", "which way from the seed")
+        special = [(place, one) for place, arm in enumerate(branch.arms) for one in arm.special]
+        _special(file.create_group("special"), branch, special)
+        _orbits(file, "special_before", branch, [one.before for _, one in special])
+        _orbits(file, "special_after", branch, [one.after for _, one in special])
+        turns = file.create_group("turns")
+        for place, arm in enumerate(branch.arms):
+            turns.create_dataset(str(place), data=arm.points[-1].turns)
+
+    return _write(path, write)
+
+
+def load_branch(path: str | Path) -> Branch:
+    """The branch that `save_branch` wrote, ready to be gone on with. Raises `BadInput` for a file that is not one."""
+    try:
+        with h5py.File(path, "r") as file:
+            if int(file.attrs["granchain_schema"]) != SCHEMA:
+                raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
+            return _read(file)
+    except BadInput:
+        raise
+    except (OSError, KeyError, TypeError, ValueError, AttributeError, IndexError) as problem:
+        raise BadInput(f"{path} is not a branch written by granchain: {problem}.") from None
+
+
+# --- writing ------------------------------------------------------------------------------------------------
+
+
+def _orbits(file: h5py.File, name: str, branch: Branch, points: list[BranchPoint]) -> h5py.Group:
+    """A group with one row for each orbit."""
+    group, n = file.create_group(name), branch.axis.scene.N
+
+    def column(attribute: str) -> np.ndarray:
+        return np.array([getattr(point, attribute) for point in points], dtype=float)
+
+    def table(attribute: str, width: int, kind: type) -> np.ndarray:
+        return np.array([getattr(point, attribute) for point in points], dtype=kind).reshape(len(points), width)
+
+    quantity = QUANTITIES[branch.axis.knob]
+    longest = max((len(point.residuals) for point in points), default=1)
+    multipliers = table("multipliers", 2 * n, complex)
+    for scale, size, meaning in (
+            ("point", len(points), "orbit along the branch"), ("component", 2 * n, "displacements, then w"),
+            ("contact", n + 1, "contact number; c joins bodies c and c + 1"),
+            ("coordinate", 2 * n + 1, "state over √(2N), then the knob's coordinate"),
+            ("iteration", longest, "evaluation of Newton's method")):
+        _scale(group, scale, np.arange(size), "1", meaning)
+    _variable(group, "knob", column("knob"), ("point",), quantity.unit, quantity.label)
+    _variable(group, "arclength", column("arclength"), ("point",), "1", "arclength from the seed")
+    for force in _FORCES:
+        words = force.replace("_", " ").replace("max", "largest", 1)
+        _variable(group, force, column(force), ("point",), "N", f"{words} along the orbit")
+    _variable(group, "stable", column("stable").astype(np.int8), ("point",), "1", "1 if no multiplier is outside")
+    _variable(group, "unstable", column("unstable").astype(int), ("point",), "1", "multipliers outside the unit circle")
+    _variable(group, "liouville", column("liouville"), ("point",), "1", "ln |det| against the integral of the trace")
+    residuals = np.full((len(points), longest), np.nan)
+    for row, point in zip(residuals, points, strict=True):
+        row[: len(point.residuals)] = point.residuals
+    _variable(group, "residual", residuals, ("point", "iteration"), "1", "residuals of Newton's method")
+    _variable(group, "state", table("x", 2 * n, float), ("point", "component"), "1", "scaled state at phase 0")
+    _variable(group, "tangent", table("tangent", 2 * n + 1, float), ("point", "coordinate"), "1", "unit tangent")
+    _variable(group, "slope", table("slope", 2 * n, float), ("point", "component"), "1", "change of the map with p")
+    _variable(group, "multiplier_real", multipliers.real, ("point", "component"), "1", "multipliers, real part")
+    _variable(group, "multiplier_imag", multipliers.imag, ("point", "component"), "1", "multipliers, imaginary part")
+    _variable(group, "closings", table("closings", n + 1, int), ("point", "contact"), "1",
+              "closings of each contact; 0 always open, -1 always closed")
+    return group
+
+
+def _special(group: h5py.Group, branch: Branch, special: list[tuple[int, SpecialPoint]]) -> None:
+    unit, words = QUANTITIES[branch.axis.knob].unit, h5py.string_dtype()
+    multipliers = np.array([np.nan if s.multiplier is None else s.multiplier for _, s in special], dtype=complex)
+    _scale(group, "special", np.arange(len(special)), "1", "special point along the branch")
+
+    def variable(name: str, values: Any, its: str, meaning: str) -> None:
+        _variable(group, name, values, ("special",), its, meaning)
+
+    variable("kind", np.array([s.kind for _, s in special], dtype=words), "",
+             "fold, period_doubling, neimark_sacker or grazing")
+    variable("knob", np.array([s.knob for _, s in special]), unit, "knob at the special point")
+    variable("knob_low", np.array([s.interval[0] for _, s in special]), unit, "lower end of the interval that holds it")
+    variable("knob_high", np.array([s.interval[1] for _, s in special]), unit, "upper end of that interval")
+    variable("multiplier_real", multipliers.real, "1", "multiplier that passes the unit circle, real part")
+    variable("multiplier_imag", multipliers.imag, "1", "its imaginary part")
+    variable("contact", np.array([_NONE if s.contact is None else s.contact for _, s in special], dtype=int), "1",
+             "contact that grazes, -1 if none")
+    variable("event", np.array([s.event or "" for _, s in special], dtype=words), "", "touch or separation")
+    variable("arm", np.array([place for place, _ in special], dtype=int), "1", "which way from the seed")
+
+
+# --- reading ------------------------------------------------------------------------------------------------
+
+
+def _read(file: h5py.File) -> Branch:
+    told = json.loads(file.attrs["branch"])
+    scene = Scene.from_json(json.loads(file.attrs["scene"]))
+    axis = KnobAxis.of(scene, told["knob"], told["start"], told["end"])
+    points, place = _read_orbits(file["branch"]), file["branch/arm"][()]
+    special, special_place = _read_special(file), file["special/arm"][()]
+    arms = []
+    for number, arm in enumerate(told["arms"]):
+        mine = [p for p, where in zip(points, place, strict=True) if where == number]
+        object.__setattr__(mine[-1], "turns", file[f"turns/{number}"][()])
+        arms.append(Arm(int(arm["direction"]), mine,
+                        [s for s, where in zip(special, special_place, strict=True) if where == number],
+                        float.fromhex(arm["step"]), str(arm["ended"]), str(arm["reason"])))
+    return Branch(axis, int(told["period"]), tuple(arms))
+
+
+def _read_orbits(group: h5py.Group) -> list[BranchPoint]:
+    read = {name: group[name][()] for name in (
+        "knob", "state", "tangent", "slope", "arclength", "multiplier_real", "multiplier_imag", *_FORCES, "closings",
+        "residual", "liouville")}
+    return [BranchPoint(
+        knob=float(read["knob"][i]), x=read["state"][i], tangent=read["tangent"][i], slope=read["slope"][i],
+        arclength=float(read["arclength"][i]),
+        multipliers=read["multiplier_real"][i] + 1j * read["multiplier_imag"][i],
+        **{force: float(read[force][i]) for force in _FORCES}, closings=read["closings"][i],
+        residuals=tuple(float(r) for r in read["residual"][i] if not np.isnan(r)),
+        liouville=float(read["liouville"][i]), turns=np.zeros((0, 4)),
+    ) for i in range(len(read["knob"]))]
+
+
+def _read_special(file: h5py.File) -> list[SpecialPoint]:
+    group = file["special"]
+    before, after = _read_orbits(file["special_before"]), _read_orbits(file["special_after"])
+    found = []
+    for i in range(len(before)):
+        real, contact = float(group["multiplier_real"][i]), int(group["contact"][i])
+        found.append(SpecialPoint(
+            kind=group["kind"].asstr()[i], knob=float(group["knob"][i]),
+            interval=(float(group["knob_low"][i]), float(group["knob_high"][i])), before=before[i], after=after[i],
+            multiplier=None if np.isnan(real) else complex(real, float(group["multiplier_imag"][i])),
+            contact=None if contact == _NONE else contact, event=group["event"].asstr()[i] or None))
+    return found

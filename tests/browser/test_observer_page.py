@@ -1,0 +1,59 @@
+"""The Observer page as a visitor meets it: without foundation it breaks, with it it finds its chain, new starts are seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from playwright.sync_api import Locator, Page, expect
+
+Visit = Callable[..., Page]
+#: A first visit may have to compile the pair's kernels, on a machine that runs tests.
+COMPILED = 120_000
+#: What the page drew last: period and distance.
+LAST = "granchain.observer?.history.at(-1)"
+
+
+def opened(page: Page) -> Locator:
+    """The page with its first periods, opened from the corner, for the scene of figure 11."""
+    page.get_by_label("scene").first.select_option("fig11-free")
+    page.get_by_role("tab", name="observer").click()
+    page.get_by_role("button", name="open the page").click()
+    sheet = page.locator("#cover")
+    expect(sheet.locator("path.distance")).to_be_visible(timeout=COMPILED)
+    return sheet
+
+
+def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    expect(sheet).to_contain_text("it drifts; an offset of its beads, which nothing pulls back", timeout=COMPILED)
+    expect(sheet).to_contain_text("predicted × 4.418")  # PHYSICS.md, section 3: one real multiplier outside
+    page.wait_for_function(f"{LAST}?.[1] > 0.5", timeout=30_000)
+    chains = page.locator("#cover canvas")
+    assert chains.count() == 3
+    sheet.get_by_role("button", name="0.001").click()
+    expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
+    expect(sheet.locator("line.predicted")).to_be_visible(timeout=30_000)
+    page.wait_for_function(f"{LAST}[1] < 0.1", timeout=30_000)
+    expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("0.001")
+
+
+def test_a_new_start_is_seen_and_nobody_looking_stops_it(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    sheet.get_by_role("button", name="0.001").click()
+    expect(sheet).to_contain_text("it synchronises", timeout=COMPILED)
+    page.wait_for_function(f"{LAST}[1] < 3e-3", timeout=60_000)
+    sheet.get_by_role("button", name="from rest").click()
+    page.wait_for_function(f"{LAST}[1] > 0.05", timeout=20_000)
+    page.keyboard.press("Escape")
+    expect(sheet).to_be_hidden()
+    # in the corner it goes on, in small
+    before = page.evaluate(f"{LAST}[0]")
+    page.wait_for_function(f"{LAST}[0] > {before} + 2", timeout=20_000)
+    # on another tab nothing is computed
+    page.get_by_role("tab", name="regimes").click()
+    page.wait_for_timeout(700)
+    stopped = page.evaluate(f"{LAST}[0]")
+    page.wait_for_timeout(1000)
+    assert page.evaluate(f"{LAST}[0]") == stopped

@@ -1,0 +1,171 @@
+"""The Stability tab and page as a visitor meets them: multipliers, a mode that moves, the section, a search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+Visit = Callable[..., Page]
+#: Long enough for a first visit that has to compile the tangent flow, on a machine that runs tests.
+COMPILED = 120_000
+
+
+def type_into(page: Page, name: str, text: str) -> None:
+    """Type a value and press Enter."""
+    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
+    field.fill(text)
+    field.press("Enter")
+
+
+def opened(page: Page, words: str = "Stable") -> Locator:
+    """The Stability page, opened from its tab, with its verdict."""
+    page.get_by_role("tab", name="stability").click()
+    page.get_by_role("button", name="open the page").click()
+    sheet = page.locator('[data-cover="stability"]')
+    expect(sheet.locator(".say")).to_contain_text(words, timeout=COMPILED)
+    return sheet
+
+
+def points(sheet: Locator) -> str:
+    """The dots of the section as they are drawn."""
+    return "".join(one.get_attribute("d") or "" for one in sheet.locator("path.dots").all())
+
+
+def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) -> None:
+    page = visit()
+    corner = page.locator("#corner")
+    page.wait_for_timeout(600)
+    assert page.evaluate("granchain.stability.state.sentence") is None
+    page.get_by_role("tab", name="stability").click()
+    expect(corner).to_contain_text("Stable: a disturbance shrinks to 0.36", timeout=COMPILED)
+    assert corner.locator(".multiplier").count() == 22
+    type_into(page, "f", "1130")
+    expect(corner).to_contain_text("3 drive periods, 2.65 ms", timeout=20_000)
+    page.get_by_role("tab", name="regimes").click()
+    type_into(page, "f", "615")
+    page.wait_for_timeout(600)
+    assert "3 drive periods" in page.evaluate("granchain.stability.state.sentence")
+    page.get_by_role("tab", name="stability").click()
+    expect(corner).to_contain_text("2 drive periods", timeout=20_000)
+
+
+def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    expect(sheet.locator(".plane .draw .multiplier.within")).to_have_count(22)
+    first = sheet.locator('[data-rank="0"]')
+    first.hover()
+    tip = sheet.locator(".tip:visible")
+    for words in ("μ = -0.2882", "|μ| = 0.36", "of the drive frequency", "dies out by e in 0.981 drive periods (2.89 ms)"):
+        expect(tip).to_contain_text(words)
+    expect(sheet.locator("path.swing")).to_have_count(11)
+    expect(sheet).to_contain_text("the slowest to die out")
+    before = sheet.locator("path.swing").first.get_attribute("d")
+    sheet.locator('[data-rank="3"]').focus()
+    page.keyboard.press("Enter")
+    expect(sheet).to_contain_text("the chosen disturbance")
+    assert sheet.locator("path.swing").first.get_attribute("d") != before
+    moment = sheet.locator("line.moment")
+    there = moment.get_attribute("transform")
+    page.wait_for_timeout(300)
+    assert moment.get_attribute("transform") != there
+
+
+def test_the_observer_is_a_second_set_and_off_at_first(visit: Visit) -> None:
+    page = visit("?v=1&scene=fig11-free")
+    sheet = opened(page)
+    expect(sheet.locator(".plane .draw .observer")).to_have_count(0)
+    sheet.get_by_label("observer", exact=True).check()
+    expect(sheet.locator(".plane .draw .observer")).to_have_count(22, timeout=20_000)
+    expect(sheet.locator(".plane .draw .observer.outside")).to_have_count(1)  # Fig. 11: exactly one, real
+    expect(sheet.locator(".say")).to_contain_text("Its observer is unstable, |μ| 4.42")
+
+
+def test_multipliers_leave_a_trail_and_the_evidence_follows(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    expect(sheet.locator(".past")).to_have_count(0)
+    type_into(page, "f", "344")
+    expect(sheet.locator(".past").first).to_be_attached(timeout=20_000)
+    expect(sheet.locator(".way").first).to_be_attached()
+    table = sheet.locator(".evidence")
+    for words in ("distance to the orbit", "Newton's residual", "Liouville", "disturbance carried", "settled by"):
+        expect(table).to_contain_text(words)
+
+
+def test_the_section_follows_bead_and_phase(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=1130")
+    sheet = opened(page)
+    expect(sheet.locator("path.own")).to_have_count(3)
+    first = points(sheet)
+    sheet.get_by_label("bead of the section").select_option("7")
+    expect(sheet).to_contain_text("displacement of bead 7 (nm)")
+    second = points(sheet)
+    assert second != first
+    sheet.get_by_label("drive phase of the section").fill("12")
+    expect(sheet.locator("output")).to_have_text("0.25 T")
+    expect(sheet.locator("path.own")).to_have_count(3)
+    page.wait_for_timeout(200)
+    assert points(sheet) != second
+
+
+def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: Visit) -> None:
+    page = visit("?v=1&scene=rig&f=140")
+    sheet = opened(page, "No multipliers: the motion is chaotic")
+    expect(sheet.locator(".multiplier:visible")).to_have_count(2)  # those of the key
+    expect(sheet).to_contain_text("1200 drive periods, one point each", timeout=20_000)
+    assert points(sheet).count("M") > 1000
+    expect(sheet.locator(".evidence")).to_contain_text("Lyapunov exponent")
+    sheet.get_by_role("button", name="search").click()
+    expect(sheet.locator(".mine")).to_contain_text("the chain does not follow this orbit", timeout=COMPILED)
+    expect(sheet.locator(".say")).to_contain_text("Unstable: a disturbance grows 1.57-fold")
+    expect(sheet.locator(".plane .draw .multiplier.outside")).to_have_count(3)
+    expect(sheet.locator("path.own.unstable")).to_have_count(1)
+    sheet.get_by_role("button", name="back to what the chain does").click()
+    expect(sheet.locator(".say")).to_contain_text("No multipliers", timeout=20_000)
+    expect(sheet.locator(".mine")).to_be_hidden()
+
+
+def test_a_live_run_has_none(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    page.get_by_role("button", name="The run goes on").click()
+    expect(sheet.locator(".say")).to_contain_text("A live run is on its way")
+    expect(sheet.locator(".plane .draw .multiplier")).to_have_count(0)
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1920, 1080), (390, 844)])
+def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
+    page = visit(viewport={"width": size[0], "height": size[1]})
+    sheet = opened(page)
+    assert page.evaluate("document.documentElement.scrollWidth") == size[0]
+    for name, least in ((".plane .picture", 200), (".motion .picture", 130), (".poincare .picture", 130)):
+        box = sheet.locator(name).bounding_box()
+        assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > least
+    search = sheet.get_by_role("button", name="search").bounding_box()
+    assert search is not None and (size[0] < 500 or search["y"] + search["height"] <= size[1])
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_nine_tabs_fit_and_arrows_reach_them(visit: Visit, width: int) -> None:
+    page = visit(viewport={"width": width, "height": 844})
+    tabs = page.locator("#corner [role=tablist]")
+    tabs.evaluate("""tabs => { for (let missing = 9 - tabs.querySelectorAll("[role=tab]").length; missing > 0; missing--) {
+      const tab = Object.assign(document.createElement("button"), { textContent: "observer" });
+      tabs.insertBefore(tab, tabs.lastChild); } }""")
+    edge = page.locator("#corner").bounding_box()
+    assert edge is not None
+    for button in tabs.locator("button").all():
+        box = button.bounding_box()
+        assert box is not None and edge["x"] <= box["x"] and box["x"] + box["width"] <= edge["x"] + edge["width"]
+    box = tabs.bounding_box()
+    assert box is not None and box["height"] < 75  # two rows
+    page.get_by_role("tab", name="look at").focus()
+    page.keyboard.press("ArrowRight")
+    expect(page.get_by_role("tab", name="regimes")).to_be_focused()
+    page.keyboard.press("End")
+    expect(page.get_by_role("tab").last).to_have_attribute("aria-selected", "true")
+    page.keyboard.press("Home")
+    expect(page.get_by_role("tab", name="look at")).to_be_focused()

@@ -1,0 +1,37 @@
+"""Forces that tests feed to observers: computed by the certified method from a chain whose states are known too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from granchain_core import Scene, State
+from granchain_core.integrate import Engine, Setting
+from granchain_core.orbits import periodic_orbit
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A chain on its orbit: times, input and output force, displacements (T, N), and the state at the first time."""
+
+    time: np.ndarray
+    force: np.ndarray
+    output: np.ndarray
+    displacement: np.ndarray
+    start: State
+
+
+def recorded(scene: Scene, samples: int, periods: int = 3) -> Recorded:
+    """`periods` drive periods of the settled chain of `scene`, `samples` samples each."""
+    start = periodic_orbit(scene).state
+    engine = Engine(scene, Setting("dop853", tolerance=1e-12), samples)
+    engine.start(start)
+    rows, scales = engine.record(periods * samples), engine.lowered.scales
+    return Recorded(np.arange(periods * samples + 1) / samples / scene.f, rows.force[:, 0] * scales.force,
+                    rows.force[:, -1] * scales.force, rows.displacement * scales.length, start)
+
+
+def error(found: np.ndarray, true: np.ndarray) -> float:
+    """Largest difference over the largest value."""
+    return float(np.abs(found - true).max() / np.abs(true).max())

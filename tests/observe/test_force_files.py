@@ -1,0 +1,164 @@
+"""Measured forces from files: what is meant is read, what cannot be is refused with its line, and files come round."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from recorded import error, recorded
+
+from app import cli
+from granchain_core import BadInput, observe, run, scene
+from granchain_core.observe import ForceRecord, force_record, read_force, read_force_csv
+from granchain_core.store import save, save_observation
+
+CHAIN = scene("fig11-founded").evolve(f=340.0)
+STEP = 1e-5
+
+
+def csv(force: np.ndarray, step: float = STEP, header: str = "time_s,force_N") -> str:
+    return "\n".join([header, *(f"{i * step:.9g},{value:.9g}" for i, value in enumerate(force))])
+
+
+def pulse(samples: int = 60) -> np.ndarray:
+    return np.maximum(0.0, np.sin(np.arange(samples) * 0.1)) * 0.5
+
+
+@pytest.mark.parametrize(("header", "time_unit", "force_unit", "factor"), [
+    ("time_s,force_N", None, None, 1.0), ("t,input_force", "s", "N", 1.0), ("time_ms,force_mN", None, None, 1e-3),
+    ("time,force", "ms", "mN", 1e-3), ("time_ms,force_kN", "ms", None, 1e3),
+])
+def test_units_are_the_headers_or_those_asked_for(header, time_unit, force_unit, factor) -> None:  # type: ignore[no-untyped-def]
+    record = read_force_csv(csv(pulse(), header=header), time_unit, force_unit)
+    milli = "ms" in header or time_unit == "ms"
+    assert record.time[1] == pytest.approx(STEP * (1e-3 if milli else 1.0))
+    assert record.force == pytest.approx(factor * pulse())
+    assert ("ms" if milli else "time in s") in record.understood
+
+
+def lines(changes: dict[int, str]) -> str:
+    """Sixty samples with some lines replaced; line 1 is the header, line 2 the first sample."""
+    text = csv(pulse()).splitlines()
+    return "\n".join(changes.get(number, line) for number, line in enumerate(text, 1))
+
+
+@pytest.mark.parametrize(("text", "sentence"), [
+    (lines({12: "1e-4,nan"}), "Line 12: 'nan' is not a number"), (lines({12: "1e-4,inf"}), "Line 12: 'inf'"),
+    (lines({12: "5e-5,0.1"}), "Line 12: time 5e-05 s does not come after 9e-05 s"),
+    (lines({12: "9e-5,0.1"}), "Line 12: time 9e-05 s does not come after"), (lines({12: "1e-4"}), "Line 12 has 1 columns"),
+    (lines({12: ""}), "Line 13: 2e-05 s after the sample before, where 1e-05 s is usual: a gap"),
+    (csv(pulse(), header="time_s,pressure"), "column 'pressure'"), ("time_s,force_N\n0,1\n1e-5,1", "at least 8"),
+    (csv(0.0 * pulse()), "zero at every sample"), ("", "empty"),
+    (csv(pulse(), step=1e-3), r"Line 18: a pulse of 0.5 N may be as short as .* nearest valid spacing"),
+])
+def test_what_cannot_be_is_refused_with_its_line(text: str, sentence: str) -> None:
+    with pytest.raises(BadInput, match=sentence):
+        observe(CHAIN, read_force_csv(text))
+
+
+def test_units_that_contradict_the_header_are_refused() -> None:
+    with pytest.raises(BadInput, match="header says the force is in mN, and N was asked for"):
+        read_force_csv(csv(pulse(), header="time_s,force_mN"), force_unit="N")
+
+
+@pytest.mark.parametrize(("time", "force", "sentence"), [
+    ([0.0, 1.0], [1.0], "equally long"), ("abc", [1.0], "must be numbers"), (np.zeros((2, 2)), [1.0], "one row"),
+    (np.arange(20) * STEP, [*[0.1] * 7, np.nan, *[0.1] * 12], "Sample 7: force is nan"),
+])
+def test_arrays_that_are_no_record_are_refused(time, force, sentence: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(BadInput, match=sentence):
+        force_record(time, force)
+
+
+@given(st.one_of(st.text(max_size=300), st.binary(max_size=300)))
+def test_any_file_is_read_or_refused(text: str | bytes) -> None:
+    try:
+        assert isinstance(read_force_csv(text), ForceRecord)
+    except BadInput as refused:
+        assert str(refused).endswith((".", "?"))
+
+
+def test_a_gap_is_bridged_only_as_chosen_and_said() -> None:
+    time, force = np.arange(200) * STEP, 0.2 + 0.1 * np.sin(np.arange(200) * 0.05)
+    kept = np.r_[0:80, 100:200]
+    with pytest.raises(BadInput, match="choose zero"):
+        observe(CHAIN, time[kept], force[kept])
+    zero = observe(CHAIN, time[kept], force[kept], gap="zero")
+    smooth = observe(CHAIN, time[kept], force[kept], gap="interpolate")
+    assert any("1 gap taken as zero" in note for note in zero.record.notes)
+    assert any("1 gap interpolated" in note for note in smooth.record.notes)
+    assert (zero.record.force == 0.0).sum() == 2 and len(smooth.time) == len(kept)
+    true = observe(CHAIN, time, force)
+    # across 20 samples of a slow force a cubic is good to some per cent; zero force is another force
+    assert error(smooth.displacement[-1], true.displacement[-1]) < 0.1 * error(zero.displacement[-1], true.displacement[-1])
+
+
+def test_an_offset_is_subtracted_only_if_asked() -> None:
+    time, force = np.arange(400) * STEP, np.maximum(0.0, np.sin(np.arange(400) * 0.03) - 0.3)
+    true = observe(CHAIN, time, force)
+    for offset in (0.05, "0.05", "median"):
+        seen = observe(CHAIN, time, force + 0.05, offset=offset)
+        assert seen.displacement == pytest.approx(true.displacement, abs=1e-9 * np.abs(true.displacement).max())
+        assert "offset of 0.05 N subtracted" in seen.record.notes
+    with_offset = observe(CHAIN, time, force + 0.05)
+    assert error(with_offset.displacement, true.displacement) > 0.01
+    assert any("sensor's offset" in note for note in with_offset.record.notes)
+    with pytest.raises(BadInput, match="neither a force"):
+        observe(CHAIN, time, force, offset="mean")
+
+
+def test_a_run_written_by_granchain_is_observed_and_comes_round(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    known, seen = tmp_path / "known.h5", tmp_path / "seen.h5"
+    save(run(CHAIN, periods=60, record=2, samples=1000), known)
+    words = ["observe", "fig11-founded", "--set", "f=340", "--start", "input", "--json"]
+    assert cli.main([*words, "--input", str(known), "--out", str(seen)]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["status"] == "done" and told["residual"]["relative"] < 0.01
+    assert told["error_estimate"] == pytest.approx(told["integration_error"] + told["interpolation_error"])
+    assert "given force" in told["effects"] and "driver" not in told["effects"]
+    assert cli.main([*words, "--input", str(seen)]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["max_output_force"] == told["max_output_force"]
+    assert again["residual"]["relative"] < 1e-12
+    with h5py.File(seen) as file:
+        assert file["observation/displacement"].attrs["units"] == "m"
+        assert file["observation/measured_output_force"].shape == file["observation/time"].shape
+
+
+def test_saved_arrays_are_those_of_the_observation(tmp_path: Path) -> None:
+    r = recorded(CHAIN, 500, 1)
+    seen = observe(CHAIN, r.time, r.force, start=r.start)
+    again = read_force(save_observation(seen, tmp_path / "seen.h5"))
+    assert np.array_equal(again.time, r.time) and np.array_equal(again.force, r.force)
+    assert again.output is not None and np.array_equal(again.output, seen.output_force)
+
+
+@pytest.mark.parametrize(("words", "sentence"), [
+    (["--input", "/no/such.csv"], "Cannot read"), ([], "--input"), (["--input", "FILE", "--gap", "fill"], "gap 'fill'"),
+    (["--input", "FILE", "--start", "input"], "no state to start from"), (["--input", "FILE", "--time-unit", "m"], "unit"),
+    (["--input", "FILE", "--start", "end"], "rest, input"), (["--input", "FILE", "--offset", "x"], "neither a force"),
+    (["--input", "FILE", "--set", "kapa=1"], "kappa"),
+])
+def test_the_command_refuses_in_one_sentence(words, sentence: str, tmp_path: Path,  # type: ignore[no-untyped-def]
+                                             capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "force.csv"
+    file.write_text(csv(pulse()))
+    assert cli.main(["observe", "sec2", *(str(file) if w == "FILE" else w for w in words)]) == 2
+    said = capsys.readouterr()
+    assert sentence in said.err and said.out == "" and "Traceback" not in said.err
+
+
+def test_data_that_stand_elsewhere_are_not_read(tmp_path: Path) -> None:
+    secret, crafted = tmp_path / "secret.bin", tmp_path / "crafted.h5"
+    secret.write_bytes(np.arange(100.0).tobytes())
+    with h5py.File(crafted, "w") as file:
+        group = file.create_group("run")
+        group["input_force"] = np.ones(100)
+        group.create_dataset("time", (100,), "f8", external=[(str(secret), 0, 800)])
+    with pytest.raises(BadInput, match="stored in the file itself"):
+        read_force(crafted)

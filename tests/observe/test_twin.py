@@ -1,0 +1,146 @@
+"""Chain and observer in one integration: they synchronise or part as the observer's leading multiplier says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import BadInput, scene
+from granchain_core.integrate.engine import rest
+from granchain_core.observe import figure_11, observer_stability, twin
+from granchain_core.observe.pair import Pair
+from granchain_core.observe.twin import rates
+from granchain_core.orbits import periodic_orbit
+
+FREE, FOUNDED = scene("fig11-free"), scene("fig11-founded")
+CHAOTIC = scene("rig").evolve(f=140.0, N=2)
+
+
+@pytest.mark.parametrize(("shown", "frequency"), [(FREE, 100.0), (FREE, 200.0), (FOUNDED, 100.0), (FOUNDED, 200.0)])
+def test_the_distance_goes_with_the_leading_multiplier(shown, frequency: float) -> None:  # type: ignore[no-untyped-def]
+    found = twin(shown.evolve(f=frequency), 1e-7, 60)
+    assert found.leading is not None and found.rate is not None
+    assert len(found.measured) == (1 if found.leading.imag == 0.0 else 2)
+    # The recurrence is exact for so many multipliers; the others, and distances up to 0.03, leave a few per mille.
+    nearest = min(abs(z - found.leading) for z in found.measured)
+    assert nearest < 5e-3 * abs(found.leading)
+    # A fitted line through an oscillating logarithm is less: two per cent over a window of ten periods.
+    assert found.rate == pytest.approx(abs(found.leading), rel=0.03)
+
+
+def test_without_foundation_the_observer_drifts_and_is_told_so() -> None:
+    found = twin(FREE, 1e-6, 30)
+    assert found.verdict == "drifts" and "drifts" in found.sentence and "nothing pulls back" in found.sentence
+    assert found.leading is not None and found.leading.real > 1.0 and found.leading.imag == 0.0
+    assert found.translation > 0.8  # the uniform shift is most of what grows
+    assert found.distance[-1] > 0.5  # and it is left in: nothing brings the observer back
+    assert np.abs(found.offset[-1]) > 0.05 * FREE.A0
+
+
+def test_with_foundation_an_observer_that_knows_nothing_finds_its_chain() -> None:
+    found = twin(FOUNDED, rest(FOUNDED), 100)
+    assert found.verdict == "synchronises"
+    assert found.distance[0] > 0.1 and found.distance[-1] < 1e-8
+    assert found.observer_output_force[-200:] == pytest.approx(found.output_force[-200:], abs=1e-7)
+
+
+@pytest.mark.parametrize("changes", [{}, {"N": 1}, {"F0": 0.3}, {"dissipation": "tsuji", "tension": "cut"}])
+def test_an_observer_that_starts_where_its_chain_is_stays_there(changes) -> None:  # type: ignore[no-untyped-def]
+    shown = FOUNDED.evolve(f=340.0, **changes)
+    pair = Pair(shown, 32)
+    pair.start(rest(shown), rest(shown))
+    rows, n = pair.engine.record(96), shown.N
+    assert np.abs(rows.displacement[:, :n]).max() > 0.01
+    assert np.array_equal(rows.displacement[:, :n], rows.displacement[:, n + 1 :])
+    one, other = pair.states
+    assert np.array_equal(one.velocity, other.velocity)
+
+
+def test_the_chain_of_a_pair_moves_as_it_does_alone() -> None:
+    from granchain_core.integrate import Engine, Setting
+
+    pair = Pair(FOUNDED, 16)
+    pair.start(rest(FOUNDED), periodic_orbit(FOUNDED).state)
+    alone = Engine(FOUNDED, Setting("dop853", tolerance=1e-13), 16)
+    together, single = pair.engine.record(80), alone.record(80)
+    # two runs of the certified method with other steps
+    assert together.displacement[:, : FOUNDED.N] == pytest.approx(single.displacement, abs=1e-9)
+
+
+def test_the_observers_multipliers_are_finite_differences_of_the_pair() -> None:
+    shown = FREE.evolve(N=3, f=400.0)
+    orbit = periodic_orbit(shown, observer=True)
+    n, h = shown.N, 1e-5
+    pair = Pair(shown, 1)
+    scales = pair.engine.lowered.scales
+
+    def after(unit: np.ndarray) -> np.ndarray:
+        start = type(orbit.state)(orbit.state.displacement + unit[:n] * scales.length,
+                                  orbit.state.velocity + unit[n:] * scales.velocity)
+        pair.start(orbit.state, start)
+        strobes, _ = pair.engine.periods(orbit.period, watch=False)
+        return np.concatenate(strobes[-1][:, n + 1 :])
+
+    columns = [(after(h * e) - after(-h * e)) / (2 * h) for e in np.eye(2 * n)]
+    found = np.linalg.eigvals(np.stack(columns, axis=1))
+    found = found[np.argsort(-np.abs(found))]
+    assert orbit.observer_multipliers is not None
+    # central differences over kinks of contacts err by about h
+    assert np.abs(found) == pytest.approx(np.abs(orbit.observer_multipliers), abs=2e-4)
+
+
+def test_figure_11_in_full() -> None:
+    rows = {(row.frequency, row.kappa > 0): row for row in figure_11(periods=30)}
+    assert set(rows) == {(100.0, False), (100.0, True), (200.0, False), (200.0, True)}
+    for (_, founded), row in rows.items():
+        assert len(row.multipliers) == 4 * FREE.N
+        chain, observer = row.first_beads
+        assert row.twin.orbit is not None and row.twin.orbit.stable  # (b), (e)
+        assert len(chain) == len(row.twin.time)
+        if founded:  # (d), (e, f): identical to the perturbation, 1e-6 of A0, which grows for a while before it decays
+            assert len(row.outside) == 0
+            assert np.abs(chain - observer).max() < 1e-5 * row.twin.scene.A0
+        else:  # (a), (c)
+            assert len(row.outside) == 1 and row.outside[0].imag == 0.0
+            assert np.abs(chain - observer)[-96:].max() > 0.1 * row.twin.scene.A0
+
+
+def test_how_much_foundation_makes_it_stable() -> None:
+    found = observer_stability(FREE.evolve(f=200.0), "kappa", np.linspace(0.0, 6e-4, 4))
+    assert [p.observer_largest < 1.0 for p in found.points] == [False, False, True, True]
+    (threshold,) = found.thresholds
+    assert threshold.gains and threshold.high - threshold.low < 1e-6
+    for kappa, stable in ((threshold.low, False), (threshold.high, True)):
+        assert periodic_orbit(FREE.evolve(f=200.0, kappa=kappa), 1, observer=True).observer_stable is stable
+
+
+def test_a_value_without_an_orbit_says_why() -> None:
+    (point,) = observer_stability(CHAOTIC, "f", [CHAOTIC.f], period=1).points
+    assert np.isnan(point.observer_largest) and "Newton" in point.failure and point.period is None
+
+
+def test_a_chain_that_is_not_periodic_has_a_rate_and_no_multiplier() -> None:
+    found = twin(CHAOTIC, 1e-9, 40, samples=8)
+    assert found.orbit is None and found.leading is None and found.multipliers is None
+    assert found.rate is not None and found.sentence
+
+
+def test_one_multiplier_is_not_told_as_two() -> None:
+    one = 4.4 ** np.arange(8)[:, None] * np.arange(1.0, 7.0)
+    rate, found = rates(one)
+    assert rate == pytest.approx(4.4) and found == (pytest.approx(4.4),)
+    turned = np.stack([0.9**k * np.array([np.cos(k), np.sin(k), np.cos(k + 1.0)]) for k in range(12)])
+    _, found = rates(turned)
+    assert len(found) == 2 and abs(found[0]) == pytest.approx(0.9) and abs(np.angle(found[0])) == pytest.approx(1.0)
+    assert rates(one[:3]) == (None, ())
+
+
+@pytest.mark.parametrize(("call", "sentence"), [
+    (lambda: twin(FREE, periods=0), "periods = 0 is outside"), (lambda: twin(FREE, float("nan")), "not a number"),
+    (lambda: twin(FREE, rest(FREE.evolve(N=3))), "3 beads; the chain has 11"),
+    (lambda: observer_stability(FREE, "wall", [1.0]), "no knob an observer"),
+    (lambda: observer_stability(FREE, "kappa", []), "0 values"),
+])
+def test_what_cannot_be_is_refused(call, sentence: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(BadInput, match=sentence):
+        call()

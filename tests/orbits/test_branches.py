@@ -1,0 +1,195 @@
+"""Branches: what holds on each of them, and what the settled motion, symmetries and direct solutions say about them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import NumbersFailed, Scene, State, run, scene, settled
+from granchain_core.orbits import (
+    Branch,
+    BranchPoint,
+    Continuation,
+    SpecialPoint,
+    begin_branch,
+    check_branch,
+    continue_branch,
+    periodic_orbit,
+    switch_to_doubled,
+)
+
+#: What the settled picture is asked for; its certified orbit then agrees with a branch's to some multiples of it.
+_ASKED = 1e-8
+
+
+@pytest.fixture(scope="module")
+def folded() -> Branch:
+    """sec2 upwards from 340 Hz: two folds, back and forth, to the first period doubling behind them."""
+    begun = begin_branch(scene("sec2"), "f", 340.0, 400.0, 1)
+    for _ in Continuation(begun):
+        if any(s.kind == "period_doubling" for s in begun.special) and not begun.points[-1].stable:
+            return begun
+    return begun
+
+
+@pytest.fixture(scope="module")
+def doubling() -> Branch:
+    """sec2 downwards across two period doublings: between them, at 255.8 and 233.5 Hz, the chain alternates."""
+    return continue_branch(scene("sec2"), "f", 262.0, 225.0, 1)
+
+
+def the(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
+    """One special point of a kind."""
+    return [s for s in branch.special if s.kind == kind][number]
+
+
+def came_to(branch: Branch, point: BranchPoint, disturbed: float = 1e-4) -> tuple[float, float]:
+    """Relative distance in output force from the orbit to where the slightly disturbed chain settles; and |μ|."""
+    state, shown = branch.state(point), branch.axis.scene_at(point.knob).evolve(accuracy=_ASKED)
+    start = State(state.displacement * (1.0 + disturbed), state.velocity)
+    found = settled(shown, start).run.max_output_force_elastic
+    return abs(found / point.max_output_force_elastic - 1.0), abs(point.multipliers[0])
+
+
+def test_a_branch_goes_through_folds_and_is_right_everywhere(folded: Branch) -> None:
+    assert check_branch(folded) == []
+    kinds = [s.kind for s in folded.special if s.kind != "grazing"]
+    assert kinds == ["fold", "fold", "period_doubling"]
+    assert {p.stable for p in folded.points} == {True, False}
+    assert len([s for s in folded.special if s.kind == "grazing"]) >= 6
+
+
+def test_special_points_are_enclosed_narrowly_and_their_multipliers_are_critical(folded: Branch) -> None:
+    for s in folded.special:
+        assert s.interval[0] <= s.knob <= s.interval[1]
+        assert s.interval[1] - s.interval[0] <= 1e-5 * s.knob
+        if s.kind != "grazing":
+            assert s.multiplier is not None
+            assert abs(s.multiplier) == pytest.approx(1.0, abs=2e-2)  # at a fold |μ| − 1 goes with the root of the width
+            assert (s.multiplier.real > 0) == (s.kind == "fold")
+
+
+def test_stability_is_what_the_disturbed_chain_does(folded: Branch) -> None:
+    """On both sides of each change of stability: back to the orbit where it is stable, away where it is not."""
+    chosen = {}
+    for place, s in enumerate(t for t in folded.special if t.kind != "grazing"):
+        before = [p for p in folded.points if p.arclength <= s.before.arclength and abs(abs(p.multipliers[0]) - 1) > 0.01]
+        after = [p for p in folded.points if p.arclength >= s.after.arclength and abs(abs(p.multipliers[0]) - 1) > 0.01]
+        chosen[place] = (before[-1], *after[:1])
+    looked = [came_to(folded, point) for pair in chosen.values() for point in pair]
+    assert {mu > 1.0 for _, mu in looked} == {True, False}
+    for distance, mu in looked:  # back: to the error of a picture's largest force, 96 samples a period
+        assert distance < 1e-5 if mu < 1.0 else distance > 1e-4
+
+
+def test_the_folds_are_where_up_and_down_sweeps_jump(folded: Branch) -> None:
+    """Settling from the last stable orbit: it stays 0.2 Hz inside the fold and leaves 0.2 Hz beyond it."""
+    upper = the(folded, "fold")
+    sweep = continue_branch(scene("sec2"), "f", 340.0, upper.interval[0] - 0.2, 1)
+    edge, state = sweep.points[-1], sweep.state(sweep.points[-1])
+    inside = settled(sweep.axis.scene_at(edge.knob), state).run.max_output_force_elastic
+    beyond = settled(sweep.axis.scene_at(upper.interval[1] + 0.2), state).run.max_output_force_elastic
+    assert inside == pytest.approx(edge.max_output_force_elastic, rel=1e-5)
+    assert beyond != pytest.approx(inside, rel=5e-3)
+    # and the other stable piece, behind the second fold, is there at the same frequency: hysteresis
+    lower = the(folded, "fold", 1)
+    other = next(p for p in folded.points if p.arclength > lower.after.arclength and p.knob > lower.knob)
+    assert other.stable and lower.knob < other.knob < upper.knob
+
+
+def test_forces_along_an_orbit_are_those_of_a_run(doubling: Branch) -> None:
+    for point in (doubling.points[0], doubling.points[-1]):
+        shown = doubling.axis.scene_at(point.knob).evolve(accuracy=1e-10)
+        found = run(shown, periods=0, record=1, samples=8, start=doubling.state(point))
+        for name in ("max_input_force", "max_output_force", "max_output_force_elastic"):
+            assert getattr(point, name) == pytest.approx(getattr(found, name), rel=2e-6)  # the run's own peaks: 1e-6
+
+
+def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Branch) -> None:
+    parting, meeting = the(doubling, "period_doubling"), the(doubling, "period_doubling", 1)
+    begun = switch_to_doubled(doubling, parting)
+    seed = begun.points[0]
+    once = begin_branch(begun.axis.scene, "f", seed.knob, 225.0, 1, begun.state(seed)).points[0]
+    # two orbits at one frequency: that of one period, unstable, and one that alternates about it
+    assert begun.period == 2 and seed.stable and not once.stable
+    assert np.abs(once.x - seed.x).max() > 1e-3 * np.abs(seed.x).max()
+    found = Continuation(begun).run()
+    assert found.arms[0].ended == "merged" and "half a period later" in found.arms[0].reason
+    assert check_branch(found) == [] and all(p.stable for p in found.points)
+    last = found.special[-1]
+    widths = [s.interval[1] - s.interval[0] for s in (last, meeting)]
+    assert last.kind == "period_doubling" and last.knob == pytest.approx(meeting.knob, abs=sum(widths))
+    middle = min(found.points, key=lambda p: abs(p.knob - 247.0))
+    settled_there = settled(found.axis.scene_at(middle.knob).evolve(accuracy=_ASKED))
+    assert settled_there.regime.period == 2
+    assert settled_there.run.max_output_force_elastic == pytest.approx(middle.max_output_force_elastic, rel=1e-5)
+
+
+def test_between_doublings_the_disturbed_chain_leaves_its_orbit(doubling: Branch) -> None:
+    for point in doubling.points:
+        distance, mu = came_to(doubling, point)
+        assert distance < 1e-5 if mu < 1.0 else distance > 1e-4
+
+
+def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
+    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (PHYSICS, section 3)
+    s, shown = 7.0, scene("sec2")
+    scaled = shown.evolve(A0=s * shown.A0, D=s**0.25 * shown.D)
+    first = doubling.points[0]
+    state = doubling.state(first)
+    start = State(s * state.displacement, s**1.25 * state.velocity)
+    other = continue_branch(scaled, "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
+    mine, its = the(doubling, "period_doubling"), the(other, "period_doubling")
+    assert its.knob / s**0.25 == pytest.approx(mine.knob, rel=1.1e-5)  # the half widths of both intervals
+
+
+@pytest.mark.parametrize(("knob", "start", "end", "changes"), [
+    ("A0", 5e-7, 6e-7, {"f": 2000.0}), ("D", 100.0, 90.0, {"f": 2000.0}), ("k", 0.0, 2e4, {"f": 2000.0}),
+    ("kappa", 0.001, 0.003, {"f": 2000.0}), ("F0", 1.0, 2.0, {"f": 2000.0}),
+])
+def test_every_continuous_knob_can_be_followed(knob: str, start: float, end: float, changes: dict[str, float]) -> None:
+    shown = scene("sec2").evolve(N=3, **changes)
+    found = continue_branch(shown, knob, start, end, 1)
+    assert found.arms[0].ended == "reached" and check_branch(found) == []
+    last = found.points[-1]
+    direct = periodic_orbit(shown.evolve(**{knob: end}), 1, found.state(last))
+    # both are fixed points to 1e-11 of the same map; near grazing Newton's basins are small, so it starts there
+    np.testing.assert_allclose(direct.state.displacement, found.state(last).displacement, rtol=1e-8)
+    assert last.knob == end and found.points[0].knob == start
+
+
+def test_a_preloaded_chain_has_no_special_points_at_small_drive() -> None:
+    """All contacts stay closed and the chain is nearly linear: nothing happens, whatever its resonances."""
+    shown = scene("sec2").evolve(F0=50.0, A0=1e-7, N=4)
+    found = continue_branch(shown, "f", 800.0, 1500.0, 1)
+    assert found.special == [] and check_branch(found) == []
+    assert all((p.closings == -1).all() and p.stable for p in found.points)
+
+
+def test_beyond_a_torus_point_the_chain_leaves_its_orbit() -> None:
+    found = continue_branch(scene("sec2"), "f", 2010.0, 1940.0, 1)
+    assert check_branch(found) == []
+    torus = the(found, "neimark_sacker")
+    assert torus.multiplier is not None and torus.multiplier.imag > 0.1
+    stable = [p for p in found.points if p.knob > torus.knob and p.stable][-1]
+    unstable = found.points[-1]
+    assert unstable.unstable == 2
+    assert came_to(found, stable)[0] < 1e-4 and came_to(found, unstable)[0] > 1e-3
+
+
+def closed_loop() -> tuple[Scene, float, int]:
+    """A chain with an isola: frequency and period of an orbit on it."""
+    return scene("sec2").evolve(N=3, D=40.0), 720.0, 3
+
+
+def test_an_isola_closes_on_itself() -> None:
+    shown, frequency, period = closed_loop()
+    found = continue_branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
+    assert [arm.ended for arm in found.arms] == ["closed"] and check_branch(found) == []
+    assert "the orbit there is the seed's" in found.arms[0].reason
+    assert sum(s.kind == "fold" for s in found.special) % 2 == 0
+
+
+def test_a_seed_that_is_no_orbit_is_told_with_its_residuals() -> None:
+    with pytest.raises(NumbersFailed, match="residuals were"):
+        continue_branch(scene("rig"), "f", 140.0, 150.0, 1)

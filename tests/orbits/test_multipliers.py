@@ -1,0 +1,118 @@
+"""The derivative of the stroboscopic map against monodromy.npz, finite differences in extended precision.
+
+The file's derivatives are of (u, v) and know nothing of variational equations; the product's are of (u, w). With
+v_i = w_i + (G_{i−1} − G_i)/m_i and B = ∂v/∂u at fixed w they are the same map in other variables,
+
+    M_uv = T(u_end) M_uw T(u_start)^{−1},    T = [[1, 0], [B, 1]].
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from chains import recorded_scene
+from scipy.optimize import linear_sum_assignment
+
+from granchain_core import Scene, scene
+from granchain_core.kernels.effects.contact import Chain
+from granchain_core.kernels.effects.dissipation import LinearDashpot
+from granchain_core.kernels.effects.driver import Harmonic
+from granchain_core.kernels.effects.preload import Preload
+from granchain_core.orbits.flow import StroboscopicMap
+
+_STORED = np.load(Path(__file__).parents[1] / "reference" / "monodromy.npz")
+CASES = sorted({key.split("/")[0] for key in _STORED})
+_EXPONENT = {"linear": 0.0, "none": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
+
+
+def shear(shown: Scene, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(v − w, T) at scaled displacements u and phase 0, for equal beads."""
+    n, a = shown.N, _EXPONENT[shown.dissipation]
+    rate = np.sqrt(shown.K * np.sqrt(shown.A0) / shown.bead(1).mass)
+    strength = 0.0 if shown.dissipation == "none" else shown.D / (shown.bead(1).mass * rate)
+    strength *= (shown.A0 / shown.reference_overlap) ** a
+    static = shown.static_overlap() / shown.A0 if shown.F0 > 0 else np.zeros(n + 1)
+    d = np.maximum(-np.diff(np.concatenate([[0.0], u, [0.0]])) + static, 0.0)
+    primitive, slope = strength * d ** (a + 1) / (a + 1), strength * np.where(d > 0, d**a, 0.0)
+    joins = np.vstack([np.zeros(n), np.eye(n)]) - np.vstack([np.eye(n), np.zeros(n)])  # ∂δ_c/∂u_i
+    matrix = np.eye(2 * n)
+    matrix[n:, :n] = -joins.T @ (slope[:, None] * joins)
+    return -joins.T @ primitive, matrix
+
+
+def product_map(name: str) -> tuple[np.ndarray, np.ndarray]:
+    """End state and derivative of the product's map in (u, v), from the stored start."""
+    shown = recorded_scene(record(name)["scene"])
+    start, n = _STORED[f"{name}/start"], shown.N
+    before, first = shear(shown, start[:n])
+    flow = StroboscopicMap(shown, record(name)["scene"]["periods"])(
+        np.concatenate([start[:n], start[n:] - before]))
+    after, last = shear(shown, flow.end[:n])
+    end = np.concatenate([flow.end[:n], flow.end[n:] + after])
+    return end, last @ np.linalg.solve(first.T, flow.derivative.T).T
+
+
+def record(name: str) -> dict:
+    """The record of a stored case."""
+    return json.loads(str(_STORED[f"{name}/record"]))
+
+
+def column_error(found: np.ndarray, exact: np.ndarray) -> float:
+    """Largest difference over the columns, relative to each column's largest entry."""
+    return float((np.abs(found - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())
+
+
+def multiplier_error(found: np.ndarray, exact: np.ndarray) -> float:
+    """Largest distance of eigenvalues paired one to one."""
+    distance = np.abs(np.linalg.eigvals(found)[:, None] - np.linalg.eigvals(exact)[None, :])
+    return float(distance[linear_sum_assignment(distance)].max())
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_map_its_derivative_and_multipliers_are_those_of_the_reference(name: str) -> None:
+    end, derivative = product_map(name)
+    exact, exact_end = _STORED[f"{name}/derivative"], _STORED[f"{name}/end"]
+    assert np.abs(end - exact_end).max() <= 1e-11 * np.abs(exact_end).max()
+    assert column_error(derivative, exact) <= 1e-8
+    assert multiplier_error(derivative, exact) <= 1e-7
+
+
+def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_misses() -> None:
+    # One bead flies freely, then meets a wall that is a dashpot 2ζ and nothing else, at t* = −u/v; s is the rest.
+    zeta, period, u, v = 0.2, 2.0, -0.7, 1.0
+    damping, onset = 2.0 * zeta, -u / v
+    rest = period - onset
+    left = np.exp(-damping * rest)
+    end = np.array([v * (1.0 - left) / damping, v * left])
+    exact = np.array([[left, (1.0 - left) / damping + onset * left],
+                      [-damping * left, left * (1.0 - damping * onset)]])
+    # The (u, v) equations linearised on either side of the onset, without the jump δv −= (D/m) δu at it.
+    closed = np.array([[1.0, (1.0 - left) / damping], [0.0, left]])
+    naive = closed @ np.array([[1.0, onset], [0.0, 1.0]])
+    jump = np.array([[1.0, 0.0], [-damping, 1.0]])
+    assert closed @ jump @ np.array([[1.0, onset], [0.0, 1.0]]) == pytest.approx(exact, abs=1e-14)
+
+    flow = dashpot_wall(damping, period)(np.array([u, v]))
+    found = np.array([[1.0, 0.0], [-damping, 1.0]]) @ flow.derivative  # w = v before the onset
+    assert flow.end - [0.0, damping * flow.end[0]] == pytest.approx(end, abs=1e-12)
+    assert found == pytest.approx(exact, abs=1e-10)
+    assert flow.log_determinant == pytest.approx(-damping * rest, abs=1e-10)
+    # Liouville sees nothing, the columns do: they are wrong by 68 % and 20 % of their largest entries.
+    assert np.linalg.det(naive) == pytest.approx(np.exp(flow.log_determinant), rel=1e-10)
+    assert column_error(naive[:, 1:], exact[:, 1:]) == pytest.approx(0.1985, abs=1e-3)
+    assert column_error(naive[:, :1], exact[:, :1]) == pytest.approx(0.6820, abs=1e-3)
+
+
+def dashpot_wall(damping: float, period: float) -> StroboscopicMap:
+    """The map of one bead far from the driver whose contact with the wall at 0 has a dashpot and no spring."""
+    strobe = StroboscopicMap(scene("sec2").evolve(N=1, F0=0.5), 1)
+    lowered, beta = strobe.engine.lowered, 2.0 * np.pi / period
+    slots = lowered.slots._replace(chain=Chain(lowered.slots.chain.inverse_mass, np.array([1.0, 0.0])),
+                                   preload=Preload(np.array([-10.0, 0.0])),  # a negative one is a gap
+                                   dissipation=LinearDashpot(damping), driver=Harmonic(1.0, beta))
+    strobe.engine.lowered = replace(lowered, slots=slots, beta=beta)
+    return strobe

@@ -1,0 +1,107 @@
+"""The tangent flow: two routes, what a missing saltation looks like and where Liouville is blind, long chains."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from linear_chain import linear_multipliers
+
+from granchain_core import BadInput, scene
+from granchain_core.integrate.engine import rest
+from granchain_core.orbits import orbit as orbits
+from granchain_core.orbits import periodic_orbit
+from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.orbit import sorted_multipliers
+
+
+@pytest.mark.parametrize("changes", [{}, {"f": 1130.0}, {"kappa": 0.001}, {"F0": 0.5}, {"wall": "rigid", "N": 3},
+                                     {"dissipation": "none", "N": 4}])
+def test_tangents_in_w_and_tangents_in_v_with_saltation_are_one_derivative(changes: dict[str, object]) -> None:
+    shown = scene("sec2").evolve(**changes)
+    strobe = StroboscopicMap(shown, 1)
+    x = 0.3 * np.random.default_rng(3).standard_normal(2 * shown.N)
+    first, second = strobe(x).derivative, strobe.second_route(x)
+    assert len(strobe.changes) > 0 or "F0" in changes
+    assert np.abs(first - second).max() < 1e-9 * np.abs(first).max()
+
+
+def test_a_missing_saltation_shows_in_the_columns_and_not_in_the_determinant() -> None:
+    shown = scene("sec2").evolve(N=3)
+    strobe = StroboscopicMap(shown, 1)
+    x = 0.3 * np.random.default_rng(4).standard_normal(6)
+    right = strobe(x)
+    wrong = strobe.second_route(x, jumps=False)
+    sign, logarithm = np.linalg.slogdet(wrong)
+    assert sign > 0 and logarithm == pytest.approx(right.log_determinant, abs=1e-8)  # Liouville sees nothing
+    assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()  # the columns do
+    step, difference = 1e-6, np.zeros((6, 6))
+    for column, e in enumerate(step * np.eye(6)):
+        difference[:, column] = (strobe.end(x + e) - strobe.end(x - e)) / (2 * step)
+    # the central difference errs by step² and by the map's 1e-12/step
+    assert np.abs(difference - right.derivative).max() < 3e-5 * np.abs(right.derivative).max()
+    assert np.abs(difference - wrong).max() > 0.05 * np.abs(right.derivative).max()
+
+
+def test_the_second_route_knows_its_limits() -> None:
+    strobe = StroboscopicMap(scene("sec2").evolve(dissipation="tsuji"), 1)
+    with pytest.raises(BadInput, match="no constant saltation"):
+        strobe.second_route(np.zeros(22))
+
+
+def test_a_scene_that_cuts_tension_is_refused_in_one_sentence() -> None:
+    with pytest.raises(BadInput, match="tension = allowed"):
+        periodic_orbit(scene("sec2").evolve(tension="cut"), period=1)
+
+
+@pytest.mark.parametrize("columns", [1, 8, 9])
+def test_directions_are_products_with_the_derivative(columns: int) -> None:
+    shown = scene("sec2").evolve(N=5)
+    strobe, rng = StroboscopicMap(shown, 1), np.random.default_rng(5)
+    x, directions = 0.3 * rng.standard_normal(10), rng.standard_normal((10, columns))
+    assert strobe(x, directions=directions).derivative == pytest.approx(strobe(x).derivative @ directions, abs=1e-12)
+
+
+def test_the_flow_with_and_without_tangents_ends_at_the_same_place_with_the_same_events() -> None:
+    strobe = StroboscopicMap(scene("sec2"), 2)
+    x = 0.3 * np.random.default_rng(6).standard_normal(22)
+    flow = strobe(x)
+    assert np.array_equal(strobe.end(x), flow.end)
+    assert np.array_equal(strobe.changes, flow.changes)
+    assert np.all(np.diff(flow.changes[:, 1]) >= 0.0) and 0.0 <= flow.changes[-1, 1] <= 2.0
+    closed: dict[int, bool] = {}
+    for contact, _ in flow.changes:  # each contact opens and closes in turn
+        c, closes = abs(int(contact)), contact > 0
+        assert closed.get(c, not closes) is not closes
+        closed[c] = closes
+
+
+def test_a_long_chain_has_the_leading_multipliers_of_its_linear_modes() -> None:
+    # as in the short chain, but by products with single directions only; the drive moves them by about A0/δ0
+    shown = scene("sec2").evolve(N=200, F0=50.0, A0=1e-10, D=1000.0, f=2000.0)
+    orbit = periodic_orbit(shown, period=1, start=rest(shown))
+    assert orbit.residual <= 1e-9 and orbit.liouville is None
+    exact = linear_multipliers(shown)[: len(orbit.multipliers)]
+    assert np.abs(orbit.multipliers) == pytest.approx(np.abs(exact), rel=1e-4)
+
+
+def test_krylov_and_dense_multipliers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    dense = periodic_orbit(scene("sec2"), observer=True)
+    monkeypatch.setattr(orbits, "DENSE", 5)
+    monkeypatch.setattr(orbits, "leading_multipliers",
+                        lambda strobe, x, observer=False: leading(strobe, x, observer, count=6))
+    sparse = periodic_orbit(scene("sec2"), period=1, start=dense.state, observer=True)
+    assert np.abs(sparse.multipliers) == pytest.approx(np.abs(dense.multipliers[:6]), abs=1e-8)
+    assert dense.observer_multipliers is not None and sparse.observer_multipliers is not None
+    assert np.abs(sparse.observer_multipliers) == pytest.approx(np.abs(dense.observer_multipliers[:6]), abs=1e-8)
+
+
+def leading(strobe: StroboscopicMap, x: np.ndarray, observer: bool, count: int) -> np.ndarray:
+    """The first `count` multipliers by Arnoldi iteration."""
+    from granchain_core.orbits.krylov import leading_multipliers
+
+    return leading_multipliers(strobe, x, observer, count)
+
+
+def test_multipliers_of_any_matrix_are_sorted_by_modulus() -> None:
+    sizes = np.abs(sorted_multipliers(np.random.default_rng(7).standard_normal((9, 9))))
+    assert np.all(np.diff(sizes) <= 0.0)
