@@ -18,7 +18,7 @@ from granchain_core.orbits.compiled import ORBIT_PIECE
 
 from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, load
 from .frames import samples_for
-from .jobs import MAPS, Stop
+from .jobs import Stop, in_thread
 from .session import slider_range
 from .views.diagram import cells_message, described, head_message
 
@@ -31,7 +31,8 @@ _QUIET = 700
 """Milliseconds without a movement of another knob before a new diagram is begun."""
 _BATCH, _PATIENCE = 0.25, 0.01
 """Seconds between two lots of cells, and between looks whether the picture in front is done."""
-_RANDOM_STATES = 64
+_RANDOM_STATES, _FEW = 64, 12
+"""Random states of a search, and those of a scene that has to be settled without lanes."""
 
 
 def page_grid(scene: Scene) -> Grid:
@@ -109,7 +110,7 @@ class MapTab:
             self._cells = empty_cells(self._grid)
         self._send_all()
         self._say("waiting")
-        MAPS.submit(self._work, self._grid, self._missing(), stop)
+        in_thread(self._work, self._grid, self._missing(), stop)
 
     def _missing(self) -> list[int]:
         return [int(number) for number in np.flatnonzero(self._cells["regime"] < 0)]
@@ -195,14 +196,14 @@ class MapTab:
         self._search = stop = new_stop()
         self._found = []
         self._show_attractors("searching")
-        MAPS.submit(self._search_work, self._page.session.scene, stop)
+        in_thread(self._search_work, self._page.session.scene, stop)
 
     def _search_work(self, scene: Scene, stop: Stop) -> None:
         try:
             pieces = (LIVE, CERTIFIED, CURVE) if scene.cuts_tension else (LIVE, CERTIFIED, CURVE, ORBIT_PIECE)
             if self._compiled(scene, pieces, stop, self._show_attractors):
                 self._later(stop, self._show_attractors, "searching")
-                found = attractors(scene, _RANDOM_STATES, stop=lambda: bool(stop[0]))
+                found = attractors(scene, _FEW if scene.cuts_tension else _RANDOM_STATES, stop=lambda: bool(stop[0]))
                 shown = [described(one) for one in found]
                 self._later(stop, self._arrived, scene, found, shown)
         except (BadInput, NumbersFailed) as problem:

@@ -21,11 +21,22 @@ PICTURES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="pi
 BACKGROUND = ThreadPoolExecutor(max_workers=max(1, _CORES // 2), thread_name_prefix="background")
 ANALYSES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="analysis")
 """What follows a picture while the knobs rest: short, and given up when a knob moves."""
-MAPS = ThreadPoolExecutor(max_workers=2, thread_name_prefix="map")
-"""Diagrams of two knobs and searches for attractors: some seconds each, given up when they are not wanted any more."""
 
 MEASUREMENTS = ThreadPoolExecutor(max_workers=1, thread_name_prefix="measurement")
 """What measures times, one after the other for all visitors: two at once would measure each other."""
+
+_MAPS = threading.BoundedSemaphore(2)
+
+
+def in_thread(work: Callable[..., None], *arguments: object) -> None:
+    """Do something that lasts, such as a diagram or a search, two at a time; the process does not wait for its end."""
+
+    def run() -> None:
+        with _MAPS:
+            work(*arguments)
+
+    threading.Thread(target=run, daemon=True, name="map").start()
+
 
 Stop = np.ndarray
 """A flag of one byte that running kernels look at."""

@@ -232,7 +232,7 @@ function mapTab(model) {
 
   const listed = () => {
     if (MAP.search !== "") {
-      const words = { none: "", searching: "from rest, both sweeps and 64 random states …", compiling: MAP_STATUS.compiling, failed: MAP.searched }[MAP.search];
+      const words = { none: "", searching: "from rest, both sweeps and random states …", compiling: MAP_STATUS.compiling, failed: MAP.searched }[MAP.search];
       found.replaceChildren(...(words ? [made("p", { className: "soft", textContent: words })] : []));
       return;
     }

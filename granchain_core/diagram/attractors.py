@@ -14,23 +14,23 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, State
-from ..integrate.engine import new_stop, rest
+from ..integrate.engine import rest
 from ..orbits import Orbit
 from ..scene import Scene
-from ..steady.curve import curve_point
 from ..steady.lane_job import LaneResult, Start
 from ..steady.regime import Regime
-from ..steady.settle import settle
 from .compute import on_all_cores
 from .sameness import LIVE, Found, found, merged
 
-#: Frequencies passed on the way in a sweep, and how far away it begins.
-_SWEEP, _AWAY = 5, 0.08
+#: Frequencies passed on the way in a sweep, periods at each, and how far away it begins.
+_SWEEP, _PASS, _AWAY = 8, 150, 0.08
 #: Random states lie within so many times the largest displacement and velocity on the way from rest.
 _BOX = 1.5
 #: A start that ended on an unstable orbit is put so far beside it, relative to the motion, and runs so many periods
 #: before it is looked at again: more than it takes to leave an orbit with |μ| = 1.003.
 _BESIDE, _RUN_ON = 1e-2, 3000
+#: Mean exponents per drive period above which a group is chaotic, and below which it may be quasi-periodic.
+_CLEARLY, _UNCLEAR = 0.01, 5e-3
 #: Most random states.
 MOST_STATES = 10_000
 
@@ -81,7 +81,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Calla
     if not 0 <= random_states <= MOST_STATES:
         raise BadInput(f"random_states = {random_states} is outside 0 to {MOST_STATES}; the nearest valid value is "
                        f"{min(max(random_states, 0), MOST_STATES)}.")
-    origins = _origins(scene, random_states, seed)
+    origins = _origins(scene, random_states, seed, stop)
     starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
     results = _settled(starts, stop, progress)
     if results and not any(not result.failure for result in results):
@@ -132,49 +132,66 @@ def share(count: int, of: int) -> tuple[float, float]:
     return count / of, math.sqrt(middle * (1.0 - middle) / (of + 4.0))
 
 
-def _origins(scene: Scene, random_states: int, seed: int) -> list[Origin]:
+def _origins(scene: Scene, random_states: int, seed: int, stop: Callable[[], bool] | None) -> list[Origin]:
     """Rest, the ends of both sweeps, and random states."""
-    way = settle(scene, None, new_stop())
-    scales, dice = way.engine.lowered.scales, np.random.default_rng(seed)
-    size = _BOX * np.abs(way.strobes).max(axis=(0, 2)) * (scales.length, scales.velocity)
+    _, strobes, velocity = _run_on(scene, rest(scene))
+    dice = np.random.default_rng(seed)
+    size = _BOX * np.abs(strobes).max(axis=(0, 2)) * (scene.A0, velocity)
     size = np.maximum(size, (scene.A0, 2.0 * math.pi * scene.f * scene.A0))
-    origins = [Origin("rest", rest(scene)), Origin("up", _swept(scene, 1.0 - _AWAY)),
-             Origin("down", _swept(scene, 1.0 + _AWAY))]
+    origins = [Origin("rest", rest(scene)), Origin("up", _swept(scene, 1.0 - _AWAY, stop)),
+               Origin("down", _swept(scene, 1.0 + _AWAY, stop))]
     for number in range(random_states):
         u, v = size[:, None] * dice.uniform(-1.0, 1.0, (2, scene.N))
         origins.append(Origin(f"random {number}", State(u, v)))
     return origins
 
 
-def _swept(scene: Scene, factor: float) -> State:
+def _swept(scene: Scene, factor: float, stop: Callable[[], bool] | None) -> State:
     """The state in which a sweep of the frequency from `factor` times it arrives."""
-    state: State | None = None
+    state = rest(scene)
     for step in range(_SWEEP):
+        if stop is not None and stop():
+            break
         f = scene.f * (factor + (1.0 - factor) * step / _SWEEP)
-        try:
-            state = curve_point(scene.evolve(f=f), state, new_stop()).state
-        except NumbersFailed:
-            state = None
-    return rest(scene) if state is None else state
+        state, _, _ = _run_on(scene.evolve(f=f), state)
+    return state
+
+
+def _run_on(scene: Scene, state: State) -> tuple[State, np.ndarray, float]:
+    """Where the live method gets in `_PASS` periods, its scaled strobes on the way, and the unit of velocity [m/s]."""
+    engine = Engine(scene, LIVE, 1)
+    engine.start(state)
+    strobes, _ = engine.periods(_PASS)
+    return engine.state, strobes, engine.lowered.scales.velocity
 
 
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
-    """What a group is; its forces are those with the least error."""
+    """What a group is: its forces are those with the least error, or the largest that any of an irregular group saw."""
     best = min((one.result for one in group), key=lambda result: result.error_estimate or 0.0)
     first, tops = group[0], best.tops
-    regime = replace(first.result.regime, lyapunov=_pooled([one.result.regime for one in group]))
+    if first.result.regime.period is None:
+        tops = np.max([one.result.tops for one in group], axis=0)
+    regime = _regime([one.result.regime for one in group])
     state = first.result.state if first.orbit is None else first.orbit.state
     return Attractor(best.scene, regime, float(tops[0]), float(tops[1]), float(tops[2]), best.error_estimate, state,
                      first.orbit, [origins[one.result.number] for one in group])
 
 
-def _pooled(regimes: list[Regime]) -> tuple[float, float] | None:
-    """Mean Lyapunov exponent of a group with its standard error."""
+def _regime(regimes: list[Regime]) -> Regime:
+    """The regime of a group, of irregular motions by the mean of their Lyapunov exponents with its standard error.
+
+    The rule is that of steady/regime.py; the mean of many is not known better than its part that dies as 1/periods.
+    """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
-    if not known:
-        return None
-    mean = sum(value for value, _ in known) / len(known)
-    return mean, math.sqrt(sum(error**2 for _, error in known)) / len(known)
+    if regimes[0].period is not None or not known:
+        return regimes[0]
+    mean, error = sum(value for value, _ in known) / len(known), math.sqrt(sum(e**2 for _, e in known)) / len(known)
+    if mean > max(3.0 * error, _CLEARLY):
+        name = "chaotic"
+    else:
+        quasi = abs(mean) <= max(3.0 * error, _UNCLEAR) and any(one.name == "quasi-periodic" for one in regimes)
+        name = "quasi-periodic" if quasi else "unsettled"
+    return replace(regimes[0], name=name, lyapunov=(mean, error))
 
 
 def listing(attractors_found: list[Attractor]) -> Iterator[str]:

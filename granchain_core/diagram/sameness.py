@@ -118,7 +118,7 @@ def _polished(one: Found) -> Found:
 
 
 def _same(a: Found, b: Found) -> bool:
-    if a.result.regime.name != b.result.regime.name or a.result.regime.period != b.result.regime.period:
+    if a.result.regime.period != b.result.regime.period:
         return False
     if a.result.regime.period is not None:
         return _distance(a.section, b.section) <= a.tolerance + b.tolerance
