@@ -17,7 +17,8 @@ from granchain_core import Cancelled
 
 _CORES = os.cpu_count() or 1
 
-PICTURES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="picture")
+PICTURES = ThreadPoolExecutor(max_workers=4 * max(2, _CORES), thread_name_prefix="picture")
+"""More than cores: a job that waits for the compiler keeps its thread, and must not keep other visitors waiting."""
 BACKGROUND = ThreadPoolExecutor(max_workers=max(1, _CORES // 2), thread_name_prefix="background")
 ANALYSES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="analysis")
 """What follows a picture while the knobs rest: short, and given up when a knob moves."""

@@ -25,7 +25,7 @@ from granchain_core.kernels.effects.preload import Preload
 from granchain_core.orbits.flow import StroboscopicMap
 
 _STORED = np.load(Path(__file__).parents[1] / "reference" / "monodromy.npz")
-CASES = sorted({key.split("/")[0] for key in _STORED})
+CASES = ("founded", "kuwabara-kono", "preload", "rig-60", "sec2-340", "sec2-615", "tsuji")
 _EXPONENT = {"linear": 0.0, "none": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
 
 
@@ -76,7 +76,8 @@ def multiplier_error(found: np.ndarray, exact: np.ndarray) -> float:
 def test_the_map_its_derivative_and_multipliers_are_those_of_the_reference(name: str) -> None:
     end, derivative = product_map(name)
     exact, exact_end = _STORED[f"{name}/derivative"], _STORED[f"{name}/end"]
-    assert np.abs(end - exact_end).max() <= 1e-11 * np.abs(exact_end).max()
+    # some 400 steps of 1e-13 each, whose errors the map enlarges by its derivative, a few
+    assert np.abs(end - exact_end).max() <= 1e-10 * np.abs(exact_end).max()
     assert column_error(derivative, exact) <= 1e-8
     assert multiplier_error(derivative, exact) <= 1e-7
 
