@@ -87,7 +87,6 @@ class HardPage:
             answers = process.measure(case, stop)
             self._later(stop, self._measured, case.name, next(answers))
             self._later(stop, self._draw, case.name, next(answers))
-            answers.close()
         except Cancelled:
             pass
         except Ended:
