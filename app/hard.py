@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -10,12 +11,16 @@ from granchain_core.hard import CASES, Case, Check, Picture
 from granchain_core.integrate.engine import new_stop
 
 from .hard_work import CaseProcess, Ended, case_of
-from .jobs import MEASUREMENTS, Stop
+from .jobs import Stop
 from .views.hard import described, picture_message, summary
 
 if TYPE_CHECKING:
     from .controller import Controller
 
+_TURN = threading.Lock()
+"""One case at a time, for all visitors."""
+_LOOK = 0.05
+"""Seconds between looks at the stop flag while another visitor's case is measured."""
 _FAULT = "The process that measures it ended by a fault inside granchain; run it again, and please report it."
 
 
@@ -69,19 +74,29 @@ class HardPage:
         self._run((case,))
 
     def _run(self, cases: tuple[Case, ...]) -> None:
-        if not self.waiting:
+        idle = not self.waiting
+        if idle:
             self._asked = 0
         for case in cases:
             if case.name not in self.waiting:
                 self.waiting.append(case.name)
                 self._asked += 1
                 self._put(case.name, status="waiting", failure="")
-                MEASUREMENTS.submit(self._work, case, self._process, self._stop)
+        if idle:
+            self._begin_next()
         self._show()
+
+    def _begin_next(self) -> None:
+        # a daemon: a server that ends does not wait for it
+        wanted = case_of(self.waiting[0]), self._process, self._stop
+        threading.Thread(target=self._work, args=wanted, name="hard cases", daemon=True).start()
 
     # In the measuring thread
 
     def _work(self, case: Case, process: CaseProcess, stop: Stop) -> None:
+        while not _TURN.acquire(timeout=_LOOK):
+            if stop[0]:
+                return
         try:
             self._later(stop, self._change, case.name, status="running")
             answers = process.measure(case, stop)
@@ -93,6 +108,8 @@ class HardPage:
             self._later(stop, self._finish, case.name, status="failed", failure=_FAULT)
         else:
             self._later(stop, self._finish, case.name, status="done")
+        finally:
+            _TURN.release()
 
     def _later(self, stop: Stop, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
         """In the document's turn, unless it was cancelled by then."""
@@ -115,7 +132,9 @@ class HardPage:
 
     def _finish(self, name: str, **outcome: str) -> None:
         self.waiting.remove(name)
-        if not self.waiting:
+        if self.waiting:
+            self._begin_next()
+        else:
             self._process.close()
             self._process = CaseProcess()
         self._change(name, **outcome)

@@ -151,7 +151,7 @@ export function render({ model }) {
     next.click();
     next.focus();
   });
-  tabs.append(larger);
+  tabs.prepend(larger);  // it floats: the second line of tabs has the whole width
   model.on("state", show);
   window.granchain.on("observer", () => { if (chosen === "observer") drawObserver(); });
   // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.

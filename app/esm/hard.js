@@ -5,6 +5,9 @@ const part = (tag, properties = {}, ...children) => {
   element.append(...children);
   return element;
 };
+// Text with its powers, "10^5" and "F^{1/6}", raised.
+const raised = (text) => text.split(/(\^\{[^}]+\}|\^-?\d+)/).map((piece) => (
+  piece.startsWith("^") ? part("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
 const PATIENCE = 20;  // seconds after which it is told why the first run on a computer lasts
 const STATUS = { waiting: "waits for its turn", drawing: "drawing …", cancelled: "cancelled" };
 const BUSY = ["waiting", "running", "drawing"];
@@ -12,7 +15,7 @@ const BUSY = ["waiting", "running", "drawing"];
 function rowTable(rows) {
   const body = part("tbody");
   for (const { what, figure, bar, passed, note } of rows) {
-    const cell = part("td", {}, what);
+    const cell = part("td", {}, ...raised(what));
     if (note) cell.append(part("div", { className: "soft", textContent: note }));
     body.append(part("tr", { className: passed ? "held" : "missed" },
       part("td", { className: "verdict", textContent: passed ? "✓ holds" : "✕ FAILED" }), cell,
@@ -33,11 +36,11 @@ class Card {
     this.picture = part("div", { className: "picture" });
     this.key = part("div", { className: "key" });
     this.drawn = part("div", { className: "drawn", hidden: true }, part("div", { className: "draw" }, this.picture), this.key);
-    const line = (label, text) => part("p", {}, part("b", { textContent: label }), ` ${text}`);
+    const line = (label, text) => part("p", {}, part("b", { textContent: label }), " ", ...raised(text));
     this.root = part("article", { className: "case" },
-      part("div", { className: "title" }, part("h3", { textContent: one.name }), this.status, this.run),
+      part("div", { className: "title" }, part("h3", {}, ...raised(one.name)), this.status, this.run),
       part("div", { className: "lines" }, line("Hard:", one.hard), line("Naive:", one.naive),
-        part("p", { className: "soft" }, `Known from: ${one.oracle}.`)),
+        part("p", { className: "soft" }, "Known from: ", ...raised(one.oracle), ".")),
       this.warning, part("div", { className: "found" }, this.rows, this.drawn));
     this.root.dataset.case = one.name;
     this.began = null;
