@@ -44,7 +44,7 @@ const DOTTED = 70;
 function casePicture(host, { columns, labels, values, x_label, y_label }) {
   const rows = Array.from({ length: 1 + labels.length }, (_, i) => Array.from(values.subarray(i * columns, (i + 1) * columns)));
   const [xs, ...traces] = rows, styles = styled(labels);
-  const f = frame(host, { left: 62, right: 14, top: 28, bottom: 42 }, `${y_label} over ${x_label}: ${labels.join("; ")}`);
+  const f = frame(host, { left: 62, right: 26, top: 28, bottom: 42 }, `${y_label} over ${x_label}: ${labels.join("; ")}`);
   const { svg } = f;
   const x = axisOf(xs, x_label, 5), y = axisOf(traces.flat(), y_label, 4), room = 0.07 * (y.high - y.low);
   const X = (v) => f.x0 + (f.x1 - f.x0) * (v - x.low) / (x.high - x.low);
