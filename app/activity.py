@@ -30,6 +30,7 @@ def activities(page: Controller) -> list[tuple[str, str, str]]:
         ("accuracy of all methods", RUNNING if page.accuracy.running else IDLE if page.accuracy.rows else OFF,
          page.accuracy.progress_words),
         page.stability.activity,
+        page.hard.activity,
         ("cost of effects", RUNNING if page.effects.measuring else IDLE, page.effects.progress_words),
     ]
 

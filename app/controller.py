@@ -20,6 +20,7 @@ from .diagrams import MapTab
 from .effects import EffectsPanel
 from .exchange import Exchange
 from .frames import samples_for
+from .hard import HardPage
 from .jobs import LatestWins, Stop
 from .live import LivePicture, LiveRun
 from .looks import Looks
@@ -53,9 +54,10 @@ class Controller:
         self.accuracy = AccuracyPage(self)
         self.branches = BranchesPage(self)
         self.effects = EffectsPanel(self)
+        self.hard = HardPage(self)
         self.stability = StabilityPage(self)
         self.map = MapTab(self)
-        self.parts = (self.accuracy, self.branches, self.effects, self.map, self.observer, self.stability)
+        self.parts = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ready": self._ready, "visible": lambda _: self._painter.restart(),

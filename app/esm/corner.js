@@ -68,6 +68,17 @@ const TABS = {
     document.getElementById("curves").classList.add("roomy");
     return [row, host];
   },
+  "hard cases": () => {
+    const page = window.granchain;
+    const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
+    open.addEventListener("click", () => page.cover("hard"));
+    const said = paragraph("");
+    drawSmall = () => { said.textContent = page.hard || "Where solvers of such chains lie quietly: sixteen cases, each against something that is known."; };
+    drawSmall();
+    const row = Object.assign(document.createElement("div"), { className: "row top" });
+    row.append(said, open);
+    return [row];
+  },
   data: (model) => {
     const row = document.createElement("div");
     row.className = "row";
@@ -140,13 +151,14 @@ export function render({ model }) {
     next.click();
     next.focus();
   });
-  tabs.append(larger);
+  tabs.prepend(larger);  // it floats: the second line of tabs has the whole width
   model.on("state", show);
   window.granchain.on("observer", () => { if (chosen === "observer") drawObserver(); });
   // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
   model.on("state", () => { if (chosen !== "map") show(); });
   model.on("msg:custom", mapMessage);
   window.granchain.on("accuracy", () => { if (chosen === "accuracy") drawSmall(); });
+  window.granchain.on("hard", () => { if (chosen === "hard cases") drawSmall(); });
   window.granchain.on("stability", () => { if (chosen === "stability") drawSmall(); });
   window.granchain.on("cover", () => { if (chosen === "effects") looking(); });
   show();

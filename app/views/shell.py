@@ -21,6 +21,7 @@ from .curve import REGIMES, Curve
 from .energy import EnergyMap
 from .equation import Equation
 from .figures import BOTTOM, GAP, TOP, pane
+from .hard import Hard, described_cases
 from .header import Header
 from .knobs import Knobs
 from .observer import Observer, first_state
@@ -28,7 +29,7 @@ from .stability import Stability
 from .trains import Trains
 
 #: Pages over the pictures; each has its place in page.html.
-PAGES = ("accuracy", "stability", "branches", "observer")
+PAGES = ("accuracy", "stability", "branches", "observer", "hard")
 _APP = Path(__file__).resolve().parent.parent
 
 
@@ -51,6 +52,7 @@ class Views:
         self.stability = Stability(received, sizing_mode="stretch_both")
         self.branches = Branches(received, sizing_mode="stretch_both")
         self.observer = Observer(received, sizing_mode="stretch_both", state=first_state())
+        self.hard = Hard(received, sizing_mode="stretch_both", state={"cases": described_cases()})
         self.badge = Badge(received)
         self.shown: Settled | None = None
 

@@ -163,4 +163,4 @@ def collisions_picture() -> Picture:
         bench.throw(np.eye(5)[0])
         velocity = bench.record().velocity
         traces += [Trace(f"{label}: bead {i}", velocity[:, i - 1]) for i in (4, 5)]
-    return Picture(bench.time, "time", "velocity over the first bead's", tuple(traces))
+    return Picture(bench.time, "scaled time", "velocity over the first bead's", tuple(traces))

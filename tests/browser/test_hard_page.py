@@ -1,0 +1,81 @@
+"""The page "Hard cases" as a visitor meets it: found from the corner, still until asked, run, drawn, cancelled."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+from playwright.sync_api import Locator, Page, expect
+
+Visit = Callable[..., Page]
+#: A case that has a picture and, once its kernels are compiled, takes a second.
+QUICK = "solitary wave, Hertz collision, cradle, a bead on a chain"
+LONG = "near a bifurcation"
+#: Long enough for a first visit that has to compile the kernels of a case, on a machine that runs tests.
+COMPILED = 150_000
+
+
+def opened(page: Page) -> Locator:
+    """The page, opened from its tab in the corner."""
+    page.get_by_role("tab", name="hard cases").click()
+    page.locator("#corner").get_by_role("button", name="open the page").click()
+    sheet = page.locator('[data-cover="hard"]')
+    expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
+    return sheet
+
+
+def card(sheet: Locator, name: str) -> Locator:
+    """The card of one case."""
+    return sheet.locator(f'[data-case="{name}"]')
+
+
+def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    expect(sheet.locator("article")).to_have_count(16)
+    expect(sheet.locator("article").first).to_contain_text("Naive:")
+    page.wait_for_timeout(300)
+    expect(sheet.locator("table")).to_have_count(0)  # nothing ran by itself
+    one = card(sheet, QUICK)
+    one.get_by_role("button", name="run").click()
+    expect(one.locator("tbody tr").first).to_be_visible(timeout=COMPILED)
+    rows = one.locator("tbody tr")
+    expect(rows.first).to_contain_text("Hertz collision, duration")
+    assert rows.count() == 9
+    for verdict, figure, bar in zip(one.locator(".verdict").all_inner_texts(),
+                                    one.locator("td.number:nth-child(3)").all_inner_texts(),
+                                    one.locator("td.number:nth-child(4)").all_inner_texts(), strict=True):
+        assert verdict == ("✓ holds" if float(figure) <= float(bar.removeprefix("≤ ")) else "✕ FAILED")
+    expect(one.locator("path[data-trace]")).to_have_count(4, timeout=COMPILED)
+    dashes = one.locator("path[data-trace]").evaluate_all("all => all.map((line) => getComputedStyle(line).strokeDasharray)")
+    assert len(set(dashes)) == 4  # told apart without colour
+    expect(one.locator("svg text.title")).to_have_text(["velocity over the first bead's", "scaled time"])
+    expect(one.get_by_role("button", name="run")).to_have_text("run again", timeout=20_000)
+    expect(sheet).to_contain_text("1 of 16 cases run")
+    # what was found is told in the corner and stays
+    page.keyboard.press("Escape")
+    expect(page.locator("#corner")).to_contain_text("1 of 16 cases run")
+
+
+def test_run_all_is_cancelled_at_once(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    sheet.get_by_role("button", name="run all").click()
+    expect(card(sheet, LONG)).to_contain_text("running", timeout=20_000)
+    expect(card(sheet, QUICK)).to_contain_text("waits for its turn")
+    sheet.get_by_role("button", name="cancel").click()
+    expect(card(sheet, QUICK)).to_contain_text("cancelled", timeout=1500)
+    expect(card(sheet, LONG)).to_contain_text("cancelled")
+    expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
+
+
+def test_the_page_fits(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    for width, height in ((1280, 800), (1920, 1080), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        for one in sheet.locator("article").all():
+            box = one.bounding_box()
+            assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width
+            expect(one).to_have_text(re.compile("Hard:.*Naive:.*Known from:", re.DOTALL))
