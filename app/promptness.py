@@ -18,6 +18,16 @@ def _streams(document: Document) -> list[IOStream]:
     return [stream for stream in streams if isinstance(stream, IOStream) and not stream.closed()]
 
 
+def has_turn(document: Document) -> bool:
+    """Whether it is the document's turn, in which alone it may be changed.
+
+    Bokeh keeps a list of what is to be written while it is. A message can arrive outside of it, while an earlier one's
+    answers are still being written; Bokeh refuses every change then.
+    """
+    session = getattr(document.session_context, "session", None)
+    return getattr(session, "_pending_writes", ()) is not None
+
+
 def send_at_once(document: Document) -> None:
     """Nothing is held back until the browser's system has acknowledged earlier messages, which may take 40 ms."""
     for stream in _streams(document):
