@@ -165,7 +165,7 @@ def test_a_length_that_does_not_scale_and_a_state_that_is_rounded_are_noticed(mo
 
 def test_lsoda_as_it_comes_is_silently_wrong_and_a_located_solver_is_not() -> None:
     tiny = replace(EASY, knobs={**EASY.knobs, "A0": 1e-8})
-    verdict = check(tiny, scipy=5.0, others=5.0)
+    verdict = check(tiny, scipy=5.0, others=60.0)
     assert verdict.faults == [] and verdict.against_scipy
     assert silent_other(verdict, "LSODA")
     assert verdict.others["naive RK4"][1] > 10.0 * verdict.error

@@ -156,7 +156,7 @@ def _judge(verdict: Verdict, found: Run, stop: np.ndarray) -> np.ndarray:
     if found.status == "done" and not verdict.stated <= chosen.accuracy:
         verdict.faults.append(("done, and stated above what was asked", verdict.stated / chosen.accuracy))
     if verdict.known < _CHAOS:
-        limits = 1e-9 + 100.0 * verdict.known, 1e-9 + 100.0 * max(verdict.stated, chosen.accuracy)
+        limits = 1e-9 + 100.0 * verdict.known, 1e-9 + 10.0 * max(verdict.stated, chosen.accuracy)
         figures = properties.energy(engine.lowered, kept[1]), found.energy_residual
         for name, figure, bar in zip(("energy of the certified method", "energy"), figures, limits, strict=True):
             if figure is None or not figure <= bar:
