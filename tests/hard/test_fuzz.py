@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from fuzzing import check as checker
 from fuzzing import oracle, properties
-from fuzzing.__main__ import warm
 from fuzzing.check import Verdict, check
+from fuzzing.many import warm
 from fuzzing.scenes import FEW, Draw, draw
 from fuzzing.table import describe, known, silent_other, table
 

@@ -67,14 +67,14 @@ def shifted(scene: Scene, stop: np.ndarray) -> float:
     return distance(_period(scene, again, stop), engine.record(SAMPLES).displacement)
 
 
-def mirrored(scene: Scene, rng: np.random.Generator, stop: np.ndarray) -> tuple[float, float]:
-    """The scene made its own mirror image, its driver at rest: how far a symmetric start leads from symmetry, and
-    how far a start and its mirror image do from one another."""
+def mirrored(scene: Scene, rng: np.random.Generator, stop: np.ndarray) -> tuple[float, float, float]:
+    """The scene made its own mirror image, its driver at rest: how far a symmetric start leads from symmetry, how far
+    a start and its mirror image do from one another, and what the method's own error makes of the latter motion."""
     symmetric = _symmetric(scene)
     thrown = rng.uniform(-1.0, 1.0, scene.N)
-    even = _thrown(symmetric, thrown - thrown[::-1], stop)
-    one, two = _thrown(symmetric, thrown, stop), _thrown(symmetric, -thrown[::-1], stop)
-    return distance(-even[:, ::-1], even), distance(-two[:, ::-1], one)
+    even = _thrown(symmetric, thrown - thrown[::-1], 1e-15, stop)
+    one, two = (_thrown(symmetric, v, 1e-15, stop) for v in (thrown, -thrown[::-1]))
+    return distance(-even[:, ::-1], even), distance(-two[:, ::-1], one), distance(_thrown(symmetric, thrown, 1e-13, stop), one)
 
 
 def _symmetric(scene: Scene) -> Lowered:
@@ -92,7 +92,7 @@ def _symmetric(scene: Scene) -> Lowered:
         chain=Chain(both(slots.chain.inverse_mass), stiffness), driver=Harmonic(0.0, beta), preload=preload))
 
 
-def _thrown(lowered: Lowered, velocity: np.ndarray, stop: np.ndarray) -> np.ndarray:
-    engine = Engine(lowered.scene, Setting("dop853", tolerance=1e-13), SAMPLES, stop=stop, lowered=lowered)
+def _thrown(lowered: Lowered, velocity: np.ndarray, tolerance: float, stop: np.ndarray) -> np.ndarray:
+    engine = Engine(lowered.scene, Setting("dop853", tolerance=tolerance), SAMPLES, stop=stop, lowered=lowered)
     engine.start(State(np.zeros(len(velocity)), velocity * lowered.scales.velocity))
     return engine.record(SAMPLES).displacement
