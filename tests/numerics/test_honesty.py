@@ -67,6 +67,14 @@ def test_two_computations_by_the_same_steps_are_no_evidence():
     assert same_steps().error_estimate > 0.0
 
 
+def test_computations_with_the_same_steps_are_not_compared():
+    """A fast drive sampled 16 times: half the step, asked for from so coarse an accuracy, is still one step a sample."""
+    chain = scene("sec2").evolve(f=5600.0, A0=1.7e-7, D=64.0, N=5, accuracy=7e-4)
+    true = honesty.certified(chain, 3e-15)
+    result = run(chain, periods=0, record=honesty.PERIODS, samples=honesty.SAMPLES)
+    assert 0.0 < np.abs(result.displacement - true).max() / np.abs(true).max() <= result.error_estimate <= chain.accuracy
+
+
 @pytest.mark.parametrize("base", ["sec2", "rig"])
 def test_the_error_stated_by_a_curve_bounds_the_true_one(base):
     """Periodic points of the lanes at random drive, A₀, D and k against the certified orbit, every one of them."""

@@ -1,0 +1,45 @@
+"""Many draws, on several processes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from multiprocessing import get_context
+
+from .check import Verdict, check
+from .scenes import Draw, draw
+
+#: Seconds that SciPy may take for one scene, and each of the other solvers.
+SCIPY, OTHERS = 1.5, 4.0
+_EVERY_SCIPY, _EVERY_OTHERS = 5, 8
+
+
+def warm(structures: list[tuple[str, str, bool, bool]]) -> None:
+    """Compile everything a check needs, so that no run's time is a compiler's."""
+    for law, tension, founded, pressed in structures:
+        knobs = {"N": 2, "f": 3000.0, "accuracy": 1e-4, "dissipation": law, "tension": tension,
+                 **({"kappa": 0.001} if founded else {}), **({"F0": 1.0} if pressed else {})}
+        check(Draw(0, 0, knobs, {}, False), scipy=60.0, others=60.0, budget=1000.0)
+
+
+def verdict_on(seed: int, index: int, structures: list[tuple[str, str, bool, bool]]) -> Verdict:
+    """The verdict on draw `index`, with the judges its number says."""
+    drawn = draw(seed, index, structures)
+    judged = index % _EVERY_SCIPY == 0 or drawn.knobs["tension"] == "cut"
+    return check(drawn, scipy=SCIPY if judged else 0.0, others=0.0 if index % _EVERY_OTHERS else OTHERS)
+
+
+def verdicts(count: int, seed: int, structures: list[tuple[str, str, bool, bool]], workers: int,
+             minutes: float) -> Iterator[Verdict]:
+    """Verdicts on draws 0, 1, … as they are finished; none is begun after `minutes`."""
+    until, index = time.perf_counter() + 60.0 * minutes, 0
+    with ProcessPoolExecutor(workers, get_context("spawn"), warm, (structures,)) as pool:
+        running: set[Future[Verdict]] = set()
+        while running or (index < count and time.perf_counter() < until):
+            while len(running) < 2 * workers and index < count and time.perf_counter() < until:
+                running.add(pool.submit(verdict_on, seed, index, structures))
+                index += 1
+            done, running = wait(running, return_when=FIRST_COMPLETED)
+            for one in done:
+                yield one.result()

@@ -1,0 +1,72 @@
+"""Many verdicts as one table, with what naive RK4 and LSODA would have given on the same scenes beside it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+import numpy as np
+
+from .check import SILENT, Verdict
+
+#: A truth that is known to less than this is no judge of an error of 1e-3.
+_KNOWN = 1e-4
+
+
+def known(verdicts: Iterable[Verdict]) -> list[Verdict]:
+    """Those whose true motion is known well enough to see an error of 1e-3."""
+    return [v for v in verdicts if v.known < _KNOWN]
+
+
+def silent(verdict: Verdict) -> bool:
+    """Whether the run returned an error above 1e-3 that it does not say."""
+    return any(name.startswith(("silent", "displacement is not")) for name, _ in verdict.faults)
+
+
+def silent_other(verdict: Verdict, name: str) -> bool:
+    """Whether another solver returned an error above 1e-3, or NaN, as if it were a result."""
+    outcome, error = verdict.others[name]
+    return outcome == "returned" and not error - 3.0 * verdict.known <= SILENT
+
+
+def table(verdicts: list[Verdict]) -> str:
+    """Counts by outcome, errors nobody said, and faults by name, as Markdown."""
+    compared = [v for v in verdicts if v.others]
+    names = ["naive RK4", "LSODA"]
+    outcomes = {n: Counter(v.others[n][0] for v in compared) for n in names}
+    rows = [["", "granchain, all", "granchain, the same scenes as", *names],
+            ["scenes", str(len(verdicts)), *[str(len(compared))] * 3],
+            ["truth known better than 1e-4", str(len(known(verdicts))), *[str(len(known(compared)))] * 3],
+            ["of these a silent error above 1e-3", str(sum(map(silent, known(verdicts)))),
+             str(sum(map(silent, known(compared)))),
+             *[str(sum(silent_other(v, n) for v in known(compared))) for n in names]],
+            ["failed or refused, and said so", str(_said(verdicts)), str(_said(compared)),
+             *[str(outcomes[n]["failed, and said so"]) for n in names]],
+            ["stopped for its time", *[str(sum(v.outcome == "hang" for v in part)) for part in (verdicts, compared)],
+             *[str(outcomes[n]["took too long"]) for n in names]]]
+    lines = ["| " + " | ".join(row) + " |" for row in rows]
+    lines.insert(1, "|" + "---|" * 5)
+    sure = [v for v in verdicts if v.judged]
+    ratios = np.array([v.error / v.stated for v in sure])
+    lines += ["", "| outcome | scenes |", "|---|---|"]
+    lines += [f"| {name} | {count} |" for name, count in Counter(v.outcome for v in verdicts).most_common()]
+    lines += ["", f"Judged by SciPy in (u, v) too: {sum(v.against_scipy for v in verdicts)}. Truth known better than what is "
+              f"stated: {len(sure)}; true over stated error: median {np.median(ratios):.2g}, worst {ratios.max():.3g}."
+              if len(sure) else ""]
+    lines += ["", "| what did not hold | scenes | largest figure |", "|---|---|---|"]
+    faults = [fault for v in verdicts for fault in v.faults]
+    lines += [f"| {name} | {count} | {max(f for n, f in faults if n == name):.3g} |"
+              for name, count in Counter(n for n, _ in faults).most_common()] or ["| nothing | 0 | |"]
+    return "\n".join(lines)
+
+
+def _said(verdicts: list[Verdict]) -> int:
+    return sum(v.outcome.startswith(("refused", "failed")) for v in verdicts)
+
+
+def describe(verdict: Verdict) -> str:
+    """One line: which draw, what came of it, what did not hold."""
+    faults = ", ".join(f"{name} ({figure:.3g})" for name, figure in verdict.faults) or "all held"
+    return (f"seed {verdict.draw.seed} index {verdict.draw.index}: {verdict.outcome}, {verdict.seconds:.2f} s, true {verdict.error:.2e} "
+            f"stated {verdict.stated:.2e} known {verdict.known:.0e}: {faults} {verdict.sentence}\n"
+            f"    {verdict.draw.knobs} {verdict.draw.special}")
