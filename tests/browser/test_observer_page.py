@@ -18,7 +18,7 @@ def opened(page: Page) -> Locator:
     page.get_by_label("scene").first.select_option("fig11-free")
     page.get_by_role("tab", name="observer").click()
     page.get_by_role("button", name="open the page").click()
-    sheet = page.locator("#cover")
+    sheet = page.locator('[data-cover="observer"]')
     expect(sheet.locator("path.distance")).to_be_visible(timeout=COMPILED)
     return sheet
 

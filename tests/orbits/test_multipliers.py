@@ -78,7 +78,8 @@ def test_the_map_its_derivative_and_multipliers_are_those_of_the_reference(name:
     exact, exact_end = _STORED[f"{name}/derivative"], _STORED[f"{name}/end"]
     # some 400 steps of 1e-13 each, whose errors the map enlarges by its derivative, a few
     assert np.abs(end - exact_end).max() <= 1e-10 * np.abs(exact_end).max()
-    assert column_error(derivative, exact) <= 1e-8
+    # the stored differences are exact to a fiftieth of what extrapolation in their step took away, or better
+    assert column_error(derivative, exact) <= max(1e-8, 0.02 * record(name)["columns"])
     assert multiplier_error(derivative, exact) <= 1e-7
 
 
