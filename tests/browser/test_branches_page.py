@@ -66,7 +66,9 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
     page.wait_for_function("[0, 1].every((stable) => granchain.branches?.arms[0]?.orbits.some((o) => o[2] === stable))", timeout=COMPILED)
     page.wait_for_timeout(1500)
     sheet.get_by_role("button", name="stop").click()
-    for _ in range(10):  # the last of the branch may still be drawn under the pointer
+    expect(sheet).to_contain_text("stopped; what was found stays")
+    page.wait_for_timeout(1000)  # the last of the branch is still drawn, every mark anew
+    for _ in range(10):
         sheet.locator('.special[data-kind="period_doubling"]').first.hover(force=True)
         if sheet.locator(".tip").is_visible():
             break
