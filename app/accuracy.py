@@ -13,7 +13,8 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_p
 from granchain_core.accuracy.compiled import METHODS_PIECE
 from granchain_core.integrate.engine import new_stop
 
-from .compiling import CERTIFIED, COMPILER, LIVE, load
+from .background import Background
+from .compiling import CERTIFIED, LIVE
 from .current import locate, page_setting
 from .jobs import MEASUREMENTS, Stop
 from .views.accuracy import described_reference, described_rows, described_ways, lesson_message
@@ -31,7 +32,7 @@ def measured_for(scene: Scene) -> str:
     return scene.evolve(accuracy=1e-6).digest
 
 
-class AccuracyPage:
+class AccuracyPage(Background):
     """One measurement at a time; it goes on in the background until it is done, cancelled or the visitor leaves."""
 
     def __init__(self, page: Controller) -> None:
@@ -101,7 +102,7 @@ class AccuracyPage:
     def _work(self, scene: Scene, stop: Stop) -> None:
         """In the measuring thread: the kernels first, then one row after the other."""
         try:
-            if not all(self._ready(scene, piece, stop) for piece in (LIVE, CERTIFIED, METHODS_PIECE)):
+            if not self._compiled(scene, (LIVE, CERTIFIED, METHODS_PIECE), stop, self._say):
                 return
             self._later(stop, self._say, "measuring")
             work_precision(scene, stop, report=lambda found: self._report(found, stop), pause=lambda: self._pause(stop),
@@ -115,30 +116,12 @@ class AccuracyPage:
             self._later(stop, self._say, "failed", "The measurement stopped by a fault inside granchain.")
             self._page.later(self._page.failed, error)
 
-    def _ready(self, scene: Scene, piece: str, stop: Stop) -> bool:
-        """Wait for one piece of the kernels, saying so; False when cancelled before."""
-        if not COMPILER.has(scene, piece):
-            self._later(stop, self._say, "compiling")
-        if not COMPILER.await_piece(scene, piece, stop):
-            return False
-        load(scene, piece)
-        return True
-
     def _pause(self, stop: Stop) -> None:
         while self._page.unsettled and not stop[0]:
             time.sleep(_PATIENCE)
 
     def _report(self, found: WorkPrecision, stop: Stop) -> None:
         self._later(stop, self._show, list(found.rows), found.lesson, described_reference(found))
-
-    def _later(self, stop: Stop, action: Callable[..., None], *arguments: Any) -> None:
-        """In the document's turn, unless another measurement or nothing is wanted by then."""
-
-        def act() -> None:
-            if not stop[0]:
-                action(*arguments)
-
-        self._page.later(act)
 
     def _show(self, rows: list[Row], lesson: Lesson | None, reference: dict[str, Any]) -> None:
         self.rows = rows

@@ -15,7 +15,8 @@ from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits import Arm, Branch, BranchPoint, Continuation, begin_branch, switch_to_doubled
 from granchain_core.orbits.compiled import BRANCH_PIECE
 
-from .compiling import CERTIFIED, COMPILER, LIVE, load
+from .background import Background
+from .compiling import CERTIFIED, LIVE
 from .jobs import Stop
 from .live import LiveRun
 from .session import slider_range
@@ -46,7 +47,7 @@ class _Drawn:
     orbits: list[BranchPoint] = field(default_factory=list)
 
 
-class BranchesPage:
+class BranchesPage(Background):
     """Branches of one chain: the first from the orbit on the screen, others from its period doublings."""
 
     def __init__(self, page: Controller) -> None:
@@ -165,7 +166,7 @@ class BranchesPage:
             self._page.later(self._page.failed, error)
 
     def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, stop: Stop) -> None:
-        if stop[0] or not all(self._ready(scene, piece, stop) for piece in (LIVE, CERTIFIED, BRANCH_PIECE)):
+        if stop[0] or not self._compiled(scene, (LIVE, CERTIFIED, BRANCH_PIECE), stop, self._say):
             return
         self._later(stop, self._say, "settling")
         for branch in begin(stop):
@@ -175,15 +176,6 @@ class BranchesPage:
                 self._grown(stop)
         self._later(stop, self._finish)
 
-    def _ready(self, scene: Scene, piece: str, stop: Stop) -> bool:
-        """Wait for one piece of the kernels, saying so; False when cancelled before."""
-        if not COMPILER.has(scene, piece):
-            self._later(stop, self._say, "compiling")
-        if not COMPILER.await_piece(scene, piece, stop):
-            return False
-        load(scene, piece)
-        return True
-
     def _grown(self, stop: Stop) -> None:
         """An orbit more: the page is told now and then; the picture in front comes first."""
         if time.monotonic() - self._sent > _OFTEN:
@@ -191,15 +183,6 @@ class BranchesPage:
             self._later(stop, self._draw)
         while self._page.unsettled and not stop[0]:
             time.sleep(_PATIENCE)
-
-    def _later(self, stop: Stop, action: Callable[..., None], *arguments: Any) -> None:
-        """In the document's turn, unless another branch or nothing is wanted by then."""
-
-        def act() -> None:
-            if not stop[0]:
-                action(*arguments)
-
-        self._page.later(act)
 
     # In the document's turn
 

@@ -16,7 +16,8 @@ from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits.compiled import ORBIT_PIECE
 
-from .compiling import CERTIFIED, COMPILER, CURVE, LIVE, load
+from .background import Background
+from .compiling import CERTIFIED, CURVE, LIVE
 from .frames import samples_for
 from .jobs import Stop, in_thread
 from .session import slider_range
@@ -42,7 +43,7 @@ def page_grid(scene: Scene) -> Grid:
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
 
 
-class MapTab:
+class MapTab(Background):
     """While the tab is on the screen its diagram is computed; nothing is while it is not."""
 
     def __init__(self, page: Controller) -> None:
@@ -137,27 +138,9 @@ class MapTab:
             self._later(stop, self._say, "failed", "The diagram stopped by a fault inside granchain.")
             self._page.later(self._page.failed, error)
 
-    def _compiled(self, scene: Scene, pieces: tuple[str, ...], stop: Stop, say: Callable[[str], None]) -> bool:
-        for piece in pieces:
-            if not COMPILER.has(scene, piece):
-                self._later(stop, say, "compiling")
-            if not COMPILER.await_piece(scene, piece, stop):
-                return False
-            load(scene, piece)
-        return True
-
     def _pause(self, stop: Stop) -> None:
         while (self._page.unsettled or self._page.curves.computing) and not stop[0]:
             time.sleep(_PATIENCE)
-
-    def _later(self, stop: Stop, action: Callable[..., None], *arguments: Any) -> None:
-        """In the document's turn, unless it is not wanted any more by then."""
-
-        def act() -> None:
-            if not stop[0]:
-                action(*arguments)
-
-        self._page.later(act)
 
     # To the browser
 

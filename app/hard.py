@@ -10,6 +10,7 @@ from granchain_core import BadInput, Cancelled
 from granchain_core.hard import CASES, Case, Check, Picture
 from granchain_core.integrate.engine import new_stop
 
+from .background import Background
 from .hard_work import CaseProcess, Ended, case_of
 from .jobs import Stop
 from .views.hard import described, picture_message, summary
@@ -24,7 +25,7 @@ _LOOK = 0.05
 _FAULT = "The process that measures it ended by a fault inside granchain; run it again, and please report it."
 
 
-class HardPage:
+class HardPage(Background):
     """Cases wait for their turn and are measured one after the other; results stay until a case is run again."""
 
     def __init__(self, page: Controller) -> None:
@@ -110,15 +111,6 @@ class HardPage:
             self._later(stop, self._finish, case.name, status="done")
         finally:
             _TURN.release()
-
-    def _later(self, stop: Stop, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
-        """In the document's turn, unless it was cancelled by then."""
-
-        def act() -> None:
-            if not stop[0]:
-                action(*arguments, **named)
-
-        self._page.later(act)
 
     # In the document's turn
 
