@@ -14,9 +14,9 @@ class Method:
     """One way to integrate.
 
     `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
-    for, `order_with_cut` where tension is cut: the force's kink at F = 0 and its end at δ = 0 are no events that a
-    fixed step is split at. All are measured, the least of the damping laws, for adaptive methods per mean step
-    (tests/numerics/test_orders.py). `variables` are "uw" or "uv".
+    for, `order_with_cut` where tension is cut: only the certified method ends its steps at the force's kink, F = 0. All
+    are measured, the least of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
+    `variables` are "uw" or "uv".
     """
 
     name: str
@@ -74,7 +74,7 @@ METHODS: dict[str, Method] = {
                "a contact that opens and closes within a step is not seen; largest forces at its steps only",
                "Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, section II.5"),
         Method("dop853", "Dormand–Prince 8 in w, contact events located", 8.5, 7.5, True, True, False,
-               "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5"),
+               "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5", order_with_cut=7.5),
     )
 }
 

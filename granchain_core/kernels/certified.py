@@ -16,6 +16,7 @@ from .effects.tension import NoTension
 from .jit import kernel, term
 from .motion import copy
 from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
+from .slackening import first_kink
 
 #: A step is aimed to end this overlap behind the event, some roundings of the largest displacement, and lands within
 #: so many times that: the moment of a contact is then as exact as its speed lets it be.
@@ -170,23 +171,29 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     Returns (status, step taken, contact that changed at its end or −1); `clock[0]` is the next step to try.
     """
     h = min(clock[0], method.largest_step, limit - t)
-    aimed, factor = -1, 1.0
+    aimed, kinked, factor = -1, False, 1.0
     while True:
         error = attempt(method, slots, beta, t, h, y, work)
         counts[1] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, h, -1
         if error > 1.0:
-            aimed = -1
+            aimed, kinked = -1, False
             counts[3] += 1
             h *= max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
             if t + 0.1 * h == t:
                 return STEP_TOO_SMALL, h, -1
             continue
         factor = min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
-        if aimed >= 0:
+        if aimed >= 0 or kinked:
             break
         aimed, x = first_event(slots, beta, t, h, y, work, counts)
+        kink = first_kink(slots.tension, slots, beta, t, h, y, work, min(x, 1.0), counts)
+        if kink < 1.0:
+            clock[0] = min(clock[0], h * factor)
+            aimed, kinked = -1, True
+            h *= kink
+            continue
         if aimed < 0 or t + 0.1 * x * h == t or x > 1.0 - 1e-9:
             break
         h *= x
@@ -194,6 +201,8 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
         h = land_behind(method, slots, beta, t, h, limit, y, work, aimed, counts)
         clock[0] = min(clock[0], 2.0 * method.tolerance**0.4)
         counts[2] += 1
+    elif kinked:
+        counts[2] += 1  # the motion is smooth on both sides: the next step need not start small
     elif h < limit - t or factor < 1.0 or clock[0] <= h:
         clock[0] = h * factor
     counts[0] += 1

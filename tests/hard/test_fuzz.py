@@ -24,8 +24,6 @@ from granchain_core.lower import lower
 SEED, COUNT = 7, 150
 #: Seconds a run may take here: the slowest scenes are for the program.
 SHORT = 1.0
-#: By what factor a stated error may be below the true one, as in tests/numerics/test_honesty.py.
-AT_MOST = 4.0
 EASY = Draw(0, 0, {"N": 3, "f": 1000.0, "accuracy": 1e-5}, {}, False)
 
 
@@ -37,12 +35,9 @@ def found() -> list[Verdict]:
 
 
 def test_everything_holds_in_every_scene() -> None:
-    """Two computations that agree by chance state too little in one scene of a hundred, by a small factor and with a
-    tension cut, where the order is 1; nothing else is let through."""
+    """Not one is let through: two computations that agree by chance state too little in one scene of a thousand."""
     print(table(found()))
-    chance = [v for v in found() if [n for n, _ in v.faults] == ["bound"] and v.faults[0][1] < AT_MOST and v.draw.scene().cuts_tension]
-    assert [describe(v) for v in found() if v.faults and v not in chance] == []
-    assert len(chance) <= 0.01 * COUNT
+    assert [describe(v) for v in found() if v.faults] == []
 
 
 def test_most_scenes_are_judged() -> None:

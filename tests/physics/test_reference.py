@@ -44,7 +44,6 @@ def test_asked_for_more_it_comes_nearer(name):
     true = reference(name)
     result = run(reference_scene(name).evolve(accuracy=1e-11), 0, true["record"]["scene"]["periods"], 8)
     # Kuwabara–Kono has no dashpot at onset to calm what rounding does there: it ends near 3e-12 and says not reached
-    # and so does a cut of tension, whose kinks no event locates
     assert worst(result.displacement, true["displacement"]) < 1.2e-11
     # the difference of two such computations is near their rounding, and three times that is stated
     assert result.status == "done" or result.error_estimate < 1e-10

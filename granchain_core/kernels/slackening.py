@@ -1,0 +1,110 @@
+"""Where a contact whose tension is cut stops pushing, or pushes again, while its beads still touch.
+
+There F = K δ^{3/2} + g(δ) δ̇ = 0: the force has a kink, at which an error-controlled step is to end. Its sign is that of
+F/g = K δ^{3/2}/g(δ) + δ̇, which unlike F goes through zero nowhere else, not even at δ = 0.
+"""
+
+from __future__ import annotations
+
+from .dop853 import STAGES, dense_value, evaluate, prepare_dense
+from .effects.contact import positive_part
+from .effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from .effects.preload import overlap
+from .effects.tension import NoTension
+from .jit import kernel, term
+from .simd_math import root
+
+#: A kink nearer to an end of the step than this changes the motion by less than rounding, its square.
+_NEAR = 1e-8
+
+
+@term
+def push(law, stiffness, d, rate):
+    """F/g for d = [δ]_+ and δ̇ = rate. Absent: positive, an elastic contact never pulls."""
+    return 1.0
+
+
+@push.of(LinearDashpot)
+def _(law, stiffness, d, rate):
+    return stiffness * d * root(d) / law.coefficient + rate
+
+
+@push.of(Tsuji)
+def _(law, stiffness, d, rate):
+    return stiffness * d * root(root(d)) / law.coefficient + rate
+
+
+@push.of(KuwabaraKono)
+def _(law, stiffness, d, rate):
+    return stiffness * d / law.coefficient + rate
+
+
+@kernel
+def push_in_step(slots, beta, t, h, y, work, c, x):
+    """F/g of contact c at fraction x of the step, on the dense output."""
+    for i in range(y.size):
+        work.probe[i] = dense_value(work.dense, y[i], x, i)
+    evaluate(slots, beta, t + x * h, work.probe, work.slope, work.forces)
+    d = positive_part(overlap(slots.preload, work.probe, c))
+    return push(slots.dissipation, slots.chain.stiffness[c], d, work.slope[c] - work.slope[c + 1])
+
+
+@kernel
+def push_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
+    """Fraction between `low` and `high` where F of contact c changes sign (Illinois)."""
+    x, side = high, 0
+    for _ in range(60):
+        before = x
+        x = (low * f_high - high * f_low) / (f_high - f_low)
+        f = push_in_step(slots, beta, t, h, y, work, c, x)
+        counts[1] += 1
+        if abs(x - before) < 0.1 * _NEAR:
+            break
+        if (f > 0.0) == (f_low > 0.0):
+            low, f_low = x, f
+            if side < 0:
+                f_high *= 0.5
+            side = -1
+        else:
+            high, f_high = x, f
+            if side > 0:
+                f_low *= 0.5
+            side = 1
+    return x
+
+
+@term
+def first_kink(tension, slots, beta, t, h, y, work, until, counts):
+    """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
+
+    Absent: forces have no such kink.
+    """
+    return 2.0
+
+
+@first_kink.of(NoTension)
+def _(tension, slots, beta, t, h, y, work, until, counts):
+    first, ready, k = 2.0, False, work.k
+    for c in range(slots.chain.stiffness.size):
+        d0 = overlap(slots.preload, y, c)
+        if not d0 > 0.0:
+            continue
+        stiffness = slots.chain.stiffness[c]
+        f0 = push(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
+        d1 = positive_part(overlap(slots.preload, work.end, c))
+        f1 = push(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
+        if until == 1.0 and (f0 > 0.0) == (f1 > 0.0):
+            continue
+        if not ready:
+            prepare_dense(slots, beta, t, h, y, work)
+            counts[1] += 3
+            ready = True
+        if until < 1.0:
+            f1 = push_in_step(slots, beta, t, h, y, work, c, until)
+            counts[1] += 1
+            if (f0 > 0.0) == (f1 > 0.0):
+                continue
+        x = push_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
+        if x < first and x * h > _NEAR and x * h < until * h - _NEAR:
+            first = x
+    return first
