@@ -3,8 +3,8 @@
     python -m tests.hard.fuzzing --count 20000 --seed 5 [--workers 2] [--minutes 10] [--few]
     python -m tests.hard.fuzzing --seed 5 --only 123
 
-Every scene is held against the certified method at its finest, every fifth against SciPy in (u, v) too, every eighth
-is given to naive RK4 and to LSODA. Where tension is cut SciPy judges always, as `run` itself is certified there.
+Every scene is held against the certified method at its finest, every third against SciPy in (u, v) too unless that
+would take long, every sixteenth is given to naive RK4 and to LSODA.
 """
 
 from __future__ import annotations

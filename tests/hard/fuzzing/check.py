@@ -32,13 +32,16 @@ _ROUNDING, _MAGNIFIED = 1e-10, 1e3
 _CUT_CLOSES = 1e-6
 #: An account is a quadrature along the way: it was seen to close to 17 times the error of the displacements.
 _ENERGY = 50.0
+#: Seconds SciPy takes, in both its runs, for one step of the certified method: a scene it has no time for is not begun.
+_SCIPY_STEP = 2.5e-4
 #: A motion less well known than this is chaos: nothing but outcome, time and symmetries is judged.
 _CHAOS = 1e-4
 
 
 @dataclass
 class Verdict:
-    """What came of a draw. Errors are relative to the largest displacement; `known` is how well the truth is.
+    """What came of a draw. Errors are relative to the largest displacement; `known` is how well the truth is, `steps`
+    how many the certified method took.
 
     `faults` are (name, figure) of what did not hold. `others` are error and refusal of what a user would have had.
     """
@@ -50,6 +53,7 @@ class Verdict:
     error: float = np.nan
     stated: float = np.nan
     known: float = np.nan
+    steps: int = 0
     against_scipy: bool = False
     faults: list[tuple[str, float]] = field(default_factory=list)
     others: dict[str, tuple[str, float]] = field(default_factory=dict)
@@ -90,7 +94,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
     except NumbersFailed as problem:
         verdict.sentence = f"the judge failed: {problem}"
         return verdict
-    if scipy > 0.0:
+    if scipy > _SCIPY_STEP * verdict.steps:
         _second_judge(verdict, found, scipy)
     if others > 0.0:
         _others(verdict, chosen, truth, others)
@@ -153,6 +157,7 @@ def _judge(verdict: Verdict, found: Run, stop: np.ndarray) -> np.ndarray:
         engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, balance=True, stop=stop)
         engine.start(rest(chosen))
         kept.append(engine.record(PERIODS * SAMPLES))
+        verdict.steps = engine.counts.steps
     true = kept[1].displacement * chosen.A0
     verdict.known = distance(kept[0].displacement, kept[1].displacement)
     verdict.stated = float("nan") if found.error_estimate is None else found.error_estimate
