@@ -19,7 +19,7 @@ from ..orbits import Orbit
 from ..scene import Scene
 from ..steady.lane_job import LaneResult, Start
 from ..steady.regime import Regime
-from .compute import on_all_cores
+from .compute import settle_on_all_cores
 from .sameness import LIVE, Found, found, merged
 
 #: Frequencies passed on the way in a sweep, periods at each, and how far away it begins.
@@ -104,7 +104,7 @@ def _settled(starts: list[Start], stop: Callable[[], bool] | None,
              progress: Callable[[float], None] | None = None) -> list[LaneResult]:
     """Where starts lead, in their order."""
     results: list[LaneResult] = []
-    for result in on_all_cores(starts, stop):
+    for result in settle_on_all_cores(starts, stop):
         results.append(result)
         if progress is not None:
             progress(len(results) / len(starts))

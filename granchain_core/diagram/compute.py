@@ -2,43 +2,20 @@
 
 from __future__ import annotations
 
-import os
-import queue
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
-from ..errors import Cancelled
 from ..integrate.engine import new_stop
 from ..integrate.lane_block import can_share_lanes
 from ..scene import Scene
 from ..steady.curve import CurvePoint, safe_point
 from ..steady.lane_curve import lane_states
 from ..steady.lane_job import LaneResult, Start
+from ..steady.threads import on_all_cores
 from .cells import Diagram, cell_of, empty_cells
 from .grid import Axis, Grid
-
-#: Seconds between looks whether the computation is still wanted.
-_LOOK = 0.05
-
-
-class _Shared:
-    """Starts of one structure that several threads draw from."""
-
-    def __init__(self, starts: Iterable[Start], pause: Callable[[], None] | None) -> None:
-        self._starts, self._pause, self._lock = iter(starts), pause, threading.Lock()
-
-    def __iter__(self) -> Iterator[Start]:
-        return self
-
-    def __next__(self) -> Start:
-        with self._lock:
-            if self._pause is not None:
-                self._pause()
-            return next(self._starts)
 
 
 def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
@@ -97,50 +74,16 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
     wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
     groups = by_structure(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
     for group in groups:
-        yield from on_all_cores(starts_of(grid, group), stop, workers, pause)
+        yield from settle_on_all_cores(starts_of(grid, group), stop, workers, pause)
         if stop is not None and stop():
             return
 
 
-def on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None = None,
-                 workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
-    """Where starts of one structure lead, from as many threads as there are cores; closing the generator stops them."""
-    work, flag, count = _Shared(starts, pause), new_stop(), workers or os.cpu_count() or 1
-    found: queue.SimpleQueue[LaneResult | BaseException | None] = queue.SimpleQueue()
-    threads = [threading.Thread(target=_work, args=(work, flag, found), daemon=True, name=f"diagram-{i}")
-               for i in range(count)]
-    for thread in threads:
-        thread.start()
-    try:
-        while count > 0:
-            if stop is not None and stop():
-                return
-            try:
-                item = found.get(timeout=_LOOK)
-            except queue.Empty:
-                continue
-            if isinstance(item, BaseException):
-                raise item
-            if item is None:
-                count -= 1
-            else:
-                yield item
-    finally:
-        flag[0] = 1
-        for thread in threads:
-            thread.join()
-
-
-def _work(work: _Shared, flag: np.ndarray, found: queue.SimpleQueue[Any]) -> None:
-    """One thread's share; ends with None, or with the problem that ended it."""
-    try:
-        for result in settle_starts(work, flag):
-            found.put(result)
-    except Cancelled:
-        pass
-    except Exception as problem:  # raised again by the thread that reads the queue
-        found.put(problem)
-    found.put(None)
+def settle_on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None = None,
+                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
+    """Where starts of one structure lead, as they are found; closing the generator ends it."""
+    flag = new_stop()
+    return on_all_cores(lambda shared: settle_starts(shared, flag), starts, flag, stop, workers, pause)
 
 
 def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import itertools
 import os
-import queue
-import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
+from ..errors import BadInput, NumbersFailed, unknown_name
 from ..integrate import Engine, State
 from ..integrate.engine import new_stop
 from ..integrate.lane_block import can_share_lanes
@@ -22,6 +19,7 @@ from .lane_curve import lane_results
 from .lane_job import LaneResult
 from .regime import Regime
 from .settle import Settling, relax, settle
+from .threads import on_all_cores
 
 STARTS = ("rest", "up", "down")
 #: Forces on a curve are not computed to less relative error than this, whatever the scene asks of its picture.
@@ -149,61 +147,11 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
 def _from_rest(scenes: list[Scene], flag: np.ndarray, stop: Callable[[], bool] | None,
                workers: int | None) -> Iterator[CurvePoint]:
     """Independent points on all cores: by lanes where they can, else one by one; closing the generator stops them."""
-    work = _Shared(scenes)
-    found: queue.SimpleQueue[CurvePoint | BaseException | None] = queue.SimpleQueue()
-    count = min(workers or os.cpu_count() or 1, len(scenes))
-    threads = [threading.Thread(target=_work, args=(work, flag, found), daemon=True, name=f"curve-{i}")
-               for i in range(count)]
-    for thread in threads:
-        thread.start()
-    try:
-        while count > 0:
-            if stop is not None and stop():
-                return
-            try:
-                item = found.get(timeout=0.05)
-            except queue.Empty:
-                continue
-            if isinstance(item, BaseException):
-                raise item
-            if item is None:
-                count -= 1
-            else:
-                yield item
-    finally:
-        flag[0] = 1
-        for thread in threads:
-            thread.join()
+    yield from on_all_cores(lambda shared: _points(shared, flag), scenes, flag, stop,
+                            min(workers or os.cpu_count() or 1, len(scenes)))
 
 
-class _Shared:
-    """An iterator over scenes that several threads may draw from."""
-
-    def __init__(self, scenes: list[Scene]) -> None:
-        self._scenes = iter(scenes)
-        self._lock = threading.Lock()
-
-    def __iter__(self) -> Iterator[Scene]:
-        return self
-
-    def __next__(self) -> Scene:
-        with self._lock:
-            return next(self._scenes)
-
-
-def _work(scenes: _Shared, flag: np.ndarray, found: queue.SimpleQueue[Any]) -> None:
-    """One thread's share; ends with None, or with the problem that ended it."""
-    try:
-        for point in _points(scenes, flag):
-            found.put(point)
-    except Cancelled:
-        pass
-    except Exception as problem:  # raised again by the thread that reads the queue
-        found.put(problem)
-    found.put(None)
-
-
-def _points(scenes: _Shared, flag: np.ndarray) -> Iterator[CurvePoint]:
+def _points(scenes: Iterator[Scene], flag: np.ndarray) -> Iterator[CurvePoint]:
     first = next(scenes, None)
     if first is None:
         return

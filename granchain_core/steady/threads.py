@@ -1,0 +1,86 @@
+"""Independent work on all cores: threads that draw items from one iterator and hand on what they find.
+
+Kernels run without the interpreter's lock, so threads are enough, and a result needs no copy.
+"""
+
+from __future__ import annotations
+
+import os
+import queue
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from ..errors import Cancelled
+
+#: Seconds between looks whether the computation is still wanted.
+_LOOK = 0.05
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+
+class _Shared(Generic[Item]):
+    """An iterator that several threads may draw from."""
+
+    def __init__(self, items: Iterable[Item], pause: Callable[[], None] | None) -> None:
+        self._items, self._pause, self._lock = iter(items), pause, threading.Lock()
+
+    def __iter__(self) -> Iterator[Item]:
+        return self
+
+    def __next__(self) -> Item:
+        with self._lock:
+            if self._pause is not None:
+                self._pause()
+            return next(self._items)
+
+
+def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterable[Item], flag: np.ndarray,
+                 stop: Callable[[], bool] | None = None, workers: int | None = None,
+                 pause: Callable[[], None] | None = None) -> Iterator[Result]:
+    """What `work` yields from `items`, in one thread for each core, in the order found.
+
+    `stop` is asked between results and may end it; closing the generator does too, and `flag`, polled by the kernels,
+    is then raised. `pause` is called before an item is drawn and may wait. A problem in a thread is raised here.
+    """
+    shared: _Shared[Item] = _Shared(items, pause)
+    found: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    count = workers or os.cpu_count() or 1
+    threads = [threading.Thread(target=_share, args=(work, shared, found), daemon=True, name=f"core-{i}")
+               for i in range(count)]
+    for thread in threads:
+        thread.start()
+    try:
+        while count > 0:
+            if stop is not None and stop():
+                return
+            try:
+                item = found.get(timeout=_LOOK)
+            except queue.Empty:
+                continue
+            if isinstance(item, Exception):
+                raise item
+            if item is None:
+                count -= 1
+            else:
+                yield item
+    finally:
+        flag[0] = 1
+        for thread in threads:
+            thread.join()
+
+
+def _share(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterator[Item],
+           found: queue.SimpleQueue[Any]) -> None:
+    """One thread's share; ends with None, or with the problem that ended it."""
+    try:
+        for result in work(items):
+            found.put(result)
+    except Cancelled:
+        pass
+    except Exception as problem:  # raised again by the thread that reads the queue
+        found.put(problem)
+    found.put(None)
