@@ -32,6 +32,10 @@ class Method:
     order_with_cut: float = 1.0
 
 
+#: Smallest tolerance of a step that is still followed by a finer one.
+_SMALLEST = 1e-15
+
+
 @dataclass(frozen=True)
 class Setting:
     """A method with its fineness: `refine` times the live method's steps, or a relative tolerance per step."""
@@ -41,9 +45,12 @@ class Setting:
     tolerance: float = 0.0
 
     def finer(self) -> Setting:
-        """The next finer setting: half the step, or an eighth of the tolerance."""
+        """The next finer setting: half the step, or a tolerance so much smaller that the error surely is.
+
+        Error control makes errors uneven: an eighth of the tolerance now and then left as large an error as before.
+        """
         if METHODS[self.method].adaptive:
-            return Setting(self.method, 1, self.tolerance / 8.0)
+            return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST), self.tolerance / 8.0))
         return Setting(self.method, 2 * self.refine)
 
     @property
