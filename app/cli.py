@@ -1,20 +1,21 @@
 """The command line: serve, scenes, warm, run, curve, orbit, branch, observe, map, accuracy, check.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
-130 cancelled. With --json one object goes to stdout and nothing else; progress goes to stderr.
+130 cancelled. With --json one object goes to stdout and nothing else: the result, or of a computation that failed or
+would not fit its outcome, sentence and what is known. Progress goes to stderr.
 """
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NoReturn
 
 from app import branch_command, check_command, commands, map_command, observe_command, orbit_command
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.budget import BUDGET
-from granchain_core.errors import unknown_name
+from granchain_core.errors import OverBudget, outcome_of, unknown_name
 
 DONE, BAD_INPUT, FAILED, CANCELLED = 0, 2, 3, 130
 
@@ -85,7 +86,7 @@ def _scene_command(parser: _Parser) -> _Parser:
     return parser
 
 
-_COMMANDS = {
+_COMMANDS: dict[str, Callable[[argparse.Namespace], int | None]] = {
     "serve": commands.serve, "scenes": commands.scenes, "warm": commands.warm, "run": commands.run,
     "curve": commands.curve, "orbit": orbit_command.orbit, "branch": branch_command.branch,
     "observe": observe_command.observe, "map": map_command.map_scene, "accuracy": commands.accuracy,
@@ -100,20 +101,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if words and not words[0].startswith("-") and words[0] not in _COMMANDS:
             raise unknown_name("command", words[0], _COMMANDS)
         parsed = _parser().parse_args(words)
-        _COMMANDS[parsed.command](parsed)
-    except BadInput as problem:
+        return _COMMANDS[parsed.command](parsed) or DONE
+    except (BadInput, NumbersFailed) as problem:
         commands.say(problem)
-        return BAD_INPUT
-    except NumbersFailed as problem:
-        commands.say(problem.sentence)
-        return FAILED
+        if "--json" in words and isinstance(problem, (NumbersFailed, OverBudget)):
+            commands.show_json(outcome_of(problem))
+        return BAD_INPUT if isinstance(problem, BadInput) else FAILED
     except (KeyboardInterrupt, Cancelled):
         commands.say("Cancelled.")
         return CANCELLED
     except BrokenPipeError:
         sys.stderr.close()
         return DONE
-    return DONE
 
 
 if __name__ == "__main__":

@@ -55,9 +55,9 @@ def raise_for(engine: Engine, status: int, done: float, before: Before | None) -
     if status == sampling.STEP_TOO_SMALL:
         raise NumbersFailed(f"The step of {method} shrank to nothing {when}; ask for less accuracy than "
                             f"{scene.accuracy:g} or use method rk4-split.", "step-too-small",
-                            time=periods * scene.period)
+                            time=periods * scene.period, cost=_cost(engine))
     raise NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D or use "
-                        f"method rk4-split.", "chatter", time=periods * scene.period)
+                        f"method rk4-split.", "chatter", time=periods * scene.period, cost=_cost(engine))
 
 
 def _when(engine: Engine, periods: float) -> str:
@@ -68,7 +68,11 @@ def _failed(engine: Engine, bead: int, periods: float, step: int | None) -> Numb
     where = "" if step is None else f" in step {step} of its period"
     return NumbersFailed(f"The motion of bead {bead} stopped being a finite number {_when(engine, periods)}{where}; "
                          f"lower the damping or ask for a higher accuracy.", "not-finite", bead,
-                         periods * engine.lowered.scene.period, step)
+                         periods * engine.lowered.scene.period, step, _cost(engine))
+
+
+def _cost(engine: Engine) -> dict[str, int]:
+    return dict(zip(("steps", "rhs", "events", "rejected"), map(int, engine.counts.array), strict=True))
 
 
 def _located(engine: Engine, done: float, before: Before | None) -> tuple[int, int | None]:

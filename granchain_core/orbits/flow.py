@@ -42,14 +42,14 @@ class Flow:
 def refuse_cut(scene: Scene) -> None:
     """`BadInput` for a scene that cuts tension."""
     if scene.cuts_tension:
-        raise BadInput("tension = cut has contact forces whose end at F = 0 is not located, so orbits and "
-                       "multipliers are not computed; the nearest valid value is tension = allowed.")
+        raise BadInput("tension = cut lets contacts touch without force, a state the flow of orbits does not have, so "
+                       "orbits and multipliers are not computed; the nearest valid value is tension = allowed.")
 
 
 class StroboscopicMap:
     """x → the state n drive periods later, for scaled x = (u, w) at phase 0.
 
-    Raises `BadInput` for a scene that cuts tension: its force is no function of (u, w) with located kinks.
+    Raises `BadInput` for a scene that cuts tension: it knows contacts that are open and contacts that press.
     """
 
     def __init__(self, scene: Scene, periods: int, stop: np.ndarray | None = None) -> None:

@@ -174,8 +174,27 @@ def test_files_carry_status_start_and_warnings(tmp_path) -> None:  # type: ignor
 def test_the_command_line_refuses_what_does_not_fit(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "sec2", "--set", "f=1", "--budget", "0.001", "--json"]) == 2
     told = capsys.readouterr()
-    assert told.out == ""
-    assert "the budget is 0.001 s" in told.err
+    outcome = json.loads(told.out)
+    assert outcome["status"] == "over-budget" and outcome["estimate_s"] > outcome["budget_s"] == 0.001
+    assert outcome["message"] in told.err and "the budget is 0.001 s" in told.err
+
+
+def test_the_command_line_says_what_failed_where_and_what_it_had_cost(capsys: pytest.CaptureFixture[str],
+                                                                      monkeypatch: pytest.MonkeyPatch) -> None:
+    """One object with the outcome, and no other, where the numbers fail: an infinite contact times no overlap, at once."""
+    begin = Engine.start
+
+    def spoiled(engine: Engine, state: State) -> None:
+        begin(engine, state)
+        engine.lowered.slots.chain.stiffness[3] = np.inf
+
+    monkeypatch.setattr(Engine, "start", spoiled)
+    assert main(["run", "sec2", "--json"]) == 3
+    told = capsys.readouterr()
+    outcome = json.loads(told.out)
+    assert outcome["status"] == "not-finite" and outcome["bead"] == 3 and outcome["time"] == 0.0
+    assert outcome["cost"]["rhs"] > 0
+    assert told.err.strip() == outcome["message"]
 
 
 def test_checkpoints_belong_to_their_scene_and_are_refused_inside_a_period() -> None:
