@@ -7,7 +7,6 @@ import numpy as np
 from ..drift import observer_drift
 from ..integrate import Engine, Setting
 from ..integrate.lane_block import scaled_state
-from ..lower import lower
 from ..orbits import periodic_orbit
 from ..orbits.flow import StroboscopicMap
 from ..run import run
@@ -227,7 +226,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
 def _two_runs(tolerance: float, count: int) -> np.ndarray:
     """The same (count,) where chain and observer are two runs of SciPy from the same state on the chain's orbit."""
     orbit = periodic_orbit(scene("fig11-free"))
-    scales = lower(orbit.scene).scales
+    scales = Engine(orbit.scene, Setting("dop853")).lowered.scales
     start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])
     apart = observed_apart(Plain.of(orbit.scene), start, count - 1, tolerance)
     return np.where(apart > 0.0, apart, np.nan)
