@@ -14,6 +14,8 @@ from ..steady.curve import iter_curve
 from ..steady.lyapunov import exponents
 from .case import Figure, Picture, Trace
 from .chains import Bench, contact_time
+from .drafts import plain_slope, rk4
+from .oracle import Plain
 
 _BEADS = 7
 
@@ -173,3 +175,23 @@ def switched_drives(quick: bool) -> list[Figure]:
         Figure("chirp", switched([(200.0 * 1.1**i, 1.0, half) for i in range(count)], 0.0), bar),
         Figure("stop", switched([(340.0, 1.0, whole), (340.0, 0.0, whole)], 0.0), bar),
     ]
+
+
+def switched_picture() -> Picture:
+    """Momentum of a chain whose driver jumps into it by its amplitude, and what plain RK4 makes of the jump.
+
+    A jump is the limit of a fast push: the dashpot then passes on D times the jump, whatever the push's form. That is
+    what stays the same in w: it does not jump, and the velocity does.
+    """
+    chosen, beads, samples = scene("sec2").evolve(N=4), 4, 2000
+    engine, shown = Engine(chosen, Setting("dop853", tolerance=1e-12), samples), 100
+    engine.grid_index = engine.grid // 4
+    engine.place()  # the driver is at its amplitude now; the beads, and w, are where they were
+    ours = engine.record(shown).velocity.sum(axis=1)
+    chain = Plain.of(chosen)
+    naive = rk4(plain_slope(chain), np.zeros(2 * beads), 0.25 * chain.period, chain.period / samples / 2, 2 * shown)
+    rest, after = np.zeros(2), np.arange(shown + 1)
+    traces = [Trace(label, np.concatenate([rest, momentum]) / np.abs(ours).max()) for label, momentum in (
+        ("granchain", ours), ("plain RK4, 4000 steps a period", naive[::2, beads:].sum(axis=1)))]
+    return Picture(np.concatenate([[-20.0, 0.0], after]) / samples, "drive periods since the jump",
+                   "momentum of the chain, over its largest", tuple(traces))

@@ -12,6 +12,7 @@ from ..kernels.effects.driver import Harmonic
 from ..run import run
 from ..scene import Scene, scene
 from .case import Figure, Picture, Trace
+from .drafts import plain_slope, rk4
 from .oracle import Plain, solved
 
 
@@ -161,6 +162,19 @@ def sizes(quick: bool) -> list[Figure]:
             Figure(f"time per bead and step, {beads} beads over 100", cost_growth(beads, 3 if quick else 10), 2.0)]
 
 
+def sizes_picture() -> Picture:
+    """A bead of a thousandth of the mass between two others: ours, and plain RK4 with one step for all of them."""
+    chosen, samples, every, light = unequal({2: 1e-3}, 3), 200, 10, 1
+    ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
+    chain = Plain.of(chosen)
+    steps = samples * every
+    naive = rk4(plain_slope(chain), np.zeros(2 * chosen.N), 0.0, chain.period / steps, steps)[::every, light]
+    naive[np.logical_or.accumulate(~(np.abs(naive) < 4.0))] = np.nan
+    return Picture(np.arange(samples + 1) / samples, "drive periods", "bead of 1/1000 of the mass, in amplitudes", (
+        Trace("granchain", ours[:, light]),
+        Trace("plain RK4, 2000 steps a period, until 4 amplitudes away", naive)))
+
+
 # --- preload ----------------------------------------------------------------------------------------------
 
 
@@ -231,3 +245,23 @@ def preloads(quick: bool) -> list[Figure]:
         Figure("cut-off frequency", cut_off_error(40 if quick else 200), 1e-8),
         Figure("error towards the sonic vacuum, from rest", limit, 1e-6),
     ]
+
+
+def preloads_picture() -> Picture:
+    """Force in every contact of a chain that a wall presses: ours, and SciPy's least squares from touching beads.
+
+    A contact that is open has neither force nor slope, so that no step of the search closes it.
+    """
+    from scipy.optimize import root
+
+    chosen = scene("sec2").evolve(N=20, F0=10.0)
+    stiffness, static = chosen.contact_stiffness(), chosen.static_overlap()
+
+    def force(u: np.ndarray) -> np.ndarray:
+        bodies = np.concatenate([[0.0], u, [-static.sum()]])
+        return stiffness * np.maximum(bodies[:-1] - bodies[1:], 0.0) ** 1.5
+
+    found = root(lambda u: force(u)[:-1] - force(u)[1:], np.zeros(chosen.N), method="lm")
+    return Picture(np.arange(1, chosen.N + 2), "contact", "force over the preload", (
+        Trace("granchain, in closed form", stiffness * static**1.5 / chosen.F0),
+        Trace(f"SciPy root, method lm, from touching beads: success = {found.success}", force(found.x) / chosen.F0)))

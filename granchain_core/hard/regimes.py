@@ -6,13 +6,17 @@ import numpy as np
 
 from ..drift import observer_drift
 from ..integrate import Engine, Setting
+from ..integrate.lane_block import scaled_state
 from ..orbits import periodic_orbit
+from ..orbits.flow import StroboscopicMap
 from ..run import run
 from ..scene import scene
 from ..steady.curve import CurvePoint, iter_curve
 from ..steady.regime import find_period
 from ..steady.settle import settled
 from .case import Figure, Picture, Trace
+from .drafts import observed_apart
+from .oracle import Plain
 
 #: Strobes of a normal form that are looked at, and its dimension.
 _STROBES, _BEADS = 400, 3
@@ -189,3 +193,40 @@ def drifting(quick: bool) -> list[Figure]:
     alone = observer_drift(periodic_orbit(bead, observer=True))
     return [Figure("observers of whose drift the wrong thing is said", float(sum(wrong)), 0.0),
             Figure("free beads whose drift is not named", float(alone is None), 0.0, str(alone))]
+
+
+def drifting_picture() -> Picture:
+    """Distance of an observer from its chain: by its multipliers from 1e-6, and by two runs that start together."""
+    strobes = np.arange(8)
+    (free, multiplier), (founded, _) = (_apart(base, len(strobes)) for base in ("fig11-free", "fig11-founded"))
+    return Picture(strobes, "drive periods", "observer less chain, in amplitudes, log10", tuple(
+        Trace(label, np.log10(apart)) for label, apart in (
+            (f"granchain, 1e-6 apart: its multiplier is {multiplier:.3g}", free),
+            ("granchain, 1e-6 apart, with a foundation", founded),
+            ("two SciPy runs that start together", _two_runs(1e-3, len(strobes))),
+            ("the same with a hundredth of the tolerance", _two_runs(1e-5, len(strobes))))))
+
+
+def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
+    """Largest difference (count,) of an observer moved as a whole by 1e-6 of the amplitude, as long as it is small.
+
+    Also the size of its leading multiplier.
+    """
+    orbit = periodic_orbit(scene(base), observer=True)
+    strobe = StroboscopicMap(orbit.scene, orbit.period)
+    start = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    derivative, beads = strobe(start, observer=True).derivative, orbit.scene.N
+    difference, found = np.concatenate([np.full(beads, 1e-6), np.zeros(beads)]), np.empty(count)
+    for i in range(count):
+        found[i] = np.abs(difference[:beads]).max()
+        difference = derivative @ difference
+    return np.where(found < 1.0, found, np.nan), float(np.abs(np.linalg.eigvals(derivative)).max())
+
+
+def _two_runs(tolerance: float, count: int) -> np.ndarray:
+    """The same (count,) where chain and observer are two runs of SciPy from the same state on the chain's orbit."""
+    orbit = periodic_orbit(scene("fig11-free"))
+    scales = Engine(orbit.scene, Setting("dop853")).lowered.scales
+    start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])
+    apart = observed_apart(Plain.of(orbit.scene), start, count - 1, tolerance)
+    return np.where(apart > 0.0, apart, np.nan)

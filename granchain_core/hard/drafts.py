@@ -1,0 +1,95 @@
+"""Solvers one would write first, in plain Python: what some pictures draw beside ours.
+
+They are right but for what they leave out: contacts are asked for where a step happens to be, and nothing is located.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cos, sin
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from .oracle import Plain
+
+Slope = Callable[[float, np.ndarray], np.ndarray]
+
+
+def plain_slope(chain: Plain, push: tuple[np.ndarray, np.ndarray] | None = None) -> Slope:
+    """(u̇, v̇) of a chain whose contacts act where their overlap is above zero.
+
+    With a `push`, times and forces between which one reads along a line, the first bead feels that and no driver.
+    """
+    n, bodies, zeros = len(chain.masses), np.zeros((2, len(chain.masses) + 2)), np.zeros(len(chain.masses) + 1)
+    static = np.vstack([chain.static, zeros])
+
+    def slope(t: float, state: np.ndarray) -> np.ndarray:
+        bodies[:, 0] = sin(chain.beta * t), chain.beta * cos(chain.beta * t)
+        bodies[:, 1:-1] = state.reshape(2, n)
+        overlap, rate = bodies[:, :-1] - bodies[:, 1:] + static
+        force = np.where(overlap > 0.0, chain.springs * np.abs(overlap) ** 1.5 + chain.damping * rate, zeros)
+        if push is not None:
+            force[0] = np.interp(t, *push)
+        return np.concatenate([state[n:], (force[:-1] - force[1:] - chain.foundation * state[:n]) / chain.masses])
+
+    return slope
+
+
+def rk4(slope: Slope, start: np.ndarray, first: float, step: float, count: int) -> np.ndarray:
+    """States (count + 1, size) of the classical Runge–Kutta method; numbers that are no more finite stay in."""
+    out = np.empty((count + 1, len(start)))
+    out[0] = start
+    with np.errstate(all="ignore"):
+        for i in range(count):
+            t, y = first + i * step, out[i]
+            k1 = slope(t, y)
+            k2 = slope(t + 0.5 * step, y + 0.5 * step * k1)
+            k3 = slope(t + 0.5 * step, y + 0.5 * step * k2)
+            out[i + 1] = y + step / 6.0 * (k1 + 2.0 * (k2 + k3) + slope(t + step, y + step * k3))
+    return out
+
+
+def euler(slope: Slope, start: np.ndarray, step: float, count: int) -> np.ndarray:
+    """States (count + 1, size) of explicit Euler steps."""
+    out = np.empty((count + 1, len(start)))
+    out[0] = start
+    for i in range(count):
+        out[i + 1] = out[i] + step * slope(i * step, out[i])
+    return out
+
+
+def one_after_another(velocity: np.ndarray, damping: float, step: float, count: int) -> np.ndarray:
+    """Displacements (count + 1, N) between two walls of a loop that moves each bead before it looks at the next."""
+    u, v = np.zeros(len(velocity) + 2), np.concatenate([[0.0], velocity, [0.0]])
+    out = np.zeros((count + 1, len(velocity)))
+
+    def force(c: int) -> float:
+        overlap = u[c] - u[c + 1]
+        return float(overlap**1.5 + damping * (v[c] - v[c + 1])) if overlap > 0.0 else 0.0
+
+    for row in range(1, count + 1):
+        for i in range(1, len(velocity) + 1):
+            v[i] += step * (force(i - 1) - force(i))
+            u[i] += step * v[i]
+        out[row] = u[1:-1]
+    return out
+
+
+def observed_apart(chain: Plain, start: np.ndarray, periods: int, rtol: float) -> np.ndarray:
+    """Largest difference (periods + 1,) between a chain and its observer, each a run of SciPy's solve_ivp of its own.
+
+    Both start in `start`. The observer's first bead is pushed by the force that the driver had in the first run, read
+    from a record of it.
+    """
+    n, looks = len(chain.masses), 1000
+    times = chain.period / looks * np.arange(looks * periods + 1)
+    asked: dict[str, Any] = {"rtol": rtol, "atol": 1e-3 * rtol}
+    driven: Any = solve_ivp(plain_slope(chain), times[[0, -1]], start, t_eval=times, **asked)
+    overlap = np.sin(chain.beta * times) - driven.y[0]
+    rate = chain.beta * np.cos(chain.beta * times) - driven.y[n]
+    push = np.where(overlap > 0.0, chain.springs[0] * np.abs(overlap) ** 1.5 + chain.damping * rate, 0.0)
+    pushed = plain_slope(chain, (times, push))
+    observer: Any = solve_ivp(pushed, times[[0, -1]], start, t_eval=times[::looks], **asked)
+    return np.asarray(np.abs(observer.y[:n] - driven.y[:n, ::looks]).max(axis=0))
