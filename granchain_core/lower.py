@@ -136,7 +136,7 @@ def lower(scene: Scene, balance: bool = False) -> Lowered:
     slots = Slots(
         chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K),
         dissipation=_dissipation(scene, scales, mass),
-        tension=NoTension(1) if scene.cuts_tension else None,
+        tension=NoTension(np.zeros(scene.N + 1, dtype=np.uint8)) if scene.cuts_tension else None,
         foundation=Foundation(scene.kappa) if scene.k > 0 else None,
         preload=Preload(scene.static_overlap() / scales.length) if scene.F0 > 0 else None,
         driver=Harmonic(1.0, beta),

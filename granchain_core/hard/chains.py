@@ -49,7 +49,8 @@ class Bench:
         springs[0], springs[-1] = ends[0] * springs[0], ends[1] * springs[-1]
         slots = lowered.slots._replace(
             chain=Chain(masses, springs), dissipation=LinearDashpot(0.0) if law is None else law,
-            driver=Harmonic(0.0, lowered.beta) if ends[0] > 0.0 else None, tension=NoTension(1) if cut else None,
+            driver=Harmonic(0.0, lowered.beta) if ends[0] > 0.0 else None,
+            tension=NoTension(np.zeros(beads + 1, dtype=np.uint8)) if cut else None,
             preload=None if static is None else Preload(np.array(static, dtype=float)))
         self.engine.lowered = replace(lowered, slots=slots)
         self.engine.work = self.engine.work._replace(forces=self.engine.lowered.forces())

@@ -202,6 +202,8 @@ class Engine:
     def place(self, from_velocity: bool = False) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
         theta, slots = 2 * np.pi * self.grid_index / self.grid, self.lowered.slots
+        if slots.tension is not None:  # what the last step left behind
+            slots.tension.slack[:] = 0
         if self._in_uv:
             v0 = slots.driver.amplitude * slots.driver.beta * np.cos(theta)
             naive_motion(slots, slots.driver.amplitude * np.sin(theta), v0, self.y, self.work.k[0], self.work.forces)

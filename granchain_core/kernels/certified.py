@@ -12,11 +12,11 @@ import numpy as np
 from .dop853 import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
 from .effects.driver import driver_displacement
 from .effects.preload import overlap
-from .effects.tension import NoTension
+from .effects.tension import NoTension, let_go
 from .jit import kernel, term
 from .motion import copy
 from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
-from .slackening import first_kink
+from .slackening import begin_open, first_kink, note_slack
 
 #: A step is aimed to end this overlap behind the event, some roundings of the largest displacement, and lands within
 #: so many times that: the moment of a contact is then as exact as its speed lets it be.
@@ -171,6 +171,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     Returns (status, step taken, contact that changed at its end or −1); `clock[0]` is the next step to try.
     """
     h = min(clock[0], method.largest_step, limit - t)
+    note_slack(slots.tension, slots, y, work.k[0])
     aimed, kinked, factor = -1, False, 1.0
     while True:
         error = attempt(method, slots, beta, t, h, y, work)
@@ -189,6 +190,9 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
             break
         aimed, x = first_event(slots, beta, t, h, y, work, counts)
         kink = first_kink(slots.tension, slots, beta, t, h, y, work, min(x, 1.0), counts)
+        if kink == 0.0:
+            aimed = -1
+            continue
         if kink < 1.0:
             clock[0] = min(clock[0], h * factor)
             aimed, kinked = -1, True
@@ -249,6 +253,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
                 x = min(1.0, (g * spacing - t) / h)
                 for i in range(y.size):
                     work.probe[i] = dense_value(work.dense, y[i], x, i)
+                let_go(slots.tension, slots, work.probe)
                 evaluate(slots, beta, g * spacing, work.probe, work.slope, work.forces)
                 watch_forces(slots, work.probe, work.slope, work.forces.e, peaks)
                 if g % every == 0:
@@ -259,9 +264,12 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
         t = end
         if end == period:
             t, g, events = 0.0, 0, 0
+            let_go(slots.tension, slots, y)
             evaluate(slots, beta, t, y, work.k[0], work.forces)
         else:
             copy(work.k[STAGES], work.k[0])
+            if contact >= 0:
+                begin_open(slots.tension, slots, beta, t, y, work)
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, row if every > 0 else done
     return DONE, row if every > 0 else done

@@ -21,7 +21,7 @@ from .effects.driver import driver_displacement, driver_velocity
 from .effects.foundation import foundation_energy, pull_back
 from .effects.preload import overlap
 from .effects.pushed import hand_on_force, hand_on_primitive
-from .effects.tension import cut_tension
+from .effects.tension import cut_tension, keep_slack_primitive
 from .jit import kernel
 
 
@@ -56,6 +56,7 @@ def motion(slots, u0, v0, y, dy, forces):
         d = positive_part(overlap(slots.preload, y, c))
         e[c] = elastic_force(stiffness[c], d)
         keep_primitive(slots.dissipation, G, c, d)
+    keep_slack_primitive(slots.tension, slots, y, G)
     hand_on_primitive(slots.driver, slots, y, G)
     for i in range(1, m - 1):
         dy[i] = velocity(slots.dissipation, inverse_mass, y[m + i], G, i)

@@ -10,7 +10,7 @@ from .dop853 import STAGES, dense_value, evaluate, prepare_dense
 from .effects.contact import positive_part
 from .effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from .effects.preload import overlap
-from .effects.tension import NoTension
+from .effects.tension import NoTension, let_go
 from .jit import kernel, term
 from .simd_math import root
 
@@ -37,6 +37,48 @@ def _(law, stiffness, d, rate):
 @push.of(KuwabaraKono)
 def _(law, stiffness, d, rate):
     return stiffness * d / law.coefficient + rate
+
+
+@term
+def jumps(law):
+    """Whether what is added to cut a contact's pull ends with a jump at δ = 0. Absent: nothing is added."""
+    return False
+
+
+@jumps.of(LinearDashpot)
+def _(law):
+    return True
+
+
+@jumps.of(Tsuji)
+@jumps.of(KuwabaraKono)
+def _(law):
+    return False
+
+
+@term
+def note_slack(tension, slots, y, slope):
+    """Note which contacts are slack at the start of a step. Absent: none is."""
+
+
+@note_slack.of(NoTension)
+def _(tension, slots, y, slope):
+    if jumps(slots.dissipation):
+        for c in range(tension.slack.size):
+            d = overlap(slots.preload, y, c)
+            rate = slope[c] - slope[c + 1]
+            tension.slack[c] = 1 if d > 0.0 and push(slots.dissipation, slots.chain.stiffness[c], d, rate) < 0.0 else 0
+
+
+@term
+def begin_open(tension, slots, beta, t, y, work):
+    """Take the slope anew behind a step that may have ended with a slack contact open. Absent: there is none."""
+
+
+@begin_open.of(NoTension)
+def _(tension, slots, beta, t, y, work):
+    let_go(tension, slots, y)
+    evaluate(slots, beta, t, y, work.k[0], work.forces)
 
 
 @kernel
@@ -77,7 +119,8 @@ def push_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
 def first_kink(tension, slots, beta, t, h, y, work, until, counts):
     """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
 
-    Absent: forces have no such kink.
+    0 where the step is to be tried again because rounding had it begin on the wrong side of a kink. Absent: forces have
+    no such kink.
     """
     return 2.0
 
@@ -105,6 +148,10 @@ def _(tension, slots, beta, t, h, y, work, until, counts):
             if (f0 > 0.0) == (f1 > 0.0):
                 continue
         x = push_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
-        if x < first and x * h > _NEAR and x * h < until * h - _NEAR:
-            first = x
+        if x * h > _NEAR:
+            if x < first and x * h < until * h - _NEAR:
+                first = x
+        elif jumps(slots.dissipation) and (tension.slack[c] != 0) == (f1 > 0.0):
+            tension.slack[c] = 0 if f1 > 0.0 else 1
+            return 0.0
     return first

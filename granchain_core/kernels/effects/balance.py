@@ -18,6 +18,7 @@ from .contact import elastic_force, positive_part
 from .dissipation import primitive
 from .driver import driver_acceleration
 from .preload import overlap
+from .tension import slack_overlap
 
 
 class Balance(NamedTuple):
@@ -39,7 +40,7 @@ def _(balance, slots, y, dy, e):
     lost, work = 0.0, 0.0
     for c in range(e.size):
         d = positive_part(overlap(slots.preload, y, c))
-        G = primitive(slots.dissipation, d)
+        G = primitive(slots.dissipation, slack_overlap(slots.tension, slots, y, c, d))
         cut = e[c] - elastic_force(slots.chain.stiffness[c], d)
         lost += cut * (dy[c] - dy[c + 1]) - G * (dy[m + c] - dy[m + c + 1])
         if c == 0:
