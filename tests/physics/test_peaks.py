@@ -12,7 +12,7 @@ from granchain_core import run, scene
 SCENES = {
     "sec2 340 Hz": scene("sec2"), "sec2 1130 Hz": scene("fig3b"), "rig 60 Hz": scene("rig"),
     "Tsuji": scene("sec2").evolve(dissipation="tsuji"),
-    "precompressed": scene("sec2").evolve(dissipation="none", F0=5.0, f=900.0),
+    "precompressed": scene("sec2").evolve(dissipation="none", kappa=0.002, F0=5.0, f=900.0),
     "cut": scene("sec2").evolve(tension="cut"), "strongly damped": scene("sec2").evolve(D=400.0, f=500.0),
 }
 NAMES = ("max_input_force", "max_output_force", "max_output_force_elastic")
