@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from .dop853 import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
+from .effects.balance import add_loss, slack_loss
 from .effects.driver import driver_displacement
 from .effects.preload import overlap
 from .effects.tension import NoTension, let_go
@@ -171,7 +172,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     Returns (status, step taken, contact that changed at its end or −1); `clock[0]` is the next step to try.
     """
     h = min(clock[0], method.largest_step, limit - t)
-    note_slack(slots.tension, slots, y, work.k[0])
+    note_slack(slots.tension, slots, beta, t, y, work)
     aimed, kinked, factor = -1, False, 1.0
     while True:
         error = attempt(method, slots, beta, t, h, y, work)
@@ -241,7 +242,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
         events += contact >= 0
         if events > _EVENTS_PER_CONTACT * (m - 1):
             return CHATTER, row if every > 0 else done
-        ready = False
+        ready, lost = False, slack_loss(slots.balance, slots, y, work.end)
         while done < points and (g + 1) * spacing <= end + 1e-13 * period:
             g += 1
             done += 1
@@ -253,6 +254,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
                 x = min(1.0, (g * spacing - t) / h)
                 for i in range(y.size):
                     work.probe[i] = dense_value(work.dense, y[i], x, i)
+                add_loss(slots.balance, work.probe, slack_loss(slots.balance, slots, y, work.probe))
                 let_go(slots.tension, slots, work.probe)
                 evaluate(slots, beta, g * spacing, work.probe, work.slope, work.forces)
                 watch_forces(slots, work.probe, work.slope, work.forces.e, peaks)
@@ -260,6 +262,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
                     keep(slots, row, work.probe, work.slope, work.forces.e, samples)
                     row += 1
         copy(work.end, y)
+        add_loss(slots.balance, y, lost)
         new_scale(y, work, m)
         t = end
         if end == period:

@@ -57,17 +57,22 @@ def _(law):
 
 
 @term
-def note_slack(tension, slots, y, slope):
-    """Note which contacts are slack at the start of a step. Absent: none is."""
+def note_slack(tension, slots, beta, t, y, work):
+    """Note which contacts are slack at the start of a step, whose account then has another slope. Absent: none is."""
 
 
 @note_slack.of(NoTension)
-def _(tension, slots, y, slope):
-    if jumps(slots.dissipation):
-        for c in range(tension.slack.size):
-            d = overlap(slots.preload, y, c)
-            rate = slope[c] - slope[c + 1]
-            tension.slack[c] = 1 if d > 0.0 and push(slots.dissipation, slots.chain.stiffness[c], d, rate) < 0.0 else 0
+def _(tension, slots, beta, t, y, work):
+    if not jumps(slots.dissipation):
+        return
+    changed = False
+    for c in range(tension.slack.size):
+        d, rate = overlap(slots.preload, y, c), work.k[0, c] - work.k[0, c + 1]
+        slack = d > 0.0 and push(slots.dissipation, slots.chain.stiffness[c], d, rate) < 0.0
+        changed = changed or slack != (tension.slack[c] != 0)
+        tension.slack[c] = 1 if slack else 0
+    if changed:
+        evaluate(slots, beta, t, y, work.k[0], work.forces)
 
 
 @term
@@ -153,5 +158,6 @@ def _(tension, slots, beta, t, h, y, work, until, counts):
                 first = x
         elif jumps(slots.dissipation) and (tension.slack[c] != 0) == (f1 > 0.0):
             tension.slack[c] = 0 if f1 > 0.0 else 1
+            evaluate(slots, beta, t, y, k[0], work.forces)
             return 0.0
     return first

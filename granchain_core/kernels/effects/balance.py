@@ -18,7 +18,7 @@ from .contact import elastic_force, positive_part
 from .dissipation import primitive
 from .driver import driver_acceleration
 from .preload import overlap
-from .tension import slack_overlap
+from .tension import lost_in, not_yet_lost, slack_overlap
 
 
 class Balance(NamedTuple):
@@ -41,13 +41,34 @@ def _(balance, slots, y, dy, e):
     for c in range(e.size):
         d = positive_part(overlap(slots.preload, y, c))
         G = primitive(slots.dissipation, slack_overlap(slots.tension, slots, y, c, d))
-        cut = e[c] - elastic_force(slots.chain.stiffness[c], d)
+        cut = e[c] - not_yet_lost(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
         lost += cut * (dy[c] - dy[c + 1]) - G * (dy[m + c] - dy[m + c + 1])
         if c == 0:
             work = e[0] * dy[0] - G * acceleration
     dy[m] = 0.0
     dy[dy.size - 2] = work
     dy[dy.size - 1] = lost
+
+
+@term
+def slack_loss(balance, slots, y, end):
+    """What slack contacts lose from y to `end`, where it is accounted for. Absent: nothing is."""
+    return 0.0
+
+
+@slack_loss.of(Balance)
+def _(balance, slots, y, end):
+    return lost_in(slots.tension, slots, y, end)
+
+
+@term
+def add_loss(balance, y, lost):
+    """Add to the energy lost in y. Absent: there is no account."""
+
+
+@add_loss.of(Balance)
+def _(balance, y, lost):
+    y[y.size - 1] += lost
 
 
 @kernel

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import term
-from .contact import positive_part
+from .contact import elastic_energy, positive_part
 from .dissipation import damping, keep_primitive
 from .preload import overlap
 
@@ -64,6 +64,34 @@ def slack_overlap(tension, slots, y, c, d):
 @slack_overlap.of(NoTension)
 def _(tension, slots, y, c, d):
     return overlap(slots.preload, y, c) if tension.slack[c] != 0 else d
+
+
+@term
+def not_yet_lost(tension, c, elastic):
+    """The part of contact c's elastic force whose work counts as it is done. Absent: all of it."""
+    return elastic
+
+
+@not_yet_lost.of(NoTension)
+def _(tension, c, elastic):
+    return 0.0 if tension.slack[c] != 0 else elastic  # what a slack contact loses is known at the step's end: `lost_in`
+
+
+@term
+def lost_in(tension, slots, y, end):
+    """Energy that slack contacts lose from y to `end`: their elastic energy, no quadrature. Absent: none is slack."""
+    return 0.0
+
+
+@lost_in.of(NoTension)
+def _(tension, slots, y, end):
+    lost = 0.0
+    for c in range(tension.slack.size):
+        if tension.slack[c] != 0:
+            stiffness = slots.chain.stiffness[c]
+            lost += elastic_energy(stiffness, positive_part(overlap(slots.preload, y, c)))
+            lost -= elastic_energy(stiffness, positive_part(overlap(slots.preload, end, c)))
+    return lost
 
 
 @term

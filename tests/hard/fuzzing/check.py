@@ -27,9 +27,6 @@ BUDGET, FLOOR = 5.0, 5.0
 SILENT = 1e-3
 #: What rounding alone may change, and how far it may be magnified beyond what a change of tolerance shows.
 _ROUNDING, _MAGNIFIED = 1e-10, 1e3
-#: Where tension is cut, steps are as long as the free flight of slack contacts lets them be; what those lose is
-#: integrated in these steps, to 1e-9 to 1e-7.
-_CUT_CLOSES = 1e-6
 #: An account is a quadrature along the way: it was seen to close to 17 times the error of the displacements.
 _ENERGY = 50.0
 #: Seconds SciPy takes, in both its runs, for one step of the certified method: a scene it has no time for is not begun.
@@ -166,8 +163,7 @@ def _judge(verdict: Verdict, found: Run, stop: np.ndarray) -> np.ndarray:
     if found.status == "done" and not verdict.stated <= chosen.accuracy:
         verdict.faults.append(("done, and stated above what was asked", verdict.stated / chosen.accuracy))
     if verdict.known < _CHAOS:
-        rounded = _CUT_CLOSES if chosen.cuts_tension else 1e-9
-        limits = rounded + 100.0 * verdict.known, rounded + _ENERGY * max(verdict.stated, chosen.accuracy)
+        limits = 1e-9 + 100.0 * verdict.known, 1e-9 + _ENERGY * max(verdict.stated, chosen.accuracy)
         figures = properties.energy(engine.lowered, kept[1]), found.energy_residual
         for name, figure, bar in zip(("energy of the certified method", "energy"), figures, limits, strict=True):
             if figure is None or not figure <= bar:
