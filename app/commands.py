@@ -120,8 +120,8 @@ def run(arguments: argparse.Namespace) -> None:
     for warning in warnings(result):
         say(warning)
     if result.status == "accuracy-not-reached":
-        say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: successive computations differ by "
-             f"{result.error_estimate:.1e}.")
+        say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
+             f"{result.error_estimate:.1e} of the largest displacement.")
     if arguments.out:
         save(result, arguments.out)
     if arguments.json:

@@ -27,8 +27,9 @@ from .steady.regime import Regime, find_period, irregular
 
 #: Most periods in all and most recorded rows of one run.
 MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
-#: A motion whose computations differ by more than this has no error estimate worth the name.
-_LOST = 0.3
+#: A motion whose computations differ by more than this has no error estimate worth the name: then an error of all of it
+#: is stated at least, since either may be wherever chaos leads.
+_LOST, _ALL = 0.3, 1.0
 #: What the difference of two computations is multiplied by for a method whose order is even across contact events, and
 #: for others.
 _CAUTION, _UNEVEN = 1.5, 3.0
@@ -84,6 +85,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     regime = _regime(scene, now, periods + record, flag)
     if error <= scene.accuracy:
         status = "done"
+    elif error > _LOST:
+        error = max(error, _ALL)
     cost = Cost.of(time.perf_counter() - began, total, setting.method)
     first = periods * samples + round(begin.phase * samples)
     return replace(run_from(now.engine, now.samples, first, regime, error, cost, status), start=_origin(scene, start))
