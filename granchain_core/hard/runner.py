@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 
+from ..errors import NumbersFailed
 from .case import Check, run_case
 from .table import CASES
 
@@ -18,7 +20,8 @@ def _run(name: str, quick: bool) -> list[Check]:
 def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, list[Check]]]:
     """Case names with their rows as they are finished; closing the generator ends what has not begun.
 
-    Processes, because much of the oracles is Python, which threads would run by turns.
+    Processes, because much of the oracles is Python, which threads would run by turns. Raises `NumbersFailed` where one
+    of them is ended from outside.
     """
     count = workers or min(2, os.cpu_count() or 1)
     pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
@@ -26,6 +29,9 @@ def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, li
         running: dict[Future[list[Check]], str] = {pool.submit(_run, case.name, quick): case.name for case in CASES}
         for done in as_completed(running):
             yield running[done], done.result()
+    except BrokenProcessPool:
+        raise NumbersFailed("A process that ran hard cases was ended from outside, perhaps for its memory; run the "
+                            "check again.", "worker-failed") from None
     finally:
         pool.shutdown(wait=False, cancel_futures=True)
 

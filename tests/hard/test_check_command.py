@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 
 import pytest
 
@@ -44,3 +46,17 @@ def test_without_json_a_student_reads_what_is_hard(monkeypatch: pytest.MonkeyPat
     assert main(["check"]) == 0
     shown = capsys.readouterr().out
     assert all(case.hard in shown and case.naive in shown for case in CASES)
+
+
+def test_a_process_that_is_ended_from_outside_is_said(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """As the kernel does it where memory is short: status 3 and a sentence, no traceback."""
+    monkeypatch.setattr(runner, "_run", _end_itself)
+    assert main(["check", "--quick", "--json"]) == 3
+    told = capsys.readouterr()
+    assert json.loads(told.out)["status"] == "worker-failed"
+    assert "ended from outside" in told.err and "Traceback" not in told.err
+
+
+def _end_itself(name: str, quick: bool) -> list[Check]:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return []

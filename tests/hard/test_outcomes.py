@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import sys
 import time
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 
+import app
+import granchain_core
 from app.cli import main
 from granchain_core import BadInput, Cancelled, NumbersFailed, State, run, scene
 from granchain_core.budget import estimate
@@ -132,7 +136,11 @@ def test_no_convergence_with_its_history() -> None:
 
 
 def test_every_failure_has_a_known_name() -> None:
-    assert {"not-finite", "step-too-small", "chatter", "no-convergence"} <= set(FAILURES)
+    """Each status that is written in the source is in the list that scripts are told, and the list has no other."""
+    written = {node.args[1].value for package in (granchain_core, app) for path in Path(package.__path__[0]).rglob("*.py")
+               for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)
+               and getattr(node.func, "id", "") == "NumbersFailed" and isinstance(node.args[1], ast.Constant)}
+    assert written == set(FAILURES)
 
 
 def test_outside_validity_is_a_warning() -> None:
