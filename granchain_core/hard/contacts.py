@@ -59,7 +59,7 @@ def reordered(beads: int, time: float, seed: int) -> float:
     """How far a chain is from its mirror image, in which simultaneous events are met in the other order.
 
     Velocities are drawn from three values, so that collisions coincide without the whole being symmetric. The two take
-    steps of their own, so their tolerance is far below the bar: at 1e-14 one of 200 chains was 1.2e-12 off, at this 3e-14.
+    steps of their own, so their tolerance is far below the bar: at 1e-14 one of 200 chains was 1.2e-12 off, now 3e-14.
     """
     velocity = np.random.default_rng(seed).choice([-1.0, 0.0, 1.0], beads)
     velocity[0] = 1.0
