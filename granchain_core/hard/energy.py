@@ -165,12 +165,23 @@ def switched(steps: list[tuple[float, float, int]], phase: float, beads: int = 4
     return abs(float((base.masses() * state.velocity).sum()) - total) / largest
 
 
+def jump_push() -> float:
+    """Momentum of a chain at rest behind a jump of its driver by A0, less the dashpot's D·A0, over the latter."""
+    chosen = scene("sec2").evolve(N=4)
+    engine = Engine(chosen, Setting("dop853", tolerance=1e-12), 4)
+    engine.grid_index = engine.grid // 4
+    engine.place()
+    push = chosen.D * chosen.A0
+    return abs(float((chosen.masses() * engine.state.velocity).sum()) - push) / push
+
+
 def switched_drives(quick: bool) -> list[Figure]:
-    """Impulse balance of a jump, a ramp, a chirp and a stop."""
+    """The push of a jump; impulse balance behind a jump, of a ramp, a chirp and a stop."""
     half, whole, bar = _SWITCHED // 2, _SWITCHED, 1e-9
     count = 6 if quick else 40
     return [
-        Figure("jump", switched([(340.0, 1.0, whole)], 0.25), bar),
+        Figure("the jump's own push, against D times the jump", jump_push(), 1e-12),
+        Figure("behind a jump", switched([(340.0, 1.0, whole)], 0.25), bar),
         Figure("ramp", switched([(340.0, (i + 1) / count, half) for i in range(count)], 0.0), bar),
         Figure("chirp", switched([(200.0 * 1.1**i, 1.0, half) for i in range(count)], 0.0), bar),
         Figure("stop", switched([(340.0, 1.0, whole), (340.0, 0.0, whole)], 0.0), bar),
