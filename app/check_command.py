@@ -12,7 +12,7 @@ from app.commands import say
 
 def add_parser(parser: argparse.ArgumentParser) -> None:
     """The command's own words."""
-    parser.add_argument("--quick", action="store_true", help="smaller counts: half a minute instead of minutes")
+    parser.add_argument("--quick", action="store_true", help="smaller counts: seconds instead of a minute")
     parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
 
 
