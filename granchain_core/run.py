@@ -17,7 +17,7 @@ from .budget import BUDGET, check_budget
 from .errors import BadInput
 from .integrate import METHODS, Engine, Setting, State, method_for
 from .integrate.engine import Counts, new_stop, rest
-from .integrate.methods import setting_of
+from .integrate.methods import setting_of, typical_error
 from .kernels.sampling import Samples
 from .result import Cost, Run, residual, run_from
 from .scene import Scene
@@ -161,11 +161,11 @@ def _stated(setting: Setting, scene: Scene, difference: float) -> float:
     """The error stated for the finer of two computations, from their difference.
 
     Where the order is high the finer one's error is a small part of it; where it is near 1, or uneven as error control
-    makes it, it may be as large and more. On a thousand random scenes these factors bound 99 %
-    (tests/numerics/honesty.py).
+    makes it, it may be as large and more. Two that agree better than is typical of their steps may do so by chance: no
+    less than the typical error is stated.
     """
     even = setting.method == "rk4-split" and not scene.cuts_tension
-    return max((_CAUTION if even else _UNEVEN) * difference, setting.tolerance)
+    return max((_CAUTION if even else _UNEVEN) * difference, typical_error(setting))
 
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> Regime:

@@ -99,6 +99,13 @@ def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     return Setting("dop853", tolerance=min(1e-3, 0.1 * accuracy))
 
 
+def typical_error(setting: Setting) -> float:
+    """The relative error that this setting has as a rule; 0 for methods of which none is known."""
+    if METHODS[setting.method].adaptive:
+        return setting.tolerance
+    return _LIVE_ERROR / setting.refine**4 if setting.method == "rk4-split" else 0.0
+
+
 def setting_of(name: str, accuracy: float) -> Setting:
     """The first setting of the method called `name` for `accuracy`; `BadInput` for a method that does not exist."""
     if name not in METHODS:
