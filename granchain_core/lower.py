@@ -7,7 +7,7 @@ bead 1. Displacements are kept, never positions; the drive phase is never a prod
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -82,6 +82,12 @@ class Lowered:
     def size(self) -> int:
         """Length of the whole state array."""
         return 2 * self.row + (2 if self.slots.balance is not None else 0)
+
+    def own(self) -> Lowered:
+        """The same with flags of its own, one for each contact, where there are any: an engine writes into them."""
+        if self.slots.tension is None:
+            return self
+        return replace(self, slots=self.slots._replace(tension=NoTension(np.zeros(self.row - 1, dtype=np.uint8))))
 
     def forces(self) -> Forces:
         """A workspace for one evaluation."""

@@ -93,7 +93,7 @@ class Engine:
     def __init__(self, scene: Scene, setting: Setting, samples: int = 1, balance: bool = False,
                  stop: np.ndarray | None = None, lowered: Lowered | None = None) -> None:
         self._in_uv = METHODS[setting.method].variables == "uv"
-        self.lowered = lower(scene, balance and not self._in_uv) if lowered is None else lowered
+        self.lowered = (lower(scene, balance and not self._in_uv) if lowered is None else lowered).own()
         self.setting = setting
         self.samples = samples
         self.counts = Counts()

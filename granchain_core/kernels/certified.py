@@ -24,6 +24,8 @@ from .slackening import begin_open, first_kink, note_slack
 _BEHIND, _NEAR = 1e-15, 4.0
 #: The same where tension is cut: a contact without force may linger at δ = 0, which is no chatter.
 _BEHIND_CUT, _NEAR_CUT = 1e-14, 100.0
+#: A step that is aimed at an event may grow by so much of it.
+_LONGER = 1.01
 #: No contact opens and closes more often than this in one period unless it chatters.
 _EVENTS_PER_CONTACT = 2000
 #: Growth and shrinkage of the step from one to the next.
@@ -103,7 +105,10 @@ def may_turn(d0, s0, d1, s1, sign):
 
 @kernel
 def first_event(slots, beta, t, h, y, work, counts):
-    """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none."""
+    """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
+
+    One that is nearer to the start than time can be told apart is no event to step to, and must not hide the next.
+    """
     contact, first, dense_ready = -1, 2.0, False
     k = work.k
     for c in range(slots.chain.stiffness.size):
@@ -124,7 +129,7 @@ def first_event(slots, beta, t, h, y, work, counts):
             if sign * overlap_in_step(slots, beta, t, h, y, work, c, high) <= 0.0:
                 continue
         root = bracketed_root(slots, beta, t, h, y, work, c, 0.0, high)
-        if root < first:
+        if root < first and t + 0.1 * root * h > t:
             contact, first = c, root
     return contact, first
 
@@ -144,8 +149,10 @@ def _(tension):
 def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
     """Shorten or lengthen a step so that it ends just behind the event of contact c; returns its size.
 
-    An event that turns out to lie behind `limit` is left to the next step.
+    An event that turns out to lie behind `limit` is left to the next step, and so is one that is approached so slowly
+    that the step would grow over other events on the way to it.
     """
+    longest = min(limit - t, _LONGER * h)
     before = overlap(slots.preload, y, c) > 0.0
     behind, near = landing(slots.tension)
     behind *= max(1.0, work.scale[0])
@@ -156,7 +163,7 @@ def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
             break
         approach = work.k[STAGES, c] - work.k[STAGES, c + 1]
         change = (target - d) / approach if approach != 0.0 else 0.0
-        if change == 0.0 or abs(change) > 0.5 * h or t + h + change > limit:
+        if change == 0.0 or abs(change) > 0.5 * h or h + change > longest:
             break
         h += change
         attempt(method, slots, beta, t, h, y, work)
@@ -199,7 +206,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
             aimed, kinked = -1, True
             h *= kink
             continue
-        if aimed < 0 or t + 0.1 * x * h == t or x > 1.0 - 1e-9:
+        if aimed < 0 or x > 1.0 - 1e-9:
             break
         h *= x
     if aimed >= 0:
