@@ -1,0 +1,74 @@
+"""The tests that ought to notice, the fastest first; words for pytest."""
+
+from __future__ import annotations
+
+#: The right-hand side against the (u, v) equations of the paper; NaN; equilibrium; v to w and back.
+MOTION = ("tests/kernels/test_motion.py",)
+#: The same with beads that are not alike, and what else has a test of its own for this table.
+UNLIKE = ("tests/kernels/test_unlike_beads.py",)
+VECTORS = ("tests/lanes/test_vector_nan.py",)
+TABLEAU = ("tests/kernels/test_tableau.py",)
+#: The energy account: one combination of effects, and work and loss as integrals of force times velocity.
+ENERGY = ("tests/physics/test_energy.py", "-k", "linear-allowed-0.002-2.0 or moving_bead")
+ENERGY_PLAIN = ("tests/physics/test_energy.py", "-k", "linear-allowed-0.0-0.0 or without_damping or moving_bead")
+ENERGY_SPLIT = ("tests/physics/test_energy.py", "-k", "after_discarded and linear or without_damping")
+ENERGY_CUT = ("tests/physics/test_energy.py", "-k", "linear-cut")
+#: Samples against the stored extended-precision solution.
+REFERENCE = ("tests/physics/test_reference.py", "-k", "sec2-340 and not founded and not command")
+REFERENCE_PRELOAD = ("tests/physics/test_reference.py", "-k", "preload")
+IMPACT = ("tests/physics/test_impact.py",)
+PEAKS = ("tests/physics/test_peaks.py", "-k", "rk4-split and 16 and (340 or precompressed)")
+#: Brief touches, by the certified method.
+TOUCHES = ("tests/numerics/test_touches.py",)
+GRAZING = ("tests/numerics/test_events.py", "-k", "brief_touch or certified_steps_end")
+EVENTS = ("tests/numerics/test_events.py",)
+#: Orders of convergence.
+SPLIT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-split and (linear or none)")
+SPLIT_TSUJI = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-split and Tsuji")
+SPLIT_KK = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-split and Kuwabara")
+RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-closed")
+DOPRI_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dopri5-closed")
+CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-linear or follows_its_tolerance and linear")
+#: A short chain in a vector, and one in blocks along it, against the scalar method.
+SIMD = ("tests/lanes/test_simd.py", "-k", "along_the_chain")
+SIMD_LAWS = ("tests/lanes/test_simd.py", "-k", "along_the_chain and (changes10 or changes11)")
+SIMD_PLAIN = ("tests/lanes/test_simd.py", "-k", "along_the_chain and changes0")
+SIMD_LONG = ("tests/lanes/test_simd.py", "-k", "along_the_chain and changes6")
+LANES = ("tests/lanes/test_lane_steps.py", "-k", "order_three and sec2 or largest_forces and sec2")
+LANES_TSUJI = ("tests/lanes/test_lane_steps.py", "-k", "order_three and Tsuji")
+LANES_KK = ("tests/lanes/test_lane_steps.py", "-k", "order_three and Kuwabara")
+LANES_PRESSED = ("tests/lanes/test_lane_steps.py", "-k", "order_three and pressed")
+LANES_FOUNDED = ("tests/lanes/test_lane_steps.py", "-k", "order_three and founded")
+LANE_CURVES = ("tests/lanes/test_curves.py",)
+#: Tangents: their columns, and their determinant, which does not see a missing saltation.
+ROUTES = ("tests/orbits/test_tangents.py", "-k", "one_derivative and changes0 or missing_saltation")
+COLUMNS = ("tests/orbits/test_orbits.py", "-k", "every_column and changes0 or liouvilles and changes0")
+LIOUVILLE = ("tests/orbits/test_orbits.py", "-k", "liouvilles and changes0")
+FOUNDED_COLUMNS = ("tests/orbits/test_orbits.py", "-k", "every_column and changes1")
+MONODROMY = ("tests/orbits/test_multipliers.py",)
+MONODROMY_TSUJI = ("tests/orbits/test_multipliers.py", "-k", "tsuji")
+ORBITS = ("tests/orbits/test_orbits.py",)
+TANGENTS = ("tests/orbits/test_tangents.py",)
+OBSERVER_ORBIT = ("tests/observe/test_twin.py", "-k", "multipliers_are_finite")
+TWIN = ("tests/observe/test_twin.py", "-k", "starts_where")
+#: Time, states and restarts.
+CONTINUATION = ("tests/numerics/test_continuation.py", "-k", "not stop_flag")
+FAILURES = ("tests/numerics/test_failures.py", "-k", "not stiffest and not extreme")
+STIFFEST = ("tests/numerics/test_failures.py", "-k", "stiffest or extreme")
+OUTCOMES = ("tests/hard/test_outcomes.py",)
+CHECKPOINTS = ("tests/numerics/test_checkpoints.py",)
+#: Claims.
+HONESTY = ("tests/numerics/test_honesty.py", "-k", "not curve")
+REGIMES = ("tests/physics/test_regimes.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
+SETTLED = ("tests/physics/test_regimes.py", "-k", "section_2_from_rest")
+SAMPLING = ("tests/observe/test_sampling.py",)
+LYAPUNOV = ("tests/diagram/test_lyapunov.py",)
+LANE_PHASE = ("tests/lanes/test_unlike_lanes.py", "-k", "phase")
+UNLIKE_LANES = ("tests/lanes/test_unlike_lanes.py", "-k", "unlike_beads")
+CLAIMS = ("tests/physics/test_claims.py", "-k", "not largest_forces")
+CLAIMS_RUN = ("tests/physics/test_claims.py", "-k", "largest_forces")
+CLAIMS_SETTLED = SETTLED
+CHAOS = ("tests/physics/test_regimes.py", "-k", "140_hz")
+FAILURES_W = FAILURES
+FASTMATH = ("tests/kernels/test_motion.py::test_a_nan_in_a_bead_is_seen_in_both_its_contacts",
+            "tests/numerics/test_failures.py", "-k", "nan")

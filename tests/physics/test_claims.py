@@ -1,0 +1,65 @@
+"""What the regime rests on, number by number: rates, distances, the shortest period, and what is none of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import State, run, scene
+from granchain_core.kernels import section
+from granchain_core.steady import regime
+
+
+def turning(rate: float, count: int = 420) -> np.ndarray:
+    """States (count + 1, 2, 2) of a rotation by the golden angle that shrinks by `rate` a period."""
+    turn = (rate * np.exp(2j * np.pi * 0.6180339887498949)) ** np.arange(count + 1)
+    return np.stack([np.stack([turn.real, turn.imag], 1), np.stack([turn.imag, -turn.real], 1)], 1)
+
+
+def test_of_two_halves_the_slower_one_tells_the_rate() -> None:
+    """Nine changes that fall by 0.8 and then by 0.95 fall by 0.95: what is slow stays."""
+    changes = np.cumprod([1.0, *[0.8] * 4, *[0.95] * 4])
+    assert section.decay_rate(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
+
+
+def test_the_shortest_period_is_told() -> None:
+    """States that alternate repeat after four periods too; their period is two."""
+    states = np.zeros((9, 2, 1))
+    states[1::2] = 1.0
+    assert section.shortest(states, np.ones(2), 4, 1e-9) == 2
+
+
+def test_changes_lost_in_rounding_leave_a_distance() -> None:
+    """A decay by 0.97 that went below a rounding of 1e-7: what is left to go may be 1e-7·0.97/0.03, and is told."""
+    states = 1.0 + 0.97 ** np.arange(600)[:, None, None] * np.ones((1, 2, 3))
+    found = regime.find_period(states, rounding=1e-7)
+    assert found.name == "periodic" and found.multiplier == pytest.approx(0.97, abs=0.01)
+    assert found.distance is not None and found.distance >= 1e-7 * 0.96 / 0.04
+
+
+def test_growth_within_its_error_is_no_chaos() -> None:
+    """A mean exponent of 0.004 ± 0.006 on a closed curve is no evidence of chaos."""
+    exponents = np.array([0.03, -0.02, 0.01, -0.01, 0.02, -0.006])
+    assert regime.irregular(exponents, turning(1.0), 420).name == "quasi-periodic"
+
+
+def test_a_spiral_that_creeps_inwards_is_no_closed_curve() -> None:
+    """0.03 % a period: neighbours hardly approach, and yet it is on its way."""
+    exponents = np.array([-2e-4, -4e-4, -3e-4, -3e-4])
+    assert regime.irregular(exponents, turning(0.9997), 420).name == "unsettled"
+    assert regime.irregular(exponents, turning(1.0), 420).name == "quasi-periodic"
+
+
+def test_a_drift_is_no_closed_curve() -> None:
+    """A section that goes on and on never comes back near itself, whatever its exponent."""
+    drifting = turning(1.0) + 0.05 * np.arange(421)[:, None, None]
+    assert regime.irregular(np.array([1e-4, -1e-4, 2e-4, -2e-4]), drifting, 420).name == "unsettled"
+
+
+def test_largest_forces_are_those_of_the_recorded_periods() -> None:
+    """A chain that is hit hard at first: its discarded periods have far larger forces than those it is asked for."""
+    chain = scene("sec2").evolve(N=3, accuracy=1e-3)
+    hit = run(chain, periods=30, record=2, samples=64, start=State(np.zeros(3), np.array([1.0, 0.0, 0.0])))
+    plain = run(chain, periods=30, record=2, samples=64)
+    assert hit.max_input_force == pytest.approx(plain.max_input_force, rel=0.05)
+    assert hit.max_output_force == pytest.approx(plain.max_output_force, rel=0.05)
