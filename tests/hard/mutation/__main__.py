@@ -65,12 +65,12 @@ def _run(bench: Bench, chosen: list[Mutant], end: float, named_only: bool) -> in
             found = bench.mutated(one, BROAD, _BROAD_LIMIT)
         ended.append((one, found))
         print(_row(one, found), flush=True)
-    alive = [one.name for one, found in ended if found.verdict == "passed"]
+    alive = [one.name for one, found in ended if found.verdict in ("passed", "stillborn")]
     died = len(ended) - len(alive)
     late = sum(found.verdict == "timed out" for _, found in ended)
     print(f"\n{died} of {len(ended)} mutants died ({100.0 * died / max(1, len(ended)):.1f} %), {late} of them by the clock")
     for name in alive:
-        print(f"survived: {name}")
+        print(f"survived or stillborn: {name}")
     return 1 if alive else 0
 
 
@@ -83,7 +83,7 @@ def _passes(bench: Bench, words: tuple[str, ...], limit: float, optimised: bool)
 
 
 def _row(one: Mutant, found: Outcome) -> str:
-    by = {"passed": "SURVIVED", "timed out": "the clock", "crashed": "a crash"}.get(found.verdict, found.by or "import")
+    by = {"passed": "SURVIVED", "stillborn": "STILLBORN", "timed out": "the clock", "crashed": "a crash"}.get(found.verdict, found.by or "import")
     return f"{one.name:34s} {by:110s} {found.seconds:6.1f} s"
 
 

@@ -16,15 +16,15 @@ from .mutant import ROOT, Mutant
 
 #: Exit status of the child where not the copy but another granchain_core was imported.
 _ELSEWHERE = 99
-#: What the child runs: pytest, once it is sure of which package it tests. A core that cannot be imported is a failure
-#: of the tests as any other.
+#: What the child runs: pytest, once it is sure of which package it tests. A core that cannot be imported is
+#: stillborn too.
 _PROGRAM = f"""
 import pathlib, sys
 import pytest
 try:
     import granchain_core
 except Exception as problem:
-    print("FAILED import of granchain_core -", problem)
+    print("failed to import granchain_core:", problem)
     sys.exit(1)
 if not pathlib.Path(granchain_core.__file__).is_relative_to(pathlib.Path.cwd()):
     sys.exit({_ELSEWHERE})
@@ -34,7 +34,10 @@ sys.exit(pytest.main(sys.argv[1:]))
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run of tests ended: "passed", "failed", "timed out" or "crashed"; the first test that failed; seconds."""
+    """How a run of tests ended: "passed", "failed", "timed out", "crashed" or "stillborn"; the first test that failed.
+
+    A stillborn mutant is one that Numba refuses to compile: that no test is needed for, and it does not count.
+    """
 
     verdict: str
     by: str
@@ -98,6 +101,8 @@ class Bench:
             out, _ = child.communicate(timeout=limit)
             verdict = {0: "passed", _ELSEWHERE: "elsewhere"}.get(child.returncode, "failed")
             verdict = "crashed" if child.returncode < 0 else verdict
+            if verdict == "failed" and re.search("TypingError|LoweringError|UnsupportedError|failed to import", out):
+                verdict = "stillborn"
         except subprocess.TimeoutExpired:
             os.killpg(child.pid, 9)
             out, verdict = child.communicate()[0], "timed out"

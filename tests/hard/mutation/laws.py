@@ -59,7 +59,7 @@ EFFECTS = (
            "a pressed short chain is a sonic vacuum", k.SIMD),
     Mutant("absolute-coordinates", _PRELOAD, "    return y[c] - y[c + 1]\n",
            "    return max(y[c] + 5e4 * c, -1e300) - max(y[c + 1] + 5e4 * (c + 1), -1e300) + 5e4\n",
-           "bead positions with diameters added: overlaps are differences of large numbers", k.REFERENCE),
+           "bead positions with diameters added: overlaps are differences of large numbers", k.MOTION),
     Mutant("sampled-force-quadratic", _PUSHED, "return p[0] + theta * (p[1] + theta * (p[2] + theta * p[3]))",
            "return p[0] + theta * (p[1] + theta * p[2])", "a measured force jumps at every sample", k.SAMPLING),
     Mutant("echo-without-damping", _PUSHED,

@@ -60,7 +60,7 @@ IN_ROWS = (
     Mutant("wide-driver-at-rest", _WIDE, "moving = with_first(du, v0)", "moving = with_first(du, 0.0 * v0)",
            "short chains do not know how fast their driver comes", k.SIMD_PLAIN),
     Mutant("wide-steps-over-touch", _RUN, "(closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0",
-           "(closed_after ^ closed) != 0", "a touch inside a step of a short chain is not seen", k.SIMD),
+           "(closed_after ^ closed) != 0", "a touch inside a step of a short chain is not seen", k.STEP_TOUCH),
     Mutant("wide-split-phase", _RUN, "theta + dtheta * (done + 0.5 * part), theta", "theta + dtheta * (done + part), theta",
            "the driver is ahead in the middle of a split step", k.SIMD_PLAIN),
     Mutant("along-last-stage", _ALONG, "later_stage(along, slots, end, along.first", "later_stage(along, slots, middle, along.first",
