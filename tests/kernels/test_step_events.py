@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from granchain_core.kernels import events, fixed_step
+from granchain_core.kernels import certified, events, fixed_step
+from granchain_core.kernels.effects.balance import Balance
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from granchain_core.kernels.events import GAP, GAP_END, IMPULSE, PATH, RATE, RATE_END
 
@@ -85,3 +86,30 @@ def test_a_contact_that_turned_may_have_changed_in_between(before, after, rising
     slots = SimpleNamespace(preload=None, chain=SimpleNamespace(stiffness=np.ones(1)))
     state, slope = (lambda d: np.array([d, 0.0])), (lambda v: np.array([v, 0.0]))
     assert fixed_step.may_change.py_func(slots, state(before), slope(rising), state(after), slope(risen)) == seen
+
+
+def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None:
+    """Contact c pushed its beads apart too much by ends[IMPULSE, c]; the driver did that of contact 0 at its speed."""
+    inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((events.ENDS, 3))
+    ends[IMPULSE], ends[PATH] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)
+    slots = SimpleNamespace(chain=SimpleNamespace(inverse_mass=inverse), balance=Balance(1))
+    y = np.zeros(10)
+    fixed_step.give_back.py_func(slots, ends, 0.25, y)
+    # bead i is pushed forward by contact i − 1 and back by contact i
+    assert y == pytest.approx([0.0, 0.3, 0.25, 0.0, 0.0, 2.0, 1.5, 0.0, -3.0 * 0.25, 0.0], abs=1e-15)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_where_the_cubic_through_a_steps_ends_crosses_a_touch_is_looked_for(sign: float) -> None:
+    """A contact of the same sign at both ends of a certified step: open ones that may close, closed ones that may open."""
+    rng, crossed = np.random.default_rng(1), 0
+    x = np.linspace(0.0, 1.0, 401)
+    for _ in range(400):
+        d0, d1 = -(10.0 ** rng.uniform(-4.0, 0.0, 2))
+        s0, s1 = 10.0 ** rng.uniform(-3.0, 0.7), -(10.0 ** rng.uniform(-3.0, 0.7))
+        cubic = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
+        if cubic.max() > 0.0:
+            crossed += 1
+            assert certified.may_turn.py_func(sign * d0, sign * s0, sign * d1, sign * s1, sign)
+        assert not certified.may_turn.py_func(sign * d0, -sign * s0, sign * d1, sign * s1, sign)  # moves away at first
+    assert 100 < crossed < 300

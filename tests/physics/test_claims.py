@@ -63,3 +63,10 @@ def test_largest_forces_are_those_of_the_recorded_periods() -> None:
     plain = run(chain, periods=30, record=2, samples=64)
     assert hit.max_input_force == pytest.approx(plain.max_input_force, rel=0.05)
     assert hit.max_output_force == pytest.approx(plain.max_output_force, rel=0.05)
+
+
+def test_the_times_of_samples_are_counted_and_not_summed() -> None:
+    """Every seventh of seven thousand samples is at a whole number of drive periods, to the last bit."""
+    chain = scene("sec2").evolve(N=1, f=3000.0, D=300.0, accuracy=1e-2)
+    found = run(chain, periods=3, record=1000, samples=7)
+    assert (found.time[::7] == (3 + np.arange(1001)) * chain.period).all()
