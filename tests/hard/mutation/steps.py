@@ -97,7 +97,7 @@ CERTIFIED = (
     Mutant("events-of-all-periods", _CERTIFIED, "t, g, events = 0.0, 0, 0", "t, g = 0.0, 0",
            "a long run is called chatter", k.MANY_PERIODS),
     Mutant("samples-at-step-ends", _CERTIFIED, "x = min(1.0, (g * spacing - t) / h)", "x = 1.0",
-           "samples are taken where a step happens to end", k.REFERENCE),
+           "samples are taken where a step happens to end", k.CERTIFIED_ORDER),
     Mutant("dense-coefficient", _DOP853, "value = (value + dense[4, i]) * x", "value = (value + dense[4, i]) * (1.0 - x)",
            "the dense output is wrong inside a step", k.TOUCHES),
     Mutant("dop853-stage-weight", _TABLEAU, "(5, 4): 0.12546768756682242", "(5, 4): 0.12546768756682142",

@@ -1,0 +1,23 @@
+"""What an orbit claims of itself, number by number: that it comes back, and that its multipliers have Liouville's product."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core.orbits import orbit
+
+
+@pytest.mark.parametrize("place", [0, 3])
+def test_displacements_and_w_have_to_come_back(place: int) -> None:
+    """Each relative to its own largest: 1e-3 in one w is no orbit, however well the displacements close."""
+    state, change = np.array([1.0, -2.0, 0.1, 0.2]), np.zeros(4)
+    change[place] = 1e-3
+    assert orbit._residual(change, state) == pytest.approx(1e-3 / (2.0 if place < 2 else 0.2), rel=1e-14)
+
+
+def test_liouvilles_formula_is_about_the_product_of_all_multipliers() -> None:
+    multipliers = np.array([0.5 + 0.5j, 0.5 - 0.5j, 0.2, -0.1])
+    assert orbit._liouville(multipliers, np.log(0.01)) == pytest.approx(0.0, abs=1e-14)
+    assert orbit._liouville(multipliers, np.log(0.02)) == pytest.approx(np.log(2.0) / abs(np.log(0.02)), rel=1e-12)
+    assert orbit._liouville(np.array([0.5, 1e-14]), np.log(0.5)) is None  # the smallest is rounding
