@@ -25,7 +25,7 @@ STEADY = (
     Mutant("drift-is-quasi-periodic", _REGIME, "and returns_near(strobes)", "",
            "a section that never comes back is called a closed curve", k.CLAIMS),
     Mutant("settled-error-without-distance", _SETTLE, "regime, integration + distance, cost)", "regime, 0.0 * integration + distance, cost)",
-           "a settled picture states no error of its integration", k.CLAIMS_SETTLED),
+           "a settled picture states no error of its integration", k.SETTLED),
     Mutant("settled-error-not-amplified", _SETTLE, "    integration /= 1.0 - slowness(way.regime)\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
     Mutant("relaxed-by-change", _SETTLE, "            bound = change * rate / (1.0 - rate)", "            bound = change",

@@ -56,10 +56,11 @@ UNLIKE_LANES = ("tests/lanes/test_unlike_lanes.py", "-k", "unlike_beads")
 CLAIMS = ("tests/physics/test_claims.py", "-k", "not largest_forces and not summed")
 CLAIMS_TIME = ("tests/physics/test_claims.py", "-k", "counted_and_not_summed")
 CLAIMS_RUN = ("tests/physics/test_claims.py", "-k", "largest_forces")
-CLAIMS_SETTLED = SETTLED
+CLAIMS_SETTLED = ("tests/hard/test_cases.py", "-k", "holds and bifurcation")
 CHAOS = ("tests/physics/test_regimes.py", "-k", "140_hz")
-FAILURES_W = FAILURES
-FASTMATH = ("tests/kernels/test_motion.py", "tests/numerics/test_failures.py", "-k", "a_nan_in_a_bead and none or injected and dop853")
+FAILURES_W = ("tests/numerics/test_not_finite.py", "-k", "first_bead")
+FASTMATH = ("tests/numerics/test_not_finite.py", "tests/kernels/test_motion.py", "-k",
+            "not_finite or not_a_number or a_nan_in_a_bead and none")
 CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-cut")
 CUT_TSUJI = ("tests/physics/test_energy.py", "-k", "account_closes and tsuji-cut")
 CUT_KK = ("tests/physics/test_energy.py", "-k", "account_closes and kuwabara-kono-cut")
