@@ -1,36 +1,56 @@
-"""The tests that ought to notice, the fastest first; words for pytest."""
+"""The tests that ought to notice, those that compile least; words for pytest."""
 
 from __future__ import annotations
 
-#: The right-hand side against the (u, v) equations of the paper; NaN; equilibrium; v to w and back.
+#: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where beads
+#: are not alike; NaN in every lane; what is not finite.
 MOTION = ("tests/kernels/test_motion.py",)
-#: The same with beads that are not alike, and what else has a test of its own for this table.
 UNLIKE = ("tests/kernels/test_unlike_beads.py",)
 VECTORS = ("tests/lanes/test_vector_nan.py",)
-TABLEAU = ("tests/kernels/test_tableau.py",)
-#: The energy account: one combination of effects, and work and loss as integrals of force times velocity.
+FAILURES_W = ("tests/numerics/test_not_finite.py", "-k", "first_bead")
+FASTMATH = ("tests/numerics/test_not_finite.py", "tests/kernels/test_motion.py", "-k",
+            "not_finite or not_a_number or a_nan_in_a_bead and none")
+
+#: The energy account of one combination of effects; samples against the stored extended-precision solution; tops.
 ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-allowed-0.002-2.0")
 ENERGY_PLAIN = ("tests/physics/test_energy.py", "-k", "account_closes and linear-allowed-0.0-0.0")
-#: Samples against the stored extended-precision solution.
 REFERENCE = ("tests/physics/test_reference.py::test_displacements_agree_to_1e_8_at_every_sample[sec2-340]",)
 PEAKS = ("tests/physics/test_peaks.py", "-k", "rk4-split and 16 and 340")
-#: Brief touches, by the certified method.
+
+#: What happens inside one fixed step, run by Python; a whole touch inside one.
+STEP_EVENTS = ("tests/kernels/test_step_events.py",)
+STEP_TOUCH = ("tests/numerics/test_fixed_step_touches.py", "-k", "1e-06-True")
+
+#: Brief touches and certified steps.
 TOUCHES = ("tests/numerics/test_touches.py", "-k", "none_is_invented and True or moment_of_a_touch or two_touches")
 GRAZING = ("tests/numerics/test_events.py", "-k", "brief_touch")
-#: Orders of convergence.
+
+#: Coefficients and orders of convergence.
+TABLEAU = ("tests/kernels/test_tableau.py",)
 RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-closed")
 DOPRI_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dopri5-closed")
 CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-linear")
-#: A short chain in a vector, and one in blocks along it, against the scalar method.
+CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-cut")
+CUT_TSUJI = ("tests/physics/test_energy.py", "-k", "account_closes and tsuji-cut")
+CUT_KK = ("tests/physics/test_energy.py", "-k", "account_closes and kuwabara-kono-cut")
+
+#: A short chain in a vector, and a long one in blocks, against the scalar method.
 SIMD = ("tests/lanes/test_simd.py", "-k", "along_the_chain and (changes8 or changes9)")
 SIMD_LAWS = ("tests/lanes/test_simd.py", "-k", "along_the_chain and (changes10 or changes11)")
 SIMD_PLAIN = ("tests/lanes/test_simd.py", "-k", "along_the_chain and changes0")
 SIMD_LONG = ("tests/lanes/test_simd.py", "-k", "along_the_chain and changes6")
+
+#: Eight chains at once: their order, their forces, unlike beads, the drive's phase, what they believe.
 LANES = ("tests/lanes/test_lane_steps.py", "-k", "order_three and sec2")
-LANE_FORCES = ("tests/lanes/test_lane_steps.py", "-k", "largest_forces and sec2")
 LANES_KK = ("tests/lanes/test_lane_steps.py", "-k", "order_three and Kuwabara")
 LANES_PRESSED = ("tests/lanes/test_lane_steps.py", "-k", "order_three and pressed")
 LANES_FOUNDED = ("tests/lanes/test_lane_steps.py", "-k", "order_three and founded")
+LANE_FORCES = ("tests/lanes/test_lane_steps.py", "-k", "largest_forces and sec2")
+UNLIKE_LANES = ("tests/lanes/test_unlike_lanes.py", "-k", "unlike_beads")
+LANE_PHASE = ("tests/lanes/test_unlike_lanes.py", "-k", "phase")
+LANE_LOOKS = ("tests/lanes/test_lane_looks.py",)
+LYAPUNOV = ("tests/diagram/test_lyapunov.py",)
+
 #: Tangents: their columns, and their determinant, which does not see a missing saltation.
 ROUTES = ("tests/orbits/test_tangents.py", "-k", "missing_saltation or one_derivative and changes4")
 COLUMNS = ("tests/orbits/test_orbits.py", "-k", "every_column and changes0 or liouvilles and changes0")
@@ -38,39 +58,30 @@ LIOUVILLE = ("tests/orbits/test_orbits.py", "-k", "liouvilles and changes0")
 FOUNDED_COLUMNS = ("tests/orbits/test_orbits.py", "-k", "every_column and changes1")
 MONODROMY = ("tests/orbits/test_multipliers.py", "-k", "sec2-340 or dashpot")
 MONODROMY_TSUJI = ("tests/orbits/test_multipliers.py", "-k", "tsuji")
+SAME_EVENTS = ("tests/orbits/test_tangents.py", "-k", "same_events")
+TWO_PERIODS = ("tests/orbits/test_orbits.py", "-k", "twice_its_period")
+FLOW_TOUCH = ("tests/orbits/test_flow_touches.py",)
+ORBIT_CLAIMS = ("tests/orbits/test_orbit_claims.py",)
+
+#: Observers.
 OBSERVER_ORBIT = ("tests/observe/test_twin.py", "-k", "multipliers_are_finite")
 TWIN = ("tests/observe/test_twin.py", "-k", "starts_where")
-#: Time, states and restarts.
+SAMPLING = ("tests/observe/test_sampling.py", "-k", "follows_its_chain and smooth or monotone")
+
+#: Time, restarts, failures.
 CONTINUATION = ("tests/numerics/test_continuation.py", "-k", "not stop_flag")
+MANY_PERIODS = ("tests/numerics/test_continuation.py", "-k", "drive_phase_is_exact and dop853")
+CHECKPOINTS = ("tests/numerics/test_checkpoints.py",)
 FAILURES = ("tests/numerics/test_failures.py", "-k", "not stiffest and not extreme")
 STIFFEST = ("tests/numerics/test_failures.py", "-k", "stiffest")
-CHECKPOINTS = ("tests/numerics/test_checkpoints.py",)
-#: Claims.
+
+#: What is claimed of a motion.
 HONESTY = ("tests/numerics/test_honesty.py", "-k", "not curve")
+SAME_STEPS = ("tests/numerics/test_honesty.py", "-k", "same_steps")
 REGIMES = ("tests/physics/test_regimes.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
 SETTLED = ("tests/physics/test_regimes.py", "-k", "section_2_from_rest")
-SAMPLING = ("tests/observe/test_sampling.py", "-k", "follows_its_chain and smooth or monotone")
-LYAPUNOV = ("tests/diagram/test_lyapunov.py",)
-LANE_PHASE = ("tests/lanes/test_unlike_lanes.py", "-k", "phase")
-UNLIKE_LANES = ("tests/lanes/test_unlike_lanes.py", "-k", "unlike_beads")
+CHAOS = ("tests/physics/test_regimes.py", "-k", "140_hz")
 CLAIMS = ("tests/physics/test_claims.py", "-k", "not largest_forces and not summed and not fixed_point and not relaxing")
 CLAIMS_TIME = ("tests/physics/test_claims.py", "-k", "counted_and_not_summed")
 CLAIMS_RUN = ("tests/physics/test_claims.py", "-k", "largest_forces")
 CLAIMS_SETTLED = ("tests/physics/test_claims.py", "-k", "fixed_point or relaxing")
-CHAOS = ("tests/physics/test_regimes.py", "-k", "140_hz")
-FAILURES_W = ("tests/numerics/test_not_finite.py", "-k", "first_bead")
-FASTMATH = ("tests/numerics/test_not_finite.py", "tests/kernels/test_motion.py", "-k",
-            "not_finite or not_a_number or a_nan_in_a_bead and none")
-CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-cut")
-CUT_TSUJI = ("tests/physics/test_energy.py", "-k", "account_closes and tsuji-cut")
-CUT_KK = ("tests/physics/test_energy.py", "-k", "account_closes and kuwabara-kono-cut")
-#: What happens inside one fixed step, run by Python, and a whole touch inside one, in a vector.
-STEP_EVENTS = ("tests/kernels/test_step_events.py",)
-STEP_TOUCH = ("tests/numerics/test_fixed_step_touches.py", "-k", "1e-06-True")
-MANY_PERIODS = ("tests/numerics/test_continuation.py", "-k", "drive_phase_is_exact and dop853")
-TWO_PERIODS = ("tests/orbits/test_orbits.py", "-k", "twice_its_period")
-SAME_EVENTS = ("tests/orbits/test_tangents.py", "-k", "same_events")
-SAME_STEPS = ("tests/numerics/test_honesty.py", "-k", "same_steps")
-FLOW_TOUCH = ("tests/orbits/test_flow_touches.py",)
-ORBIT_CLAIMS = ("tests/orbits/test_orbit_claims.py",)
-LANE_LOOKS = ("tests/lanes/test_lane_looks.py",)
