@@ -17,14 +17,14 @@ from pathlib import Path
 
 from .bench import Bench, Outcome
 from .mutant import Mutant
-from .table import BROAD, MUTANTS
+from .table import BROAD, DEMANDED, MUTANTS
 
 #: Seconds the named tests and all tests may take. A mutant that hangs is killed by the clock and listed so.
 _LIMIT, _BROAD_LIMIT = 150.0, 1500.0
 
 
 def main() -> int:
-    """Print the table and the share that died; 1 if one survived or the unchanged core does not pass."""
+    """Print the table and the share that died; 1 if one survived or the unchanged core does not pass its tests."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="*", default=[], help="mutants with one of these words in their name")
     parser.add_argument("--list", action="store_true", help="the table without running anything")
@@ -69,6 +69,9 @@ def _run(bench: Bench, chosen: list[Mutant], end: float, named_only: bool) -> in
     died = len(ended) - len(alive)
     late = sum(found.verdict == "timed out" for _, found in ended)
     print(f"\n{died} of {len(ended)} mutants died ({100.0 * died / max(1, len(ended)):.1f} %), {late} of them by the clock")
+    for words, names in DEMANDED.items():
+        if set(names) <= {one.name for one, _ in ended}:
+            print(f"{words}: {'survived' if set(names) & set(alive) else 'dead'} ({', '.join(names)})")
     for name in alive:
         print(f"survived or stillborn: {name}")
     return 1 if alive else 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 #: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where beads
 #: are not alike; NaN in every lane; what is not finite.
 MOTION = ("tests/kernels/test_motion.py",)
-UNLIKE = ("tests/kernels/test_unlike_beads.py",)
+UNLIKE = ("tests/kernels/test_scaled_numbers.py",)
 VECTORS = ("tests/lanes/test_vector_nan.py",)
 FAILURES_W = ("tests/numerics/test_not_finite.py", "-k", "first_bead")
 FASTMATH = ("tests/numerics/test_not_finite.py", "tests/kernels/test_motion.py", "-k",
@@ -14,6 +14,7 @@ FASTMATH = ("tests/numerics/test_not_finite.py", "tests/kernels/test_motion.py",
 #: The energy account of one combination of effects; samples against the stored extended-precision solution; tops.
 ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-allowed-0.002-2.0")
 ENERGY_PLAIN = ("tests/physics/test_energy.py", "-k", "account_closes and linear-allowed-0.0-0.0")
+ENERGY_WORK = ("tests/physics/test_energy.py", "-k", "work_and_loss and linear-allowed-0.002-2.0")
 REFERENCE = ("tests/physics/test_reference.py::test_displacements_agree_to_1e_8_at_every_sample[sec2-340]",)
 PEAKS = ("tests/physics/test_peaks.py", "-k", "rk4-split and 16 and 340")
 

@@ -1,4 +1,4 @@
-"""Beads that are not alike, a dimer with an impurity: masses and stiffnesses stand where the equations have them."""
+"""Beads that are not alike, other amplitudes, a measured force: numbers stand where the equations have them."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ import numpy as np
 import pytest
 
 from granchain_core import Scene, scene
+from granchain_core.kernels.effects.dissipation import damping
+from granchain_core.kernels.effects.driver import driver_velocity
+from granchain_core.kernels.effects.pushed import Sampled
 from granchain_core.kernels.motion import contact_force, motion, stored_energy
 from granchain_core.lower import lower
 from granchain_core.scene import Bead
@@ -29,15 +32,16 @@ def stiffness(a: Bead, b: Bead) -> float:
     return 4.0 / 3.0 * modulus * math.sqrt(a.radius * b.radius / (a.radius + b.radius))
 
 
+@pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("law", ["none", "linear"])
-def test_unlike_beads_move_as_the_equations_say(law: str) -> None:
+def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
     """Forces, du/dt = v, m ẇ = F_left − F_right − k u and the stored energy, from SI by hand; Python runs the kernels."""
     chosen = dimer(law)
     beads = [chosen.bead(i) for i in range(1, 7)]
     K = np.array([stiffness(a, b) for a, b in zip([beads[0], *beads[:-1]], beads, strict=True)]
                  + [2.0 * math.sqrt(2.0) * stiffness(beads[-1], beads[-1])])
     masses = np.array([bead.mass for bead in beads])
-    rng, length = np.random.default_rng(3), 2.0 * chosen.A0 + float(chosen.static_overlap().max())
+    rng, length = np.random.default_rng(seed), 2.0 * chosen.A0 + float(chosen.static_overlap().max())
     u, v = rng.uniform(-1.0, 1.0, 6) * length, rng.uniform(-1.0, 1.0, 6) * 0.02
     theta = 0.7
     u0, v0 = chosen.A0 * math.sin(theta), 2 * math.pi * chosen.f * chosen.A0 * math.cos(theta)
@@ -59,3 +63,21 @@ def test_unlike_beads_move_as_the_equations_say(law: str) -> None:
                                elastic[:-1] - elastic[1:] - chosen.k * u, **near)
     energy = (0.4 * K * overlap**2.5).sum() + (0.5 * masses * v**2).sum() + (0.5 * chosen.k * u**2).sum()
     assert stored_energy.py_func(slots, y, dy) * scales.energy == pytest.approx(energy, rel=1e-12)
+
+
+@pytest.mark.parametrize(("law", "power"), [("tsuji", 0.25), ("kuwabara-kono", 0.5)])
+@pytest.mark.parametrize("A0", [5e-8, 5e-7, 7e-6])
+def test_the_damping_named_by_the_knob_is_that_at_the_reference_overlap(law: str, power: float, A0: float) -> None:
+    """g = D (δ/δ_ref)^p N s/m at every drive amplitude, whatever the unit of length is."""
+    chosen = scene("sec2").evolve(dissipation=law, A0=A0, D=31.0)
+    lowered = lower(chosen)
+    unit = chosen.bead(1).mass * lowered.scales.rate  # of damping
+    for overlap in (1e-8, 3e-6):
+        found = damping(lowered.slots.dissipation, overlap / lowered.scales.length) * unit
+        assert found == pytest.approx(31.0 * (overlap / chosen.reference_overlap) ** power, rel=1e-12)
+
+
+def test_a_measured_force_is_its_cubic() -> None:
+    """Constant term first, in the time since the sample: what pushes bead 1 of an observer."""
+    p = np.array([0.3, -1.2, 2.5, 4.0])
+    assert driver_velocity(Sampled(p), 0.7) == pytest.approx(np.polyval(p[::-1], 0.7), rel=1e-14)
