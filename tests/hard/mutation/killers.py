@@ -15,6 +15,7 @@ FASTMATH = ("tests/numerics/test_not_finite.py", "tests/kernels/test_motion.py",
 ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-allowed-0.002-2.0")
 ENERGY_PLAIN = ("tests/physics/test_energy.py", "-k", "account_closes and linear-allowed-0.0-0.0")
 ENERGY_WORK = ("tests/physics/test_energy.py", "-k", "work_and_loss and linear-allowed-0.002-2.0")
+ON_THE_WAY = ("tests/physics/test_work_on_the_way.py",)
 REFERENCE = ("tests/physics/test_reference.py::test_displacements_agree_to_1e_8_at_every_sample[sec2-340]",)
 PEAKS = ("tests/physics/test_peaks.py", "-k", "rk4-split and 16 and 340")
 

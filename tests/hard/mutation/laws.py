@@ -42,7 +42,7 @@ EFFECTS = (
     Mutant("driver-velocity-scale", _DRIVER, "return driver.amplitude * driver.beta * cos(theta)",
            "return driver.amplitude * cos(theta)", "v_0 is not the derivative of u_0", k.ENERGY_WORK),
     Mutant("driver-acceleration-sign", _DRIVER, "return -driver.beta * driver.beta * u0",
-           "return driver.beta * driver.beta * u0", "the driver's work is wrong, its motion right", k.ENERGY_WORK),
+           "return driver.beta * driver.beta * u0", "the driver's work is wrong, its motion right", k.ON_THE_WAY),
     Mutant("foundation-sign", _GROUND, "return force - foundation.stiffness * u", "return force + foundation.stiffness * u",
            "the foundation pushes away", k.MOTION),
     Mutant("foundation-energy", _GROUND, "return 0.5 * foundation.stiffness", "return foundation.stiffness",
@@ -82,7 +82,7 @@ EFFECTS = (
     Mutant("loss-without-half-gamma", _BALANCE, "lost += G * (approach - 0.5 * gamma)", "lost += G * approach",
            "what integration by parts leaves at the ends is wrong", k.ENERGY_PLAIN),
     Mutant("work-without-ends", _BALANCE, "work = G * dy[0]", "work = 0.0",
-           "the boundary term of the driver's work is left out", k.ENERGY_WORK),
+           "the boundary term of the driver's work is left out", k.ON_THE_WAY),
 )
 
 LOWERED = (

@@ -1,0 +1,32 @@
+"""The driver's work and the energy lost are right at every instant, not only after whole periods."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from granchain_core import scene
+from granchain_core.integrate import Engine, Setting
+
+SAMPLES = 4096
+
+
+def test_work_and_loss_on_the_way_are_the_integrals_up_to_there() -> None:
+    """W(t) = ∫ F_0 v_0 dt and Q(t) = ∫ Σ (F − F_el) δ̇ dt within a period, while G_0 v_0 comes and goes.
+
+    By the trapezoidal rule; the dashpot's force jumps some twenty times in a period, by half a spacing of it each.
+    """
+    shown = scene("sec2").evolve(N=5, f=900.0, kappa=0.002, F0=2.0)
+    engine = Engine(shown, Setting("dop853", tolerance=1e-9), SAMPLES, balance=True)
+    kept, lowered = engine.record(SAMPLES), engine.lowered
+    theta = 2 * np.pi * np.arange(SAMPLES + 1) / SAMPLES
+    v0, rows = lowered.beta * np.cos(theta), np.zeros((SAMPLES + 1, 1))
+    bodies = np.hstack([np.sin(theta)[:, None], kept.displacement, rows])
+    speeds = np.hstack([v0[:, None], kept.velocity, rows])
+    overlap = np.maximum(-np.diff(bodies, axis=1) + shown.static_overlap() / lowered.scales.length, 0.0)
+    damped = kept.force - lowered.slots.chain.stiffness * overlap**1.5
+    for power, found in ((kept.force[:, 0] * v0, kept.energy[:, 1]), ((damped * -np.diff(speeds, axis=1)).sum(axis=1), kept.energy[:, 2])):
+        spacing = lowered.period / SAMPLES
+        summed = np.concatenate([[0.0], np.cumsum(0.5 * spacing * (power[1:] + power[:-1]))])
+        near = 20 * 0.5 * spacing * np.abs(np.diff(power)).max()
+        np.testing.assert_allclose(found - found[0], summed, atol=near)
+        assert np.abs(summed).max() > 20 * near  # the comparison says something
