@@ -95,3 +95,10 @@ def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatc
     _, bound = settle.relax(way, 1e-6)
     assert bound <= 0.3e-6
     assert bound == pytest.approx(99.0 * float(seen[-1][0]), rel=1e-12)
+
+
+def test_the_largest_elastic_force_is_the_walls() -> None:
+    """A rigid wall's contact is stiffer than one between beads; its samples come near the largest value, from below."""
+    found = run(scene("sec2").evolve(N=3, wall="rigid", accuracy=1e-4), periods=2, record=3, samples=256)
+    assert found.output_force_elastic.max() <= found.max_output_force_elastic * (1.0 + 1e-12)
+    assert found.output_force_elastic.max() == pytest.approx(found.max_output_force_elastic, rel=1e-3)
