@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core.orbits import orbit
+from granchain_core.orbits.flow import Flow
 
 
 @pytest.mark.parametrize("place", [0, 3])
@@ -21,3 +22,14 @@ def test_liouvilles_formula_is_about_the_product_of_all_multipliers() -> None:
     assert orbit._liouville(multipliers, np.log(0.01)) == pytest.approx(0.0, abs=1e-14)
     assert orbit._liouville(multipliers, np.log(0.02)) == pytest.approx(np.log(2.0) / abs(np.log(0.02)), rel=1e-12)
     assert orbit._liouville(np.array([0.5, 1e-14]), np.log(0.5)) is None  # the smallest is rounding
+
+
+def test_newtons_method_goes_on_to_the_maps_own_rounding() -> None:
+    """Of x → (x + 1)/2 a state 1e-8 from its fixed point is not yet the orbit."""
+
+    def half(x: np.ndarray) -> Flow:
+        return Flow(0.5 * (x + 1.0), 0.5 * np.eye(len(x)), 0.0, np.zeros((0, 2)))
+
+    x, _, history = orbit._newton(half, np.full(4, 1.0 + 1e-8))  # type: ignore[arg-type]
+    assert history[0] == pytest.approx(5e-9, rel=1e-6) and history[-1] <= 1e-11
+    assert np.abs(x - 1.0).max() < 1e-14

@@ -88,7 +88,7 @@ ORBITS = (
            "∂v/∂u leaves out the contact on a bead's left", k.ROUTES),
     Mutant("newton-ends-early", _ORBIT, "CONVERGED, MOST_ITERATIONS = 1e-11, 12", "CONVERGED, MOST_ITERATIONS = 1e-7, 12",
            "an orbit is called found four digits too early",
-           ("tests/orbits/test_orbits.py", "-k", "in_a_few_iterations and 340")),
+           k.ORBIT_CLAIMS),
     Mutant("multipliers-by-real-part", _ORBIT, "np.argsort(-np.abs(found), kind", "np.argsort(-found.real, kind",
            "the leading multiplier is the rightmost, not the largest", ("tests/orbits/test_tangents.py", "-k", "sorted_by_modulus")),
     Mutant("stable-by-real-part", _ORBIT, "return bool(np.abs(self.multipliers).max() < 1.0)",
