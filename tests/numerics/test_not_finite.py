@@ -31,3 +31,13 @@ def test_a_contact_that_is_not_a_number_is_said_by_the_kernel(method: str) -> No
     with pytest.raises(NumbersFailed, match=r"bead [12] ") as caught:
         engine.record(4)
     assert caught.value.status == "not-finite"
+
+
+def test_the_time_of_a_failure_inside_a_call_counts_from_the_start() -> None:
+    """A drive that fails in the twenty-first period, the first one of the present call."""
+    engine = Engine(scene("sec2").evolve(N=3), Setting("rk4"), 1)
+    engine.periods(20)
+    engine.drive[40] = np.nan
+    with pytest.raises(NumbersFailed, match=r"\(20 drive periods\)") as caught:
+        engine.periods(2)
+    assert caught.value.time == pytest.approx(20.0 * engine.lowered.scene.period, rel=1e-12)

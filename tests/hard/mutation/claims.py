@@ -31,7 +31,7 @@ STEADY = (
     Mutant("relaxed-by-change", _SETTLE, "            bound = change * rate / (1.0 - rate)", "            bound = change",
            "the certified orbit is left too early", k.CLAIMS_SETTLED),
     Mutant("shadow-not-pulled-back", "kernels/shadow.py", "* (start / now)", "* 1.0",
-           "the exponent is that of a distance long since large", k.CHAOS),
+           "the exponent is that of a distance long since large", k.LYAPUNOV),
 )
 
 STATED = (
@@ -62,7 +62,7 @@ FAILING = (
     Mutant("failed-step-of-its-end", _FAIL, "if b), 1), low % n", "if b), 1), high % n",
            "the step after the one that failed is named", ("tests/hard/test_outcomes.py", "-k", "middle_of_a_long_call")),
     Mutant("failed-time-since-call", _FAIL, "periods = engine.elapsed + done", "periods = done",
-           "the time of a failure is counted from the present call", k.FAILURES),
+           "the time of a failure is counted from the present call", k.FAILURES_T),
     Mutant("nan-of-velocity-unseen", _FAIL, "np.isfinite(state[1 : row - 1]) & np.isfinite(state[row + 1 : 2 * row - 1])",
            "np.isfinite(state[1 : row - 1])", "a NaN velocity is seen when it has reached a displacement, in another bead",
            k.FAILURES_W),

@@ -43,6 +43,7 @@ SIMD_LONG = ("tests/lanes/test_simd.py", "-k", "along_the_chain and changes6")
 
 #: Eight chains at once: their order, their forces, unlike beads, the drive's phase, what they believe.
 LANES = ("tests/lanes/test_lane_steps.py", "-k", "order_three and sec2")
+LANES_ONE = ("tests/lanes/test_lane_steps.py", "-k", "order_three and one")
 LANES_KK = ("tests/lanes/test_lane_steps.py", "-k", "order_three and Kuwabara")
 LANES_PRESSED = ("tests/lanes/test_lane_steps.py", "-k", "order_three and pressed")
 LANES_FOUNDED = ("tests/lanes/test_lane_steps.py", "-k", "order_three and founded")
@@ -73,7 +74,7 @@ SAMPLING = ("tests/observe/test_sampling.py", "-k", "follows_its_chain and smoot
 CONTINUATION = ("tests/numerics/test_continuation.py", "-k", "not stop_flag")
 MANY_PERIODS = ("tests/numerics/test_long_records.py",)
 CHECKPOINTS = ("tests/numerics/test_checkpoints.py",)
-FAILURES = ("tests/numerics/test_failures.py", "-k", "not stiffest and not extreme")
+FAILURES_T = ("tests/numerics/test_not_finite.py", "-k", "counts_from_the_start")
 STIFFEST = ("tests/numerics/test_failures.py", "-k", "stiffest")
 
 #: What is claimed of a motion.
@@ -81,7 +82,6 @@ HONESTY = ("tests/numerics/test_honesty.py", "-k", "not curve")
 SAME_STEPS = ("tests/numerics/test_honesty.py", "-k", "same_steps")
 REGIMES = ("tests/physics/test_regimes.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
 SETTLED = ("tests/physics/test_regimes.py", "-k", "section_2_from_rest")
-CHAOS = ("tests/physics/test_regimes.py", "-k", "140_hz")
 CLAIMS = ("tests/physics/test_claims.py", "-k", "not largest and not summed and not fixed_point and not relaxing")
 CLAIMS_TIME = ("tests/physics/test_claims.py", "-k", "counted_and_not_summed")
 CLAIMS_RUN = ("tests/physics/test_claims.py", "-k", "largest_forces or largest_elastic")

@@ -34,7 +34,7 @@ IN_LANES = (
            "    return law.coefficient * h * three_halves(speed * h) * inside",
            "what is taken back of the path is wrong for Kuwabara and Kono's law", k.LANE_LOOKS),
     Mutant("lane-wall-not-corrected", _BESIDE, "for c in range(values.last + 1):", "for c in range(values.last):",
-           "touches of the wall in lanes are not corrected", k.LANES),
+           "touches of the wall in lanes are not corrected", k.LANES_ONE),
     Mutant("lane-t-plus-dt", _LOOKS, "state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0", "state.peaks[0, lane] = 0.0",
            "the phase in lanes turns on from period to period and is never set right", k.LANE_PHASE),
     Mutant("lane-orbit-not-disturbed", _LOOKS, "if period > 0 and state.slowest[lane] > 0.0:", "if period > 0 and state.slowest[lane] > 2.0:",
