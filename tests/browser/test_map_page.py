@@ -8,7 +8,7 @@ from playwright.sync_api import Locator, Page, expect
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
-COMPILED = 90_000
+COMPILED = 150_000
 #: A short chain far up: its diagram is there in a second or two.
 SMALL = "?v=1&scene=sec2&N=2"
 

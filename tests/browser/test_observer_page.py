@@ -8,7 +8,7 @@ from playwright.sync_api import Locator, Page, expect
 
 Visit = Callable[..., Page]
 #: A first visit may have to compile the pair's kernels, on a machine that runs tests.
-COMPILED = 120_000
+COMPILED = 240_000
 #: What the page drew last: period and distance.
 LAST = "granchain.observer?.history.at(-1)"
 
