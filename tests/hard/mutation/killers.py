@@ -49,7 +49,7 @@ LANE_FORCES = ("tests/lanes/test_lane_steps.py", "-k", "largest_forces and sec2"
 UNLIKE_LANES = ("tests/lanes/test_unlike_lanes.py", "-k", "unlike_beads")
 LANE_PHASE = ("tests/lanes/test_unlike_lanes.py", "-k", "phase")
 LANE_LOOKS = ("tests/lanes/test_lane_looks.py",)
-LYAPUNOV = ("tests/diagram/test_lyapunov.py",)
+LYAPUNOV = ("tests/diagram/test_lyapunov.py", "-k", "chaotic_chain")
 
 #: Tangents: their columns, and their determinant, which does not see a missing saltation.
 ROUTES = ("tests/orbits/test_tangents.py", "-k", "missing_saltation or one_derivative and changes4")

@@ -5,8 +5,8 @@ event, a tolerance that a claim rests on, a clock or a claim, one wrong version 
 have written: a factor, a sign, an exponent, a forgotten term, contact or check, one of several copies of an equation.
 Where an equation stands in several copies (scalar, lanes, vectors, blocks, flow) each has mutants of its own. The eight
 that the issue demands are among them. Left out is what changes no answer: safety factors and growth of steps, sizes of
-workspaces, patience with the stop flag, sentences. None was left out or changed because a test did or did not see it;
-tests that were missing were written.
+workspaces, patience with the stop flag, sentences. None was left out because a test did not
+see it; tests that were missing were written.
 """
 
 from __future__ import annotations
