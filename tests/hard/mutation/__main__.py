@@ -1,6 +1,7 @@
 """Program: change the core in one place at a time and see whether a test notices.
 
     python -m tests.hard.mutation [--only PART_OF_A_NAME ...] [--list] [--minutes M] [--seed S] [--work FOLDER]
+                                   [--named]
 
 The tests named in the table are run unchanged first, once each list; then with each mutant. One that survives them is
 run against all tests of the core before it counts as survived. With --seed the order is drawn, so that --minutes gives
@@ -13,6 +14,7 @@ import argparse
 import random
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 from .bench import Bench, Outcome
@@ -20,7 +22,7 @@ from .mutant import Mutant
 from .table import BROAD, DEMANDED, MUTANTS
 
 #: Seconds the named tests and all tests may take. A mutant that hangs is killed by the clock and listed so.
-_LIMIT, _BROAD_LIMIT = 150.0, 1500.0
+_LIMIT, _BROAD_LIMIT = 150.0, 3600.0
 
 
 def main() -> int:
@@ -63,6 +65,8 @@ def _run(bench: Bench, chosen: list[Mutant], end: float, named_only: bool) -> in
                 return 1
             sound.add(BROAD)
             found = bench.mutated(one, BROAD, _BROAD_LIMIT)
+            if found.verdict == "timed out":  # of so many tests that is no evidence
+                found = replace(found, verdict="passed")
         ended.append((one, found))
         print(_row(one, found), flush=True)
     alive = [one.name for one, found in ended if found.verdict in ("passed", "stillborn")]
