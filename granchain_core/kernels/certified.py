@@ -180,7 +180,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     """
     h = min(clock[0], method.largest_step, limit - t)
     note_slack(slots.tension, slots, beta, t, y, work)
-    aimed, kinked, again, factor = -1, False, False, 1.0
+    aimed, kinked, factor = -1, False, 1.0
     while True:
         error = attempt(method, slots, beta, t, h, y, work)
         counts[1] += STAGES
@@ -198,10 +198,10 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
             break
         aimed, x = first_event(slots, beta, t, h, y, work, counts)
         kink = first_kink(slots.tension, slots, beta, t, h, y, work, min(x, 1.0), counts)
-        if kink == 0.0 and not again:  # once: where F is rounding, either side may contradict itself
-            aimed, again = -1, True
+        if kink == 0.0:
+            aimed = -1
             continue
-        if 0.0 < kink < 1.0:
+        if kink < 1.0:
             clock[0] = min(clock[0], h * factor)
             aimed, kinked = -1, True
             h *= kink

@@ -124,15 +124,16 @@ def push_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
 def first_kink(tension, slots, beta, t, h, y, work, until, counts):
     """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
 
-    0 where the step is to be tried again because rounding had it begin on the wrong side of a kink. Absent: forces have
-    no such kink.
+    0 where the step is to be tried again because rounding had contacts begin on the wrong side of a kink: all of them
+    change sides at once, or a symmetric motion would lose its symmetry, and none changes back. Absent: forces have no
+    such kink.
     """
     return 2.0
 
 
 @first_kink.of(NoTension)
 def _(tension, slots, beta, t, h, y, work, until, counts):
-    first, ready, k = 2.0, False, work.k
+    first, ready, turned, k = 2.0, False, False, work.k
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)
         if not d0 > 0.0:
@@ -156,8 +157,10 @@ def _(tension, slots, beta, t, h, y, work, until, counts):
         if x * h > _NEAR:
             if x < first and x * h < until * h - _NEAR:
                 first = x
-        elif jumps(slots.dissipation) and (tension.slack[c] != 0) == (f1 > 0.0):
+        elif jumps(slots.dissipation) and (tension.slack[c] != 0) == (f0 < 0.0) == (f1 > 0.0):
             tension.slack[c] = 0 if f1 > 0.0 else 1
-            evaluate(slots, beta, t, y, k[0], work.forces)
-            return 0.0
+            turned = True
+    if turned:
+        evaluate(slots, beta, t, y, k[0], work.forces)
+        return 0.0
     return first

@@ -104,7 +104,7 @@ CERTIFIED = (
            "the tenth digit of a stage weight", k.TABLEAU),
     Mutant("dop853-stage-time", _TABLEAU, "    0.6512820512820513,", "    0.6512820512810513,",
            "the twelfth digit of a stage time", k.TABLEAU),
-    Mutant("cut-kink-not-located", _CERTIFIED, "        if 0.0 < kink < 1.0:", "        if 0.0 < kink < -1.0:",
+    Mutant("cut-kink-not-located", _CERTIFIED, "        if kink < 1.0:", "        if kink < -1.0:",
            "certified steps go across the instant at which a cut contact stops pushing", k.CUT_ENERGY),
     Mutant("slack-of-tsuji", "kernels/slackening.py", "return stiffness * d * root(root(d)) / law.coefficient",
            "return stiffness * d * root(d) / law.coefficient", "the instant at which Tsuji's force ends is another one",
