@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .bracket import between, narrowed
 from .dop853 import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
 from .effects.balance import add_loss, slack_loss
 from .effects.driver import driver_displacement
@@ -44,29 +45,18 @@ def overlap_in_step(slots, beta, t, h, y, work, c, x):
 
 
 @kernel
-def bracketed_root(slots, beta, t, h, y, work, c, low, high):
-    """Root of δ_c between fractions `low` and `high`, where it changes sign (Illinois)."""
+def overlap_root(slots, beta, t, h, y, work, c, low, high):
+    """Fraction between `low` and `high` where δ_c changes sign."""
     f_low = overlap_in_step(slots, beta, t, h, y, work, c, low)
     f_high = overlap_in_step(slots, beta, t, h, y, work, c, high)
     x, side = high, 0
     for _ in range(80):
         before = x
-        x = (low * f_high - high * f_low) / (f_high - f_low)
-        if not (low <= x <= high):
-            x = 0.5 * (low + high)
+        x = between(low, high, f_low, f_high)
         f = overlap_in_step(slots, beta, t, h, y, work, c, x)
         if f == 0.0 or abs(x - before) < 1e-15:
             break
-        if (f > 0.0) == (f_low > 0.0):
-            low, f_low = x, f
-            if side < 0:
-                f_high *= 0.5
-            side = -1
-        else:
-            high, f_high = x, f
-            if side > 0:
-                f_low *= 0.5
-            side = 1
+        low, high, f_low, f_high, side = narrowed(low, high, f_low, f_high, side, x, f)
     return x
 
 
@@ -128,7 +118,7 @@ def first_event(slots, beta, t, h, y, work, counts):
             high = inner_extremum(slots, beta, t, h, y, work, c, sign)
             if sign * overlap_in_step(slots, beta, t, h, y, work, c, high) <= 0.0:
                 continue
-        root = bracketed_root(slots, beta, t, h, y, work, c, 0.0, high)
+        root = overlap_root(slots, beta, t, h, y, work, c, 0.0, high)
         if root < first and t + 0.1 * root * h > t:
             contact, first = c, root
     return contact, first
@@ -222,6 +212,17 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
 
 
 @kernel
+def look_inside(slots, beta, t, h, at, y, work):
+    """The state at local time `at` inside the accepted step from t, in work.probe, and its slope in work.slope."""
+    x = min(1.0, (at - t) / h)
+    for i in range(y.size):
+        work.probe[i] = dense_value(work.dense, y[i], x, i)
+    add_loss(slots.balance, work.probe, slack_loss(slots.balance, slots, y, work.probe))
+    let_go(slots.tension, slots, work.probe)
+    evaluate(slots, beta, at, work.probe, work.slope, work.forces)
+
+
+@kernel
 def run_certified(method, slots, beta, period, y, work, clock, first, points, grid, every, samples, peaks, counts,
                   stop):
     """Run over `points` points of a grid of `grid` points a period, starting at grid point `first`.
@@ -258,12 +259,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
                     prepare_dense(slots, beta, t, h, y, work)
                     counts[1] += 3
                     ready = True
-                x = min(1.0, (g * spacing - t) / h)
-                for i in range(y.size):
-                    work.probe[i] = dense_value(work.dense, y[i], x, i)
-                add_loss(slots.balance, work.probe, slack_loss(slots.balance, slots, y, work.probe))
-                let_go(slots.tension, slots, work.probe)
-                evaluate(slots, beta, g * spacing, work.probe, work.slope, work.forces)
+                look_inside(slots, beta, t, h, g * spacing, y, work)
                 watch_forces(slots, work.probe, work.slope, work.forces.e, peaks)
                 if g % every == 0:
                     keep(slots, row, work.probe, work.slope, work.forces.e, samples)

@@ -6,6 +6,7 @@ F/g = K δ^{3/2}/g(δ) + δ̇, which unlike F goes through zero nowhere else, no
 
 from __future__ import annotations
 
+from .bracket import between, narrowed
 from .dop853 import STAGES, dense_value, evaluate, prepare_dense
 from .effects.contact import positive_part
 from .effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
@@ -98,25 +99,16 @@ def push_in_step(slots, beta, t, h, y, work, c, x):
 
 @kernel
 def push_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
-    """Fraction between `low` and `high` where F of contact c changes sign (Illinois)."""
+    """Fraction between `low` and `high` where F of contact c changes sign."""
     x, side = high, 0
     for _ in range(60):
         before = x
-        x = (low * f_high - high * f_low) / (f_high - f_low)
+        x = between(low, high, f_low, f_high)
         f = push_in_step(slots, beta, t, h, y, work, c, x)
         counts[1] += 1
         if abs(x - before) < 0.1 * _NEAR:
             break
-        if (f > 0.0) == (f_low > 0.0):
-            low, f_low = x, f
-            if side < 0:
-                f_high *= 0.5
-            side = -1
-        else:
-            high, f_high = x, f
-            if side > 0:
-                f_low *= 0.5
-            side = 1
+        low, high, f_low, f_high, side = narrowed(low, high, f_low, f_high, side, x, f)
     return x
 
 

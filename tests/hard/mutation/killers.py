@@ -32,6 +32,8 @@ RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-close
 DOPRI_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dopri5-closed")
 CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
 CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
+CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cut")
+CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.
 SIMD = ("tests/lanes/test_simd.py", "-k", "along_the_chain and (changes8 or changes9)")

@@ -14,11 +14,12 @@ from __future__ import annotations
 from .claims import CLAIMS
 from .laws import LAWS
 from .mutant import Mutant
+from .slack import SLACK
 from .steps import STEPS
 from .tangents import TANGENT_FLOW
 from .vectors import VECTORS
 
-MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + TANGENT_FLOW + VECTORS + CLAIMS
+MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + SLACK + TANGENT_FLOW + VECTORS + CLAIMS
 
 #: The mutants that the issue wants dead whatever the share: its eight words and who stands for each.
 DEMANDED: dict[str, tuple[str, ...]] = {
