@@ -26,7 +26,7 @@ from .live import LivePicture, LiveRun
 from .looks import Looks
 from .observer import ObserverPage
 from .painter import Painter
-from .promptness import has_turn, in_one_go, send_at_once
+from .promptness import in_its_turn, in_one_go, send_at_once
 from .session import SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
 from .stability import StabilityPage
@@ -77,10 +77,7 @@ class Controller:
         if action is None:
             self.say(f"The page sent a request {str(name)[:40]!r} that is not known here; reload the page.")
             return
-        if has_turn(self._document):
-            self._guarded(action, message)
-        else:
-            self.later(action, message)
+        in_its_turn(self._document, partial(self._guarded, action, message))
 
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
         try:

@@ -1,11 +1,12 @@
-"""How pictures travel: all their messages in one go, and at once."""
+"""How messages travel: a picture's all in one go, and at once; the page's when they can be answered."""
 
 from __future__ import annotations
 
 import socket
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+import panel as pn
 from bokeh.document import Document
 from tornado.iostream import IOStream
 
@@ -26,6 +27,20 @@ def has_turn(document: Document) -> bool:
     """
     session = getattr(document.session_context, "session", None)
     return getattr(session, "_pending_writes", ()) is not None
+
+
+def in_its_turn(document: Document, action: Callable[[], None]) -> None:
+    """Do what the page asked for as soon as the document may be changed and the page learns of it.
+
+    A page has its parts, and can ask, before it says that all of them are drawn. Panel throws away what is changed
+    until then, as if the page were still to fetch the document.
+    """
+    if not pn.state.loaded:
+        pn.state.onload(action)
+    elif has_turn(document):
+        action()
+    else:
+        document.add_next_tick_callback(action)
 
 
 def send_at_once(document: Document) -> None:

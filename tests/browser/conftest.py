@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, TimeoutError, sync_playwright
+from playwright.sync_api import Browser, Page, sync_playwright
 from started import dashboard, launch
 
 
@@ -26,22 +26,13 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
-def _has_knobs(page: Page) -> bool:
-    """Whether the knobs are there; once in some hundred visits on a busy machine they are not, which is not understood."""
-    try:
-        page.locator('[data-knob="f"]').first.wait_for(state="attached", timeout=15_000)
-    except TimeoutError:
-        return False
-    return True
-
-
 @pytest.fixture
 def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
     """Opens the dashboard; at the end no page may have complained or asked another host for anything."""
     contexts = []
     complaints: list[str] = []
 
-    def open_page(query: str = "", url: str = address, **options: Any) -> Page:
+    def open_page(query: str = "", url: str = address, script: str = "", **options: Any) -> Page:
         context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})
         contexts.append(context)
         page = context.new_page()
@@ -49,13 +40,9 @@ def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda request: request.url.startswith((url, "data:", "blob:"))
                 or complaints.append(f"asked another host: {request.url}"))
-        page.add_init_script(RUNTIME)
+        page.add_init_script(RUNTIME + script)
         page.goto(url + query)
         page.wait_for_function("window.painted.length > 0", timeout=60_000)
-        if not _has_knobs(page):
-            print("the knobs did not come with the pictures; the page is loaded again")
-            page.reload()
-            page.wait_for_function("window.painted.length > 0", timeout=60_000)
         return page
 
     yield open_page

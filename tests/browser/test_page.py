@@ -40,6 +40,29 @@ def test_the_chain_moves(visit: Visit) -> None:
     expect(page.locator("#foot")).to_contain_text("period 1")
 
 
+SAYS_LATE_THAT_IT_IS_READY = """
+const before = WebSocket.prototype.send;
+let message = [];
+WebSocket.prototype.send = function (frame) {
+  message.push(frame);
+  if (message.length < 3) return;
+  const frames = message;
+  message = [];
+  const late = String(frames[2]).includes("document_ready") ? 1500 : 0;
+  const send = () => frames.forEach((one) => before.call(this, one));
+  late ? setTimeout(send, late) : send();
+};
+"""
+
+
+def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) -> None:
+    """Its parts ask before; what Panel is told to change before is lost. So the answers wait for it."""
+    page = visit(script=SAYS_LATE_THAT_IT_IS_READY)
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("340", timeout=5_000)
+    settled(page)
+    expect(page.locator("#bar select").first).to_have_value("sec2")
+
+
 def test_pause_stops_the_chain_and_a_dragged_cursor_moves_it(visit: Visit) -> None:
     page = visit()
     settled(page)
