@@ -16,7 +16,7 @@ from .effects.dissipation import LAWS, damping, primitive
 from .effects.foundation import pull_back
 from .effects.preload import lane_overlap
 from .fixed_step import drive_displacement, drive_velocity
-from .jit import kernel, term
+from .jit import kernel, part, term
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from .simd import LANES, from_left, from_right, load, positive_mask, splat, store, with_first
 
@@ -42,7 +42,7 @@ class Along(NamedTuple):
     signs: np.ndarray
 
 
-@kernel
+@part
 def smooth_steps(along, slots, drive, j, count, dtheta, h, y, peaks):
     """Take up to `count` steps from half-step index 2j of the drive; how many were taken."""
     now, before, blocks = along.now, along.before, along.inverse_mass.shape[0]
@@ -70,7 +70,7 @@ def smooth_steps(along, slots, drive, j, count, dtheta, h, y, peaks):
         done += 1
 
 
-@kernel
+@part
 def first_stage(along, slots, u0, h):
     """The slope at the step's start: begins acc and the mid-step state; whether a contact changed since the last."""
     blocks, law, now = along.inverse_mass.shape[0], slots.dissipation, along.now
@@ -144,7 +144,7 @@ def watch_ends(slots, along, v0, peaks):
     watch(peaks, OUTPUT_ELASTIC, elastic)
 
 
-@kernel
+@part
 def unpack(y, m, blocked, blocks):
     """Two rows of m bodies into two rows of blocks."""
     for row in range(2):

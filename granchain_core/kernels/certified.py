@@ -15,7 +15,7 @@ from .effects.balance import add_loss, slack_loss
 from .effects.driver import driver_displacement
 from .effects.preload import overlap
 from .effects.tension import NoTension, let_go
-from .jit import kernel, term
+from .jit import kernel, part, term
 from .motion import copy
 from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
 from .slackening import begin_open, first_kink, note_slack
@@ -44,7 +44,7 @@ def overlap_in_step(slots, beta, t, h, y, work, c, x):
     return overlap(slots.preload, probe, c)
 
 
-@kernel
+@part
 def overlap_root(slots, beta, t, h, y, work, c, low, high):
     """Fraction between `low` and `high` where δ_c changes sign."""
     f_low = overlap_in_step(slots, beta, t, h, y, work, c, low)
@@ -60,7 +60,7 @@ def overlap_root(slots, beta, t, h, y, work, c, low, high):
     return x
 
 
-@kernel
+@part
 def inner_extremum(slots, beta, t, h, y, work, c, sign):
     """Fraction at which sign·δ_c is largest inside the step, by golden section on the dense output."""
     ratio = 0.6180339887498949
@@ -80,7 +80,7 @@ def inner_extremum(slots, beta, t, h, y, work, c, sign):
     return 0.5 * (low + high)
 
 
-@kernel
+@part
 def may_turn(d0, s0, d1, s1, sign):
     """Whether a contact with the same sign at both ends may cross zero in between.
 
@@ -93,7 +93,7 @@ def may_turn(d0, s0, d1, s1, sign):
     return reach > 0.0
 
 
-@kernel
+@part
 def first_event(slots, beta, t, h, y, work, counts):
     """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
@@ -135,7 +135,7 @@ def _(tension):
     return _BEHIND_CUT, _NEAR_CUT
 
 
-@kernel
+@part
 def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
     """Shorten or lengthen a step so that it ends just behind the event of contact c; returns its size.
 
@@ -162,7 +162,7 @@ def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
     return h
 
 
-@kernel
+@part
 def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     """One accepted step from y at local time t, at most to `limit`; the result is work.end.
 
@@ -211,7 +211,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     return DONE, h, aimed
 
 
-@kernel
+@part
 def look_inside(slots, beta, t, h, at, y, work):
     """The state at local time `at` inside the accepted step from t, in work.probe, and its slope in work.slope."""
     x = min(1.0, (at - t) / h)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .dop853 import evaluate, new_scale
-from .jit import kernel
+from .jit import kernel, part
 from .motion import contact_force, copy
 from .peaks import INPUT, OUTPUT
 from .sampling import CANCELLED, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
@@ -67,7 +67,7 @@ def attempt(method, slots, beta, t, h, y, work):
     return abs(h) * sqrt(total / (2 * (m - 2)))
 
 
-@kernel
+@part
 def step(method, slots, beta, t, limit, y, work, clock, counts):
     """One accepted step from y at local time t, at most to `limit`; returns (status, step taken)."""
     h = min(clock[0], method.largest_step, limit - t)
@@ -88,7 +88,7 @@ def step(method, slots, beta, t, limit, y, work, clock, counts):
     return DONE, h
 
 
-@kernel
+@part
 def watch_steps(slots, y, dy, e, peaks):
     """Follow the largest forces at the steps themselves, which are too uneven to look between them."""
     peaks[INPUT] = max(peaks[INPUT], contact_force(slots, y, dy, e, 0))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import copysign, sqrt
 
 from .effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
-from .jit import kernel, term
+from .jit import kernel, part, term
 
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then what Simpson's rule gives
 #: too much of every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
@@ -44,7 +44,7 @@ def hermite_root(d0, s0, d1, s1, high):
     return x
 
 
-@kernel
+@part
 def hermite_turn(d0, s0, d1, s1):
     """Where the same cubic turns between ends at which its slopes have opposite signs."""
     a = 2.0 * (d0 - d1) + s0 + s1
@@ -54,7 +54,7 @@ def hermite_turn(d0, s0, d1, s1):
     return s0 / (disc - b) if s0 > 0.0 else -s0 / (disc + b)
 
 
-@kernel
+@part
 def contact_root(d0, s0, d1, s1):
     """Fraction of a step at which one contact opens or closes; 2 if it does not."""
     if d0 == 0.0:  # beads that touch: pushed together they close here, and do not where they only part
@@ -95,7 +95,7 @@ def begin_split(ends):
         ends[PATH, c] = 0.0
 
 
-@kernel
+@part
 def note_event(law, stiffness, ends, c, h, done):
     """Contact c changes at the part `done` of a step of size h, at the rate in `ends`.
 
@@ -119,7 +119,7 @@ def three_halves_excess(r):
     return (part + whole) / 6.0 - 0.4 * (r + 2.0) * e
 
 
-@kernel
+@part
 def five_quarters_excess(r):
     """The same for s^{5/4}."""
     a = r * sqrt(sqrt(r))

@@ -25,7 +25,7 @@ from .events import (
     first_event,
     note_event,
 )
-from .jit import kernel, term
+from .jit import kernel, part, term
 from .motion import copy, motion
 
 
@@ -89,7 +89,7 @@ def rk4(slots, ua, va, ub, vb, h, y, stages):
         end[i] = y[i] + h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
 
 
-@kernel
+@part
 def may_change(slots, y, slope, end, end_slope):
     """Whether a contact may open or close within the step: its overlap has another sign at the end, or turned.
 

@@ -17,7 +17,7 @@ from .dop853 import combine, dense_value, error_norm
 from .dop853_tableau import STAGES, C
 from .effects.driver import driver_displacement
 from .effects.preload import overlap
-from .jit import kernel, term
+from .jit import kernel, part, term
 from .root_time import prepare_dense_in_time, rate_at, slope_in_x, time_at
 
 
@@ -67,7 +67,7 @@ def overlap_at(slots, beta, time, h, y, work, c, x):
     return overlap(slots.preload, probe, c)
 
 
-@kernel
+@part
 def root_between(slots, beta, time, h, y, work, c, low, high, rising):
     """Fraction in [low, high] at which δ_c changes sign, upwards if `rising` (bisection and regula falsi in turn)."""
     f_low = overlap_at(slots, beta, time, h, y, work, c, low)
@@ -102,7 +102,7 @@ def turning_point(slots, beta, time, h, y, work, c, sign):
     return 0.5 * (low + high)
 
 
-@kernel
+@part
 def first_change(slots, beta, time, h, y, work, path, counts, but):
     """(contact, fraction) of the first change inside the step of any contact but one; (−1, 2) if there is none."""
     contact, first, ready = -1, 2.0, False

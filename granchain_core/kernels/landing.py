@@ -10,7 +10,7 @@ import numpy as np
 from .dop853_tableau import STAGES
 from .effects.preload import overlap
 from .flow_step import attempt_in_time, first_change
-from .jit import kernel
+from .jit import part
 from .root_time import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 from .sampling import DONE, NOT_FINITE, STEP_TOO_SMALL
 
@@ -29,7 +29,7 @@ _PART = 0.5
 _LOST = -1
 
 
-@kernel
+@part
 def next_release(slots, y, path):
     """(contact, time) to the release that is nearest if its speed stays, (−1, ∞) if no contact opens."""
     contact, first = -1, np.inf
@@ -42,7 +42,7 @@ def next_release(slots, y, path):
     return contact, first
 
 
-@kernel
+@part
 def land(method, slots, beta, time, h, y, work, path, tangent, c, counts):
     """Correct the size of a step until it ends on the change of contact c; returns it."""
     for _ in range(_TRIALS):
@@ -58,19 +58,19 @@ def land(method, slots, beta, time, h, y, work, path, tangent, c, counts):
     return h
 
 
-@kernel
+@part
 def shrunk(h, error):
     """A smaller step after one with too large an error."""
     return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
 
 
-@kernel
+@part
 def grown(h, error):
     """The step to try after one with a tolerable error."""
     return h * min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
 
 
-@kernel
+@part
 def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     """Step from t towards the release of contact c, guessed at `goal`: onto it, or part of the way.
 
@@ -112,7 +112,7 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     return DONE, time, h, c if landed else -1, goal
 
 
-@kernel
+@part
 def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangent, counts):
     """One accepted step from y at local time t, at most to `limit`, with the last onset at `onset` (−∞: none).
 
@@ -170,7 +170,7 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
     return STEP_TOO_SMALL, time, h, -1
 
 
-@kernel
+@part
 def next_dt(time, h, error, before, limit):
     """The next step in t after an accepted one of size h in x; not less than before where only the limit cut it."""
     end = time_at(time, h)

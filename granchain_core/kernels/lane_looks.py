@@ -14,7 +14,7 @@ from math import log
 import numpy as np
 
 from .approach import ORBITS, reduced_rank
-from .jit import kernel
+from .jit import kernel, part
 from .motion import copy
 from .peaks import ROWS
 from .section import (
@@ -130,7 +130,7 @@ def look_coarse(state, lane):
     return False
 
 
-@kernel
+@part
 def disturb(state, lane, period):
     """Push a lane off the orbit it seems to be on and note the orbit's state and forces."""
     kept, m = state.kept[lane], state.limit.shape[1]
@@ -145,7 +145,7 @@ def disturb(state, lane, period):
     state.earliest[lane] = state.periods[lane] + _TEST_ORBITS * period
 
 
-@kernel
+@part
 def decayed(state, lane):
     """Whether the disturbance of a lane has become smaller; the lane is then put back on its orbit."""
     n, m = state.testing[lane], state.limit.shape[1]
@@ -174,7 +174,7 @@ def largest_top(state, lane, n, q):
     return largest
 
 
-@kernel
+@part
 def look_fine(state, lane):
     """Whether a fine lane has forgotten the coarse orbit; if not, it is followed to its own."""
     fine, kept, seen = state.fine[lane], state.kept[lane], state.seen[lane]

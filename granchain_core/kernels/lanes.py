@@ -15,7 +15,7 @@ import numpy as np
 from .effects.dissipation import lane_values
 from .effects.foundation import lane_foundation
 from .effects.preload import lane_overlap
-from .jit import kernel
+from .jit import kernel, part
 from .lane_events import correct_contacts
 from .lane_looks import end_period
 from .lane_step import Values, lane_step, watch_ends
@@ -125,7 +125,7 @@ def run_lanes(lanes, state, stop):
             return (DONE if np.isfinite(state.y[1, found]) else NOT_FINITE), found
 
 
-@kernel
+@part
 def part_again(state, m, start, growth, lane):
     """Note by how much a pair of lanes has parted in a period and pull the second back to the distance `start`."""
     y, total = state.y, 0.0

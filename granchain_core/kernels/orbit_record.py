@@ -16,7 +16,7 @@ from .dop853 import dense_value, evaluate, new_scale, prepare_dense
 from .dop853_tableau import STAGES
 from .effects.contact import elastic_force, positive_part
 from .effects.preload import overlap
-from .jit import kernel
+from .jit import kernel, part
 from .motion import contact_force, copy
 from .sampling import CANCELLED, DONE, NOT_FINITE, first_not_finite
 
@@ -53,7 +53,7 @@ def force_in_step(slots, beta, t, h, y, work, x, which):
     return contact_force(slots, work.probe, work.slope, work.forces.e, 0 if which == 0 else last)
 
 
-@kernel
+@part
 def top_in_step(slots, beta, t, h, y, work, which):
     """Largest value of a force inside the step, by golden section; that at an end where it lies there."""
     ratio = 0.6180339887498949
@@ -73,7 +73,7 @@ def top_in_step(slots, beta, t, h, y, work, which):
     return max(fa, fb)
 
 
-@kernel
+@part
 def follow_forces(slots, beta, t, h, y, work, tops):
     """Raise the largest forces to what the step holds."""
     for which in range(3):
@@ -88,7 +88,7 @@ def follow_forces(slots, beta, t, h, y, work, tops):
         tops[which] = max(tops[which], largest)
 
 
-@kernel
+@part
 def follow_turns(slots, beta, t, h, y, work, since, record, row):
     """Keep the turning points of all overlaps inside the step; returns the next free row.
 

@@ -21,7 +21,7 @@ from .effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji, keep_primit
 from .effects.driver import driver_displacement, driver_velocity
 from .effects.foundation import pull_back
 from .effects.preload import overlap
-from .jit import kernel, term
+from .jit import kernel, part, term
 
 #: Kinds of time: behind an onset, plain, before a release.
 BEHIND, PLAIN, BEFORE = 1, 0, -1
@@ -124,7 +124,7 @@ def slope_in_x(slots, beta, time, x, closed, state, row, work):
         work.k[row, i] = rate * work.slope[i]
 
 
-@kernel
+@part
 def prepare_dense_in_time(slots, beta, time, h, closed, y, work):
     """Fill work.dense for the step of size h in x from y to work.end; work.slope is again that of the end."""
     for s in range(STAGES + 1, ALL_STAGES):

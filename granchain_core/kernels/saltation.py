@@ -21,7 +21,7 @@ from .effects.dissipation import damping
 from .effects.foundation import foundation_pull
 from .flow import jump
 from .flow_step import keep_gaps
-from .jit import kernel
+from .jit import part
 from .root_time import rate_at
 from .tangent import carry, stage_gaps
 
@@ -44,7 +44,7 @@ def _(tangent, slots, state, stage):
     stage_gaps(slots, state, stage, tangent.gaps)
 
 
-@kernel
+@part
 def velocity_slope(slots, rate, gaps, closed, T, out):
     """Slope of all columns T at one stage, times dt/dx."""
     n, columns = T.shape[0] // 2, T.shape[1]

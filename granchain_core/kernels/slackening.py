@@ -12,7 +12,7 @@ from .effects.contact import positive_part
 from .effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from .effects.preload import overlap
 from .effects.tension import NoTension, let_go
-from .jit import kernel, term
+from .jit import kernel, part, term
 from .simd_math import root
 
 #: A kink nearer to an end of the step than this changes the motion by less than rounding, its square.
@@ -97,7 +97,7 @@ def push_in_step(slots, beta, t, h, y, work, c, x):
     return push(slots.dissipation, slots.chain.stiffness[c], d, work.slope[c] - work.slope[c + 1])
 
 
-@kernel
+@part
 def push_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
     """Fraction between `low` and `high` where F of contact c changes sign."""
     x, side = high, 0

@@ -21,7 +21,7 @@ from .effects.dissipation import damping
 from .effects.foundation import foundation_pull
 from .effects.preload import overlap
 from .flow_step import keep_gaps
-from .jit import inlined, kernel, term
+from .jit import inlined, kernel, part, term
 from .root_time import rate_at
 from .simd import blank, load, store
 
@@ -75,7 +75,7 @@ def _(tangent, slots, time, h, path):
     return share
 
 
-@kernel
+@part
 def linearise(slots, time, h, path, tangent):
     """Tangent stiffness s and damping g of every contact in every stage, times dt/dx; returns ∫ trace over the step.
 
@@ -123,7 +123,7 @@ def block_slope(slots, tangent, stage, rate):
         here, left = ahead, right
 
 
-@kernel
+@part
 def carry_block(slots, time, h, tangent, first):
     """Carry eight columns, whose rows begin at `first`, through the step."""
     rows = tangent.state.shape[0]

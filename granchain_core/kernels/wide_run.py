@@ -9,7 +9,7 @@ from .effects.dissipation import damping
 from .effects.driver import driver_displacement, driver_velocity
 from .events import GAP, IMPULSE, MOST_SPLITS, PATH, RATE, begin_split, first_event, note_event
 from .fixed_step import drive_displacement, drive_velocity
-from .jit import inlined, kernel
+from .jit import inlined, kernel, part
 from .peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from .simd import at, blank, positive_mask, store
 from .simd_math import larger
@@ -33,7 +33,7 @@ from .wide import (
 )
 
 
-@kernel
+@part
 def split_row(wide, slots, theta, dtheta, u_end, v_end, h, counts):
     """Repeat the step in the workspace from contact event to contact event; its end is written there anew."""
     ends, row, driver, done = wide.ends, row_of(wide, slots), slots.driver, 0.0
@@ -80,7 +80,7 @@ def watch_block(values, count, largest, peaks, first):
         watch(peaks, first, values[k])
 
 
-@kernel
+@part
 def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, peaks, counts, stop):
     """Take `count` steps from step index j of the period, slope dy and forces e at the end included.
 
