@@ -46,7 +46,6 @@ class Trains:
         plot.yaxis.visible = False
         plot.xgrid.grid_line_color = None
         quiet_axis(plot.xaxis[0], OUTPUT)
-        plot.xaxis[0].axis_label_text_font_size = "12px"  # the longest of the labels, on the narrowest picture
         self._lines += [
             plot.line("elastic", "time", source=self._source, line_color=OUTPUT, line_width=2.0,
                       line_dash=[5, 4]),

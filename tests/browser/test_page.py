@@ -271,7 +271,7 @@ def test_a_phone_has_the_knobs_in_a_drawer(visit: Visit) -> None:
 
 def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromium: Browser,
                                                             tmp_path: Path) -> None:
-    with dashboard(tmp_path / "log", GRANCHAIN_CACHE=str(tmp_path / "cache")) as url:
+    with dashboard(tmp_path / "log", GRANCHAIN_CACHE=str(tmp_path / "cache"), NUMBA_OPT="1") as url:
         page = chromium.new_page()
         page.goto(url)
         expect(page.get_by_role("alert")).to_contain_text("Compiling the kernels", timeout=10_000)

@@ -1,7 +1,7 @@
 """The energy account closes: work of the driver = lost + stored, for every combination of effects.
 
-Compiling a combination takes seconds, so by default every two values stand together in one of them, and the linear
-dashpot with each of the rest alone; GRANCHAIN_ALL=1 runs all combinations.
+Compiling a combination takes seconds, so by default every two values stand together in one of them; GRANCHAIN_ALL=1
+runs all combinations.
 """
 
 from __future__ import annotations
@@ -21,10 +21,9 @@ COMBINATIONS = [c for c in itertools.product(LAWS, ("allowed", "cut"), (0.0, 0.0
                 if not (c[0] == "none" and c[1] == "cut")]
 if not os.environ.get("GRANCHAIN_ALL"):
     COMBINATIONS = [
-        ("linear", "allowed", 0.0, 0.0), ("linear", "allowed", 0.002, 0.0), ("linear", "allowed", 0.0, 2.0),
-        ("linear", "cut", 0.0, 0.0), ("linear", "cut", 0.002, 2.0), ("tsuji", "allowed", 0.0, 0.0),
-        ("tsuji", "cut", 0.002, 2.0), ("kuwabara-kono", "cut", 0.0, 0.0), ("kuwabara-kono", "allowed", 0.002, 2.0),
-        ("none", "allowed", 0.0, 0.0), ("none", "allowed", 0.002, 2.0),
+        ("linear", "allowed", 0.0, 0.0), ("linear", "allowed", 0.002, 0.0), ("linear", "cut", 0.0, 0.0),
+        ("linear", "cut", 0.0, 2.0), ("tsuji", "allowed", 0.0, 0.0), ("tsuji", "cut", 0.002, 2.0),
+        ("kuwabara-kono", "cut", 0.0, 0.0), ("kuwabara-kono", "allowed", 0.002, 2.0), ("none", "allowed", 0.002, 2.0),
     ]
 METHODS = {"dop853": 1e-10, "rk4-split": 1e-6}
 
@@ -43,7 +42,7 @@ def test_the_account_closes(law, tension, kappa, preload):
     assert result.energy_residual < 1e-8
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", ["none", "linear"])
 def test_the_account_closes_after_discarded_periods_too(law):
     """The residual belongs to the recorded part, which may begin anywhere."""
     result = run(chain(law, "allowed", 0.002, 0.0).evolve(accuracy=1e-6), periods=10, record=3, samples=16)
