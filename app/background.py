@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
 from granchain_core import Scene
+from granchain_core.pieces import compile_piece
 
-from .compiling import COMPILER, load
+from .compiling import COMPILER
 from .jobs import Stop
 
 if TYPE_CHECKING:
@@ -35,5 +36,5 @@ class Background:
                 self._later(stop, say, "compiling")
             if not COMPILER.await_piece(scene, piece, stop):
                 return False
-            load(scene, piece)
+            compile_piece(scene, piece)
         return True

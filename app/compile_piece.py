@@ -3,8 +3,8 @@
 import json
 import sys
 
-from app.compiling import load
 from granchain_core import Scene
+from granchain_core.pieces import compile_piece
 
 if __name__ == "__main__":
-    load(Scene.from_json(json.load(sys.stdin)), sys.argv[1])
+    compile_piece(Scene.from_json(json.load(sys.stdin)), sys.argv[1])

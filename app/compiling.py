@@ -14,10 +14,8 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 
 from granchain_core import Scene
-from granchain_core.accuracy import compiled
-from granchain_core.observe.compiled import OBSERVER_PIECE, compile_observer
-from granchain_core.orbits.compiled import BRANCH_PIECE, ORBIT_PIECE, compile_branch, compile_orbit
-from granchain_core.warm import is_warm, structure, warm
+from granchain_core.pieces import compile_piece
+from granchain_core.warm import is_warm, structure
 
 from .jobs import BACKGROUND, Stop
 
@@ -31,20 +29,6 @@ _LOOK = 0.05
 _ROOT = Path(__file__).resolve().parent.parent
 
 
-def load(scene: Scene, piece: str) -> None:
-    """Have one piece of the kernels in this process: from the cache, or compiled here where it is not there."""
-    if piece in compiled.PIECES:
-        compiled.compile_piece(scene, piece)
-    elif piece == ORBIT_PIECE:
-        compile_orbit(scene)
-    elif piece == BRANCH_PIECE:
-        compile_branch(scene)
-    elif piece == OBSERVER_PIECE:
-        compile_observer(scene)
-    else:
-        warm(scene, (piece,))
-
-
 def _compile(scene: Scene, piece: str) -> None:
     """Compile in another process; where none can be started, in this one."""
     command = [sys.executable, "-m", "app.compile_piece", piece]
@@ -52,7 +36,7 @@ def _compile(scene: Scene, piece: str) -> None:
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
     except (OSError, subprocess.CalledProcessError):
-        load(scene, piece)
+        compile_piece(scene, piece)
 
 
 class Compiler:
@@ -102,7 +86,7 @@ class Compiler:
         for piece in (LIVE, CERTIFIED, CURVE):
             if not self.has(scene, piece):
                 self.ask(scene, piece).result()
-            load(scene, piece)
+            compile_piece(scene, piece)
 
 
 COMPILER = Compiler()

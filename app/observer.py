@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from granchain_core import Scene, Settled
 from granchain_core.observe.compiled import OBSERVER_PIECE
+from granchain_core.pieces import compile_piece
 
-from .compiling import CERTIFIED, COMPILER, load
+from .compiling import CERTIFIED, COMPILER
 from .jobs import LatestWins, Stop
 from .observer_run import ObserverRun, Step
 from .views.observer import step_message
@@ -93,7 +94,7 @@ class ObserverPage:
                 return False
         key = f"{scene.effects}{scene.N}"
         if key not in self._loaded:
-            load(scene, OBSERVER_PIECE)
+            compile_piece(scene, OBSERVER_PIECE)
             self._loaded.add(key)
         return True
 

@@ -7,8 +7,6 @@ dissipation law does, and the kernels of a new structure are compiled once per m
 from __future__ import annotations
 
 from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
 from pathlib import Path
 
 from .integrate import Engine, Setting
@@ -17,13 +15,12 @@ from .integrate.lane_block import LaneBlock, alike, can_share_lanes, scaled_stat
 from .kernels.jit import CACHE_FOLDER
 from .kernels.wide import WIDTHS
 from .lower import lower
-from .scene import Scene, scene, scene_names
+from .scene import Scene
 from .steady.lyapunov import exponents, exponents_in_pairs
 
 #: What the pieces of one structure's kernels are for; each can be compiled in its own process. Those with the energy
 #: account are for runs that are asked for by themselves, the dashboard does without.
 PIECES = ("live", "certified", "curve", "live account", "certified account")
-DASHBOARD = ("curve", "certified", "live")
 
 
 def structure(shown: Scene) -> str:
@@ -73,18 +70,3 @@ def _warm_curve(short: Scene) -> None:
         block.put(0, lowered, y, 1, look=1)
         block.run()
         exponents_in_pairs([(lowered, y)], 1, 1, new_stop())
-
-
-def _warm_piece(job: tuple[Scene, str]) -> str:
-    warm(job[0], (job[1],))
-    return f"{structure(job[0])}, {job[1]}"
-
-
-def warm_presets(workers: int = 2) -> Iterable[str]:
-    """Compile what the dashboard needs for the presets, in `workers` processes; yields what has been finished."""
-    seen: dict[str, Scene] = {}
-    for name in scene_names():
-        seen.setdefault(structure(scene(name)), scene(name))
-    jobs = [(one, piece) for piece in DASHBOARD for one in seen.values()]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(_warm_piece, jobs)

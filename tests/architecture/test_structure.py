@@ -19,6 +19,7 @@ LAYERS = {
     "budget": {"errors", "scene", "lower", "integrate"},
     "run": {"errors", "scene", "kernels", "integrate", "result", "steady", "budget"},
     "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "lower", "scene", "steady"},
+    "pieces": {"scene", "warm", "orbits", "observe", "accuracy"},
     "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "warm"},
     "diagram": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits"},
     "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
