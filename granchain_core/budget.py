@@ -60,8 +60,9 @@ def estimate(scene: Scene, setting: Setting, periods: int, samples: int, record:
 
 def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
     beads, steps, seconds = lowered.beads, 0.0, 0.0
-    twice = _share(setting) + _share(setting.finer())
-    for one in (setting, setting.finer()):
+    finer = setting.finer_than(lowered, samples)
+    twice = _share(setting) + _share(finer)
+    for one in (setting, finer):
         if METHODS[one.method].adaptive:
             fixed, each, rate, power = _ADAPTIVE[one.method]
             # with contacts open most of the time, as at low frequency, steps are longer
@@ -71,7 +72,7 @@ def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, re
             (fixed, each), count = _STEP[one.method], float(periods * one.steps_per_period(lowered, samples))
         steps += count
         seconds += count * (fixed + each * (beads + 1))
-    often = np.sqrt(1.0 + _share(setting.finer().finer()) / twice)
+    often = np.sqrt(1.0 + _share(finer.finer_than(lowered, samples)) / twice)
     steps, seconds = steps * often, seconds * often
     seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
     return Estimate(seconds * slowness(), steps)

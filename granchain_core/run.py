@@ -15,7 +15,7 @@ import numpy as np
 
 from .budget import BUDGET, check_budget
 from .errors import BadInput
-from .integrate import METHODS, Engine, Setting, State, method_for
+from .integrate import Engine, Setting, State, method_for
 from .integrate.engine import Counts, new_stop, rest
 from .integrate.methods import setting_of, typical_error
 from .kernels.sampling import Samples
@@ -72,7 +72,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     total, status = Counts(), "accuracy-not-reached"
     before = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
     while True:
-        setting, lap = _finer(setting, before), time.perf_counter()
+        setting, lap = setting.finer_than(before.engine.lowered, samples), time.perf_counter()
         now = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
         error = _stated(setting, scene, _difference(now, before))
         lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
@@ -133,15 +133,6 @@ def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int
     total.array += engine.counts.array
     strobes.append(_strobes(rows, samples)[1:])
     return _Attempt(engine, rows, np.concatenate(strobes)[-_KEPT - 1 :])
-
-
-def _finer(setting: Setting, before: _Attempt) -> Setting:
-    """The next finer setting that takes other steps: where samples set their number, twice as fine is the same one."""
-    finer, engine = setting.finer(), before.engine
-    if not METHODS[setting.method].adaptive:
-        while finer.steps_per_period(engine.lowered, engine.samples) == engine.grid:
-            finer = finer.finer()
-    return finer
 
 
 def _strobes(rows: Samples, samples: int) -> np.ndarray:

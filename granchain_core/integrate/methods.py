@@ -53,6 +53,14 @@ class Setting:
             return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST), self.tolerance / 8.0))
         return Setting(self.method, 2 * self.refine)
 
+    def finer_than(self, lowered: Lowered, samples: int) -> Setting:
+        """The next finer setting with other steps: where samples set their number, twice as fine may be as fine."""
+        finer = self.finer()
+        if not METHODS[self.method].adaptive:
+            while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):
+                finer = finer.finer()
+        return finer
+
     @property
     def finest(self) -> bool:
         """Whether rounding would eat what a finer setting could gain."""

@@ -67,7 +67,7 @@ def kernel(function):
 
 
 def part(function):
-    """Decorator for a kernel with one caller: it becomes part of its code, and is not compiled for itself as well.
+    """Decorator for a kernel called at one place: it becomes part of that code, and is not compiled for itself as well.
 
     Compiled code is linked and optimised again in every caller, up to the kernel that Python calls; of a step of the
     certified method this saves a fifth of the compiler's time.

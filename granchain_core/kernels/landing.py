@@ -58,7 +58,7 @@ def land(method, slots, beta, time, h, y, work, path, tangent, c, counts):
     return h
 
 
-@part
+@kernel
 def shrunk(h, error):
     """A smaller step after one with too large an error."""
     return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))

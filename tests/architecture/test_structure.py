@@ -76,3 +76,30 @@ def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:
     from granchain_core.kernels import jit
 
     assert jit._sources_hash() in jit.CACHE_FOLDER.name
+
+
+def test_a_part_is_called_at_one_place() -> None:
+    """In two it would be compiled twice, in place of once for itself. Steps in t and steps of the flow have each one."""
+    parts: set[str] = set()
+    calls: list[tuple[str, str]] = []
+    for path in CORE:
+        if "kernels" not in path.parts:
+            continue
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef) and any(ast.unparse(d) == "part" for d in node.decorator_list):
+                parts.add(f"{path.stem}.{node.name}")
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                calls.append((_where_from(tree, path.stem, node.func.id), path.stem))
+    assert len(parts) > 30
+    assert [call for call in calls if call[0] in parts and calls.count(call) > 1] == []
+    callers = {name: [caller for called, caller in calls if called == name] for name in parts}
+    assert all(1 <= len(found) <= 2 for found in callers.values()), callers
+
+
+def _where_from(tree: ast.Module, here: str, name: str) -> str:
+    """Module and name of a function called `name` in a module of kernels."""
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom) and any((alias.asname or alias.name) == name for alias in node.names):
+            return f"{(node.module or '').split('.')[-1]}.{name}"
+    return f"{here}.{name}"
