@@ -10,7 +10,7 @@ import numpy as np
 from .dop853_tableau import STAGES
 from .effects.preload import overlap
 from .flow_step import attempt_in_time, first_change
-from .jit import part
+from .jit import kernel, part
 from .root_time import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 from .sampling import DONE, NOT_FINITE, STEP_TOO_SMALL
 
