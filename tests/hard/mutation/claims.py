@@ -37,8 +37,9 @@ STEADY = (
 STATED = (
     Mutant("error-factor", _RUN, "_CAUTION, _UNEVEN = 1.5, 3.0", "_CAUTION, _UNEVEN = 0.015, 0.03",
            "the stated error is a hundredth of what was seen", k.HONESTY),
-    Mutant("same-steps-compared", _RUN, "while finer.steps_per_period(engine.lowered, engine.samples) == engine.grid:",
-           "while finer.steps_per_period(engine.lowered, engine.samples) < engine.grid:",
+    Mutant("same-steps-compared", _METHODS,
+           "while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):",
+           "while finer.steps_per_period(lowered, samples) < self.steps_per_period(lowered, samples):",
            "two computations by the same steps are compared", k.SAME_STEPS),
     Mutant("error-without-floor", _RUN, "* difference, typical_error(setting))", "* difference, 0.0)",
            "an error of exactly nothing is stated", k.SAME_STEPS),
