@@ -20,7 +20,7 @@ from .kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
-from .kernels.effects.tension import NoTension
+from .kernels.effects.tension import no_tension
 from .kernels.motion import Forces, Slots
 from .scene import Scene
 
@@ -87,7 +87,7 @@ class Lowered:
         """The same with flags of its own, one for each contact, where there are any: an engine writes into them."""
         if self.slots.tension is None:
             return self
-        return replace(self, slots=self.slots._replace(tension=NoTension(np.zeros(self.row - 1, dtype=np.uint8))))
+        return replace(self, slots=self.slots._replace(tension=no_tension(self.row - 1)))
 
     def forces(self) -> Forces:
         """A workspace for one evaluation."""
@@ -142,7 +142,7 @@ def lower(scene: Scene, balance: bool = False) -> Lowered:
     slots = Slots(
         chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K),
         dissipation=_dissipation(scene, scales, mass),
-        tension=NoTension(np.zeros(scene.N + 1, dtype=np.uint8)) if scene.cuts_tension else None,
+        tension=no_tension(scene.N + 1) if scene.cuts_tension else None,
         foundation=Foundation(scene.kappa) if scene.k > 0 else None,
         preload=Preload(scene.static_overlap() / scales.length) if scene.F0 > 0 else None,
         driver=Harmonic(1.0, beta),

@@ -13,7 +13,7 @@ from ..kernels.effects.contact import Chain
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.preload import Preload
-from ..kernels.effects.tension import NoTension
+from ..kernels.effects.tension import no_tension
 from ..kernels.sampling import Samples
 from ..scene import Scene, scene
 
@@ -50,7 +50,7 @@ class Bench:
         slots = lowered.slots._replace(
             chain=Chain(masses, springs), dissipation=LinearDashpot(0.0) if law is None else law,
             driver=Harmonic(0.0, lowered.beta) if ends[0] > 0.0 else None,
-            tension=NoTension(np.zeros(beads + 1, dtype=np.uint8)) if cut else None,
+            tension=no_tension(beads + 1) if cut else None,
             preload=None if static is None else Preload(np.array(static, dtype=float)))
         self.engine.lowered = replace(lowered, slots=slots)
         self.engine.work = self.engine.work._replace(forces=self.engine.lowered.forces())

@@ -11,14 +11,14 @@ import numpy as np
 
 from .bracket import between, narrowed
 from .dop853 import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
-from .effects.balance import add_loss, slack_loss
+from .effects.balance import add_to_account, slack_loss
 from .effects.driver import driver_displacement
 from .effects.preload import overlap
-from .effects.tension import NoTension, let_go
+from .effects.tension import NoTension
 from .jit import kernel, part, term
 from .motion import copy
 from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
-from .slackening import begin_open, first_kink, note_slack
+from .slackening import first_kink, leave_slack, note_slack
 
 #: A step is aimed to end this overlap behind the event, some roundings of the largest displacement, and lands within
 #: so many times that: the moment of a contact is then as exact as its speed lets it be.
@@ -217,8 +217,7 @@ def look_inside(slots, beta, t, h, at, y, work):
     x = min(1.0, (at - t) / h)
     for i in range(y.size):
         work.probe[i] = dense_value(work.dense, y[i], x, i)
-    add_loss(slots.balance, work.probe, slack_loss(slots.balance, slots, y, work.probe))
-    let_go(slots.tension, slots, work.probe)
+    add_to_account(slots.balance, work.probe, 0.0, slack_loss(slots.balance, slots, y, work.probe))
     evaluate(slots, beta, at, work.probe, work.slope, work.forces)
 
 
@@ -265,17 +264,15 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
                     keep(slots, row, work.probe, work.slope, work.forces.e, samples)
                     row += 1
         copy(work.end, y)
-        add_loss(slots.balance, y, lost)
+        copy(work.k[STAGES], work.k[0])
+        add_to_account(slots.balance, y, 0.0, lost)
+        changed = leave_slack(slots.tension, slots, y, work.k[0], work.forces)
         new_scale(y, work, m)
         t = end
         if end == period:
             t, g, events = 0.0, 0, 0
-            let_go(slots.tension, slots, y)
+        if changed or end == period:
             evaluate(slots, beta, t, y, work.k[0], work.forces)
-        else:
-            copy(work.k[STAGES], work.k[0])
-            if contact >= 0:
-                begin_open(slots.tension, slots, beta, t, y, work)
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, row if every > 0 else done
     return DONE, row if every > 0 else done

@@ -21,7 +21,7 @@ from .effects.driver import driver_displacement, driver_velocity
 from .effects.foundation import foundation_energy, pull_back
 from .effects.preload import overlap
 from .effects.pushed import hand_on_force, hand_on_primitive
-from .effects.tension import cut_tension, keep_slack_primitive
+from .effects.tension import cut_tension, keep_slack_primitive, unless_slack
 from .jit import kernel
 
 
@@ -71,7 +71,7 @@ def motion(slots, u0, v0, y, dy, forces):
 def contact_force(slots, y, dy, e, c):
     """Total force of contact c from the last evaluation of `motion`."""
     d = positive_part(overlap(slots.preload, y, c))
-    return e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1])
+    return unless_slack(slots.tension, c, e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1]))
 
 
 @kernel
@@ -82,17 +82,26 @@ def copy(source, target):
 
 
 @kernel
+def write_w(slots, y, dy, forces):
+    """The variables w of state y from the velocities in dy."""
+    m = slots.chain.inverse_mass.size
+    for c in range(m - 1):
+        keep_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
+    hand_on_primitive(slots.driver, slots, y, forces.G)
+    for i in range(1, m - 1):
+        y[m + i] = shifted(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
+
+
+@kernel
 def place(slots, theta, y, dy, forces, from_velocity):
     """Set the driver and the slope at drive phase θ; with from_velocity the second row of y holds v and becomes w."""
     m = slots.chain.inverse_mass.size
     u0 = driver_displacement(slots.driver, theta)
     y[0] = u0
     if from_velocity:
-        for c in range(m - 1):
-            keep_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
-        hand_on_primitive(slots.driver, slots, y, forces.G)
         for i in range(1, m - 1):
-            y[m + i] = shifted(slots.dissipation, slots.chain.inverse_mass, y[m + i], forces.G, i)
+            dy[i] = y[m + i]
+        write_w(slots, y, dy, forces)
     motion(slots, u0, driver_velocity(slots.driver, theta), y, dy, forces)
 
 

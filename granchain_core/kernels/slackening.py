@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from .bracket import between, narrowed
 from .dop853 import STAGES, dense_value, evaluate, prepare_dense
+from .effects.balance import add_to_account, ends_of
 from .effects.contact import positive_part
 from .effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from .effects.preload import overlap
-from .effects.tension import NoTension, let_go
+from .effects.tension import NoTension, slacken
 from .jit import kernel, part, term
+from .motion import write_w
 from .simd_math import root
 
 #: A kink nearer to an end of the step than this changes the motion by less than rounding, its square.
@@ -41,50 +43,44 @@ def _(law, stiffness, d, rate):
 
 
 @term
-def jumps(law):
-    """Whether what is added to cut a contact's pull ends with a jump at δ = 0. Absent: nothing is added."""
-    return False
-
-
-@jumps.of(LinearDashpot)
-def _(law):
-    return True
-
-
-@jumps.of(Tsuji)
-@jumps.of(KuwabaraKono)
-def _(law):
-    return False
-
-
-@term
 def note_slack(tension, slots, beta, t, y, work):
     """Note which contacts are slack at the start of a step, whose account then has another slope. Absent: none is."""
 
 
 @note_slack.of(NoTension)
 def _(tension, slots, beta, t, y, work):
-    if not jumps(slots.dissipation):
-        return
-    changed = False
+    found = False
     for c in range(tension.slack.size):
         d, rate = overlap(slots.preload, y, c), work.k[0, c] - work.k[0, c + 1]
-        slack = d > 0.0 and push(slots.dissipation, slots.chain.stiffness[c], d, rate) < 0.0
-        changed = changed or slack != (tension.slack[c] != 0)
-        tension.slack[c] = 1 if slack else 0
-    if changed:
+        if d > 0.0 and push(slots.dissipation, slots.chain.stiffness[c], d, rate) < 0.0:
+            slacken(tension, slots, y, c)
+            found = True
+    if found:
         evaluate(slots, beta, t, y, work.k[0], work.forces)
 
 
 @term
-def begin_open(tension, slots, beta, t, y, work):
-    """Take the slope anew behind a step that may have ended with a slack contact open. Absent: there is none."""
+def leave_slack(tension, slots, y, dy, forces):
+    """End a step's slack at its end: the velocities in dy stay, w and the account go over to the law's own G.
+
+    Returns whether anything changed, and the slope with it. Absent: no contact is slack.
+    """
+    return False
 
 
-@begin_open.of(NoTension)
-def _(tension, slots, beta, t, y, work):
-    let_go(tension, slots, y)
-    evaluate(slots, beta, t, y, work.k[0], work.forces)
+@leave_slack.of(NoTension)
+def _(tension, slots, y, dy, forces):
+    found = False
+    for c in range(tension.slack.size):
+        found = found or tension.slack[c] != 0
+    if found:
+        work, lost = ends_of(slots.balance, slots, y, dy)
+        for c in range(tension.slack.size):
+            tension.slack[c] = 0
+        write_w(slots, y, dy, forces)
+        own_work, own_lost = ends_of(slots.balance, slots, y, dy)
+        add_to_account(slots.balance, y, work - own_work, lost - own_lost)
+    return found
 
 
 @kernel
@@ -149,8 +145,11 @@ def _(tension, slots, beta, t, h, y, work, until, counts):
         if x * h > _NEAR:
             if x < first and x * h < until * h - _NEAR:
                 first = x
-        elif jumps(slots.dissipation) and (tension.slack[c] != 0) == (f0 < 0.0) == (f1 > 0.0):
-            tension.slack[c] = 0 if f1 > 0.0 else 1
+        elif (tension.slack[c] != 0) == (f0 < 0.0) == (f1 > 0.0):
+            if f1 > 0.0:
+                tension.slack[c] = 0
+            else:
+                slacken(tension, slots, y, c)
             turned = True
     if turned:
         evaluate(slots, beta, t, y, k[0], work.forces)

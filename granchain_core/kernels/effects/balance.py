@@ -15,10 +15,9 @@ from typing import NamedTuple
 
 from ..jit import kernel, term
 from .contact import elastic_force, positive_part
-from .dissipation import primitive
 from .driver import driver_acceleration
 from .preload import overlap
-from .tension import lost_in, not_yet_lost, slack_overlap
+from .tension import contact_primitive, lost_in, unless_slack
 
 
 class Balance(NamedTuple):
@@ -40,8 +39,9 @@ def _(balance, slots, y, dy, e):
     lost, work = 0.0, 0.0
     for c in range(e.size):
         d = positive_part(overlap(slots.preload, y, c))
-        G = primitive(slots.dissipation, slack_overlap(slots.tension, slots, y, c, d))
-        cut = e[c] - not_yet_lost(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
+        G = contact_primitive(slots.tension, slots, y, c, d)
+        # what a slack contact loses of its elastic energy is known at the step's end: `lost_in`
+        cut = e[c] - unless_slack(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
         lost += cut * (dy[c] - dy[c + 1]) - G * (dy[m + c] - dy[m + c + 1])
         if c == 0:
             work = e[0] * dy[0] - G * acceleration
@@ -62,12 +62,13 @@ def _(balance, slots, y, end):
 
 
 @term
-def add_loss(balance, y, lost):
-    """Add to the energy lost in y. Absent: there is no account."""
+def add_to_account(balance, y, work, lost):
+    """Add to the work and to the energy lost in y. Absent: there is no account."""
 
 
-@add_loss.of(Balance)
-def _(balance, y, lost):
+@add_to_account.of(Balance)
+def _(balance, y, work, lost):
+    y[y.size - 2] += work
     y[y.size - 1] += lost
 
 
@@ -77,7 +78,7 @@ def account_ends(slots, y, dy):
     m = slots.chain.inverse_mass.size
     lost, work = 0.0, 0.0
     for c in range(m - 1):
-        G = primitive(slots.dissipation, positive_part(overlap(slots.preload, y, c)))
+        G = contact_primitive(slots.tension, slots, y, c, positive_part(overlap(slots.preload, y, c)))
         left = dy[0] if c == 0 else y[m + c]
         approach = dy[c] - dy[c + 1]
         gamma = approach - (left - y[m + c + 1])
@@ -85,3 +86,14 @@ def account_ends(slots, y, dy):
         if c == 0:
             work = G * dy[0]
     return work, lost
+
+
+@term
+def ends_of(balance, slots, y, dy):
+    """`account_ends` where there is an account. Absent: nothing is left."""
+    return 0.0, 0.0
+
+
+@ends_of.of(Balance)
+def _(balance, slots, y, dy):
+    return account_ends(slots, y, dy)

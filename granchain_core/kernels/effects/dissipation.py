@@ -86,6 +86,16 @@ def keep_primitive(law, G, c, d):
 
 
 @term
+def put_primitive(law, G, c, value):
+    """Store another value for G of contact c; without dissipation there is no array to store it in."""
+
+
+@term
+def hand_primitive(law, G, source, target):
+    """G of one contact is that of another too; without dissipation there is none."""
+
+
+@term
 def velocity(law, inverse_mass, w, G, i):
     """v_i = w_i + (G_{i-1} − G_i)/m_i, the inverse of the change of variables."""
     return w
@@ -144,6 +154,14 @@ for _law in LAWS:
     @keep_primitive.of(_law)
     def _(law, G, c, d):
         G[c] = primitive(law, d)
+
+    @put_primitive.of(_law)
+    def _(law, G, c, value):
+        G[c] = value
+
+    @hand_primitive.of(_law)
+    def _(law, G, source, target):
+        G[target] = G[source]
 
     @velocity.of(_law)
     def _(law, inverse_mass, w, G, i):

@@ -20,10 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import term
-from .contact import positive_part
-from .dissipation import keep_primitive
+from .dissipation import hand_primitive
 from .driver import FAR, Harmonic, driver_acceleration, driver_displacement, driver_velocity
-from .preload import overlap
 
 
 class Sampled(NamedTuple):
@@ -84,7 +82,7 @@ def _(driver, slots, y, G):
 
 @hand_on_primitive.of(Echo)
 def _(driver, slots, y, G):
-    keep_primitive(slots.dissipation, G, driver.contact, positive_part(overlap(slots.preload, y, 0)))
+    hand_primitive(slots.dissipation, G, 0, driver.contact)
 
 
 @term

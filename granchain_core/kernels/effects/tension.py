@@ -2,12 +2,14 @@
 
 Equation   F = max(0, K δ^{3/2} + g(δ) δ̇)   for δ > 0
 Source     the alternative to the paper's law, in which the gated dashpot pulls while the contact opens
-Values     slack (N+1,): 1 for a contact that touches without force throughout the present step, else 0
+Values     slack (N+1,): 1 for a contact that touches without force throughout the present step, else 0; then its
+           G is offset + slope·δ, both (N+1,)
 Terms      cut_tension adds what is missing to F ≥ 0 to the elastic forces, contact by contact, so that the
            w-equation m ẇ = Σ e stays the one place where forces act
-Slack      Of the paper's dashpot G = λδ ends with a kink and what is added, −λδ̇, with a jump at δ = 0, though the force
-           is zero before and after. Both are gone on with through δ = 0 in a step that begins slack: the force stays
-           zero, and the step has no kink to see.
+Slack      The force is zero, before δ = 0 and behind it, but what is added to keep it so, −g(δ)δ̇, ends with a jump
+           (linear) or with an infinite slope, and so does g. For the length of a step G goes on straight instead, with
+           its value and slope at the start: the right-hand side is smooth, whatever the law. At the step's end
+           w is brought back to the law's own G (`leave_slack`).
 """
 
 from __future__ import annotations
@@ -16,9 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import term
+from ..jit import kernel, term
 from .contact import elastic_energy, positive_part
-from .dissipation import damping, keep_primitive
+from .dissipation import damping, primitive, put_primitive
 from .preload import overlap
 
 
@@ -26,18 +28,47 @@ class NoTension(NamedTuple):
     """Slot of the cut."""
 
     slack: np.ndarray
+    slope: np.ndarray
+    offset: np.ndarray
+
+
+def no_tension(contacts: int) -> NoTension:
+    """A slot for so many contacts, none of them slack."""
+    return NoTension(np.zeros(contacts, dtype=np.uint8), np.zeros(contacts), np.zeros(contacts))
+
+
+@kernel
+def slacken(tension, slots, y, c):
+    """Have contact c, which touches without force in state y, go on so for a step."""
+    d = positive_part(overlap(slots.preload, y, c))
+    tension.slack[c] = 1
+    tension.slope[c] = damping(slots.dissipation, d)
+    tension.offset[c] = primitive(slots.dissipation, d) - tension.slope[c] * d
+
+
+@term
+def contact_primitive(tension, slots, y, c, d):
+    """G of contact c, whose overlap is d if it touches. Absent: the law's."""
+    return primitive(slots.dissipation, d)
+
+
+@contact_primitive.of(NoTension)
+def _(tension, slots, y, c, d):
+    if tension.slack[c] != 0:
+        return tension.offset[c] + tension.slope[c] * overlap(slots.preload, y, c)
+    return primitive(slots.dissipation, d)
 
 
 @term
 def keep_slack_primitive(tension, slots, y, G):
-    """Let G of slack contacts go on below δ = 0. Absent: no contact is slack."""
+    """Let G of slack contacts go on straight, below δ = 0 too. Absent: no contact is slack."""
 
 
 @keep_slack_primitive.of(NoTension)
 def _(tension, slots, y, G):
     for c in range(tension.slack.size):
         if tension.slack[c] != 0:
-            keep_primitive(slots.dissipation, G, c, overlap(slots.preload, y, c))
+            put_primitive(slots.dissipation, G, c, contact_primitive(tension, slots, y, c, 0.0))
 
 
 @term
@@ -48,33 +79,24 @@ def cut_tension(tension, slots, y, dy, e):
 @cut_tension.of(NoTension)
 def _(tension, slots, y, dy, e):
     for c in range(e.size):
-        slack = tension.slack[c] != 0
-        d = 1.0 if slack else positive_part(overlap(slots.preload, y, c))  # a slack contact's g is no function of δ
-        damped = damping(slots.dissipation, d) * (dy[c] - dy[c + 1])
-        if slack or e[c] + damped < 0.0:
-            e[c] = -damped
+        rate = dy[c] - dy[c + 1]
+        if tension.slack[c] != 0:
+            e[c] = -tension.slope[c] * rate
+        else:
+            damped = damping(slots.dissipation, positive_part(overlap(slots.preload, y, c))) * rate
+            if e[c] + damped < 0.0:
+                e[c] = -damped
 
 
 @term
-def slack_overlap(tension, slots, y, c, d):
-    """The overlap that G of contact c belongs to. Absent: [δ]_+, which is d."""
-    return d
+def unless_slack(tension, c, force):
+    """The force of contact c, or 0 where it is slack. Absent: none is."""
+    return force
 
 
-@slack_overlap.of(NoTension)
-def _(tension, slots, y, c, d):
-    return overlap(slots.preload, y, c) if tension.slack[c] != 0 else d
-
-
-@term
-def not_yet_lost(tension, c, elastic):
-    """The part of contact c's elastic force whose work counts as it is done. Absent: all of it."""
-    return elastic
-
-
-@not_yet_lost.of(NoTension)
-def _(tension, c, elastic):
-    return 0.0 if tension.slack[c] != 0 else elastic  # what a slack contact loses is known at the step's end: `lost_in`
+@unless_slack.of(NoTension)
+def _(tension, c, force):
+    return 0.0 if tension.slack[c] != 0 else force
 
 
 @term
@@ -92,15 +114,3 @@ def _(tension, slots, y, end):
             lost += elastic_energy(stiffness, positive_part(overlap(slots.preload, y, c)))
             lost -= elastic_energy(stiffness, positive_part(overlap(slots.preload, end, c)))
     return lost
-
-
-@term
-def let_go(tension, slots, y):
-    """Contacts that are open in state y are not slack but open. Absent: no contact is slack."""
-
-
-@let_go.of(NoTension)
-def _(tension, slots, y):
-    for c in range(tension.slack.size):
-        if not overlap(slots.preload, y, c) > 0.0:
-            tension.slack[c] = 0
