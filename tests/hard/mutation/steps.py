@@ -14,7 +14,7 @@ MOTION = (
            "for c in range(m - 2):\n        d = positive_part(overlap(slots.preload, y, c))\n        e[c] =",
            "the wall's contact is not summed", k.MOTION),
     Mutant("contact-force-elastic-only", _MOTION, "e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1]))",
-           "return e[c]", "forces are reported without their damping", k.MOTION),
+           "e[c])", "forces are reported without their damping", k.MOTION),
     Mutant("foundation-over-first-mass", _MOTION,
            "inverse_mass[i] * pull_back(slots.foundation, e[i - 1] - e[i], y[i])",
            "pull_back(slots.foundation, inverse_mass[i] * (e[i - 1] - e[i]), y[i])",
