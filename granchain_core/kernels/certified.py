@@ -170,7 +170,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     """
     h = min(clock[0], method.largest_step, limit - t)
     note_slack(slots.tension, slots, beta, t, y, work)
-    aimed, kinked, factor = -1, False, 1.0
+    aimed, kinked, again, factor = -1, False, False, 1.0
     while True:
         error = attempt(method, slots, beta, t, h, y, work)
         counts[1] += STAGES
@@ -187,9 +187,9 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
         if aimed >= 0 or kinked:
             break
         aimed, x = first_event(slots, beta, t, h, y, work, counts)
-        kink = first_kink(slots.tension, slots, beta, t, h, y, work, min(x, 1.0), counts)
+        kink = first_kink(slots.tension, slots, beta, t, h, y, work, min(x, 1.0), counts, again)
         if kink == 0.0:
-            aimed = -1
+            aimed, again = -1, True
             continue
         if kink < 1.0:
             clock[0] = min(clock[0], h * factor)

@@ -109,28 +109,27 @@ def push_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
 
 
 @term
-def first_kink(tension, slots, beta, t, h, y, work, until, counts):
+def first_kink(tension, slots, beta, t, h, y, work, until, counts, again):
     """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
 
     0 where the step is to be tried again because rounding had contacts begin on the wrong side of a kink: all of them
-    change sides at once, or a symmetric motion would lose its symmetry, and none changes back. Absent: forces have no
-    such kink.
+    change sides at once, or a symmetric motion would lose its symmetry; and not if it is tried `again` already: where F
+    is rounding, either side may contradict itself. Absent: forces have no such kink.
     """
     return 2.0
 
 
 @first_kink.of(NoTension)
-def _(tension, slots, beta, t, h, y, work, until, counts):
+def _(tension, slots, beta, t, h, y, work, until, counts, again):
     first, ready, turned, k = 2.0, False, False, work.k
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)
         if not d0 > 0.0:
             continue
-        stiffness = slots.chain.stiffness[c]
-        f0 = push(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
+        slack, stiffness = tension.slack[c] != 0, slots.chain.stiffness[c]
         d1 = positive_part(overlap(slots.preload, work.end, c))
         f1 = push(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
-        if until == 1.0 and (f0 > 0.0) == (f1 > 0.0):
+        if until == 1.0 and slack != (f1 > 0.0):
             continue
         if not ready:
             prepare_dense(slots, beta, t, h, y, work)
@@ -139,14 +138,16 @@ def _(tension, slots, beta, t, h, y, work, until, counts):
         if until < 1.0:
             f1 = push_in_step(slots, beta, t, h, y, work, c, until)
             counts[1] += 1
-            if (f0 > 0.0) == (f1 > 0.0):
+            if slack != (f1 > 0.0):
                 continue
-        x = push_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
+        f0, x = push(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1]), 0.0
+        if f0 * f1 < 0.0:  # else F is rounding at the start
+            x = push_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
         if x * h > _NEAR:
             if x < first and x * h < until * h - _NEAR:
                 first = x
-        elif (tension.slack[c] != 0) == (f0 < 0.0) == (f1 > 0.0):
-            if f1 > 0.0:
+        elif not again:
+            if slack:
                 tension.slack[c] = 0
             else:
                 slacken(tension, slots, y, c)
