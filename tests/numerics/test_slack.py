@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from granchain_core import Scene, scene
+from granchain_core import Scene, State, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.kernels.effects.dissipation import damping
 
 LAWS = ("linear", "tsuji", "kuwabara-kono")
 SAMPLES = 4096
@@ -46,3 +47,21 @@ def test_a_slack_contact_moves_as_if_it_were_open(law: str) -> None:
     static = apart.static_overlap()[1] / engine.lowered.scales.length
     overlap = kept.displacement[:, 0] - kept.displacement[:, 1] + static
     assert overlap[0] > 0.0 > overlap[-1]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_start_on_the_kink_may_be_taken_for_either_side(law: str) -> None:
+    """Where F = 0 up to rounding its sign says nothing: starts a billionth to either side lead to the same motion."""
+    rng = np.random.default_rng(3)
+    for preload in 10.0 ** rng.uniform(-3.0, 0.0, 30):
+        chain = scene("sec2").evolve(N=2, f=300.0, A0=1e-9, F0=preload, D=800.0, dissipation=law, tension="cut")
+        engine = Engine(chain, Setting("dop853", 1.0, 1e-12), SAMPLES)
+        scales, slots = engine.lowered.scales, engine.lowered.slots
+        overlap = slots.preload.static[1]
+        kink = slots.chain.stiffness[1] * overlap**1.5 / damping(slots.dissipation, overlap)
+        ends = []
+        for factor in (1.0 - 1e-9, 1.0, 1.0 + 1e-9):
+            engine.start(State(np.zeros(2), np.array([0.0, factor * kink]) * scales.velocity))
+            ends.append(engine.record(SAMPLES // 256).displacement)
+        largest = np.abs(ends[1]).max()
+        assert max(np.abs(end - ends[1]).max() for end in ends) / largest < 1e-8
