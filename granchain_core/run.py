@@ -27,9 +27,9 @@ from .steady.regime import Regime, find_period, irregular
 
 #: Most periods in all and most recorded rows of one run.
 MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
-#: A motion whose computations differ by more than this has no error estimate worth the name: then an error of all of it
-#: is stated at least, since either may be wherever chaos leads.
-_LOST, _ALL = 0.3, 1.0
+#: A motion whose computations differ by more than this has no error estimate worth the name: then twice all of it is
+#: stated at least, since either may be wherever chaos leads, to the other side too.
+_LOST, _ALL = 0.3, 2.0
 #: What the difference of two computations is multiplied by for a method whose order is even across contact events, and
 #: for others.
 _CAUTION, _UNEVEN = 1.5, 3.0

@@ -19,6 +19,8 @@ from .simd_math import root
 
 #: A kink nearer to an end of the step than this changes the motion by less than rounding, its square.
 _NEAR = 1e-8
+#: A contact whose F/g is a smaller part of the largest velocity is at rest ahead of a wave: its sign is rounding.
+_STILL = 1e-15
 
 
 @term
@@ -52,7 +54,7 @@ def _(tension, slots, beta, t, y, work):
     found = False
     for c in range(tension.slack.size):
         d, rate = overlap(slots.preload, y, c), work.k[0, c] - work.k[0, c + 1]
-        if d > 0.0 and push(slots.dissipation, slots.chain.stiffness[c], d, rate) < 0.0:
+        if d > 0.0 and push(slots.dissipation, slots.chain.stiffness[c], d, rate) < -_STILL * work.scale[1]:
             slacken(tension, slots, y, c)
             found = True
     if found:
@@ -121,15 +123,16 @@ def first_kink(tension, slots, beta, t, h, y, work, until, counts, again):
 
 @first_kink.of(NoTension)
 def _(tension, slots, beta, t, h, y, work, until, counts, again):
-    first, ready, turned, k = 2.0, False, False, work.k
+    first, ready, turned, k, still = 2.0, False, False, work.k, _STILL * work.scale[1]
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)
         if not d0 > 0.0:
             continue
         slack, stiffness = tension.slack[c] != 0, slots.chain.stiffness[c]
         d1 = positive_part(overlap(slots.preload, work.end, c))
+        f0 = push(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
         f1 = push(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
-        if until == 1.0 and slack != (f1 > 0.0):
+        if max(abs(f0), abs(f1)) < still or (until == 1.0 and slack != (f1 > 0.0)):
             continue
         if not ready:
             prepare_dense(slots, beta, t, h, y, work)
@@ -138,9 +141,9 @@ def _(tension, slots, beta, t, h, y, work, until, counts, again):
         if until < 1.0:
             f1 = push_in_step(slots, beta, t, h, y, work, c, until)
             counts[1] += 1
-            if slack != (f1 > 0.0):
+            if abs(f1) < still or slack != (f1 > 0.0):
                 continue
-        f0, x = push(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1]), 0.0
+        x = 0.0
         if f0 * f1 < 0.0:  # else F is rounding at the start
             x = push_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
         if x * h > _NEAR:
