@@ -37,16 +37,21 @@ def test_a_slack_contact_pushes_again() -> None:
     assert force[-1] > 0.5
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_a_slack_contact_moves_as_if_it_were_open(law: str) -> None:
-    """Two beads that fly apart from an overlap: neither feels the other, from the first step to the opening and on."""
-    apart = scene("sec2").evolve(N=2, f=2000.0, A0=1e-9, F0=1e-3, D=800.0, dissipation=law, tension="cut")
-    engine = Engine(replace(apart, start_velocity=((1, -2e-3), (2, 2e-3))), Setting("dop853", 1.0, 1e-10), SAMPLES)
+def test_a_slack_contact_moves_as_if_it_were_open() -> None:
+    """Two beads that fly apart from an overlap: neither feels the other, from the first step to the opening and on.
+
+    Against RK4, whose error is that of a force's fourth root at the opening, below 1e-6 with these steps.
+    """
+    apart = scene("sec2").evolve(N=2, f=2000.0, A0=1e-9, F0=1e-3, D=800.0, dissipation="tsuji", tension="cut")
+    apart = replace(apart, start_velocity=((1, -2e-3), (2, 2e-3)))
+    engine = Engine(apart, Setting("dop853", 1.0, 1e-10), SAMPLES)
     kept = engine.record(SAMPLES // 64)
     assert (kept.force[1:, 1] == 0.0).all()
     static = apart.static_overlap()[1] / engine.lowered.scales.length
     overlap = kept.displacement[:, 0] - kept.displacement[:, 1] + static
     assert overlap[0] > 0.0 > overlap[-1]
+    fine = Engine(apart, Setting("rk4", 64.0), SAMPLES).record(SAMPLES // 64)
+    assert np.abs(fine.displacement - kept.displacement).max() < 1e-6 * np.abs(kept.displacement).max()
 
 
 @pytest.mark.parametrize("law", LAWS)

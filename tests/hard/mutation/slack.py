@@ -32,7 +32,7 @@ SLACK = (
     Mutant("account-stays-slack", _SLACKENING, "add_to_account(slots.balance, y, work - own_work, lost - own_lost)", "pass",
            "the account keeps the straight G where the law's own is meant", k.CUT_LAWS),
     Mutant("slack-slope-stays", _CERTIFIED, "if changed or end == period:", "if end == period:",
-           "the slope with the straight G begins the next step", k.CUT_ORDER),
+           "the slope with the straight G begins the next step", k.SLACK),
     Mutant("slack-offset", _TENSION, "- tension.slope[c] * d\n", "+ tension.slope[c] * d\n",
            "the straight G does not begin where the law's is", k.SLACK),
     Mutant("slack-contact-pushes-nothing-away", _TENSION, "            e[c] = -tension.slope[c] * rate", "            e[c] = 0.0",
