@@ -82,7 +82,7 @@ def test_a_measurement_is_cancelled_and_its_points_stay(visit: Visit) -> None:
 
 
 def test_a_moved_knob_greys_the_picture_until_it_is_measured_again(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=2000&N=3")
+    page = visit("?v=1&scene=sec2&f=2000")
     sheet = opened(page)
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
     type_into(page, "D", "90")
@@ -122,7 +122,7 @@ def test_steps_that_blow_up_are_told(visit: Visit) -> None:
 
 
 def test_the_corner_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=2000&N=3")
+    page = visit("?v=1&scene=sec2&f=2000")
     page.get_by_role("tab", name="accuracy").click()
     expect(page.locator("#corner .point").first).to_be_visible(timeout=COMPILED)
     expect(page.locator("#corner")).to_contain_text("The cheapest way to", timeout=COMPILED)
