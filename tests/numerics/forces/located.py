@@ -46,9 +46,10 @@ _AGAIN = 3.0
 #: An error is allowed per body: `tolerance` times its largest value so far, no less than this part of the chain's.
 _QUIET = 1e-4
 #: The chain's largest values count as no less than these parts of the driver's: at rest they are zero.
-_START = 1e-6
+_START = 1e-3
 #: Shortest step, over a period's length.
-_SHORTEST = 1e-18
+_SHORTEST = 1e-22
+_ROUNDING = 1e-16
 #: How a computation ends.
 DONE, TOO_LONG, NOT_FINITE = 0, 1, 2
 #: What is counted: steps, refused steps, events and closings; then the lengths of the next step, of the last behind a
@@ -64,7 +65,10 @@ class TooLong(Exception):
 
 @njit(cache=True)
 def _scales(law, y, tolerance, most, scale):
+    """The error allowed in a step, never below what rounding makes of the overlaps and of a preload's forces."""
     n = y.size // 2
+    static = law.static.max()
+    force = law.stiffness.max() * static * np.sqrt(static)
     for row in range(2):
         largest = _START * law.beta if row == 1 else _START * min(1.0, law.beta)
         for j in range(row * n, row * n + n):
@@ -72,6 +76,7 @@ def _scales(law, y, tolerance, most, scale):
             largest = max(largest, most[j])
         for j in range(row * n, row * n + n):
             scale[j] = tolerance * max(most[j], _QUIET * largest)
+            scale[j] = max(scale[j], _ROUNDING * (static if row == 0 else force * law.inverse_mass[j - n]))
 
 
 @njit(cache=True)

@@ -1,0 +1,80 @@
+"""Program: are the largest forces within what is stated of them? Random scenes, a table, and every one where not.
+
+    python -m tests.numerics.forces run --count 1000 [--seed 1] [--few]
+    python -m tests.numerics.forces curve --count 100
+    python -m tests.numerics.forces map --count 100
+    python -m tests.numerics.forces run --seed 1 --only 17
+
+`run` is a whole motion; `curve` and `map` are steady states, eight frequencies or cells a draw. Seeds by which factors
+were chosen are not those by which they are reported.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections import Counter
+
+import numpy as np
+
+from .draw import FEW, STRUCTURES
+from .judge import COLUMNS, SILENT, Verdict, verdicts
+
+#: Bounds of λ in the table.
+_STRENGTHS = (0.0, 0.02, 0.1, 0.5, 2.0, 100.0)
+
+
+def describe(v: Verdict) -> str:
+    """One verdict in a line."""
+    s = v.scene
+    figures = "; ".join(f"{name} true {e:.2e} stated {b:.1e} known {k:.0e}"
+                        for name, e, b, k in zip(COLUMNS, v.error, v.stated, v.known, strict=True))
+    return (f"{v.kind} {v.index} λ={v.strength:.2g} {v.what}: {figures}: {s.name} f={s.f!r} A0={s.A0!r} D={s.D!r} k={s.k!r} F0={s.F0!r} N={s.N} "
+            f"{s.wall} {s.dissipation} {s.tension} accuracy={s.accuracy:g} thrown={s.start_velocity}")
+
+
+def table(found: list[Verdict]) -> str:
+    """Rows by damping and force: how many claims, how many bounded, how many wrong by more than what matters."""
+    rows = ["      λ          force    scenes  judged  claimed  bounded  wrong by > 1e-3 (all)  silent  median true/stated   worst"]
+    groups = [(f"{a:g}..{b:g}", [v for v in found if a <= v.strength < b]) for a, b in zip(_STRENGTHS, _STRENGTHS[1:], strict=False)]
+    for name, part in [*groups, ("all", found)]:
+        for c, force in enumerate(COLUMNS if part else ()):
+            sure = [v for v in part if v.judged[c]]
+            claimed = [v for v in sure if not np.isnan(v.stated[c])]
+            ratio = np.array([v.error[c] / max(v.stated[c], 1e-300) for v in claimed] or [np.nan])
+            rows.append(f"{name:>12} {force:>10} {len(part):9} {len(sure):7} {len(claimed):8} {_part([v.bounded[c] for v in claimed])} "
+                        f"{_part([v.error[c] > SILENT for v in sure]):>14} {sum(bool(v.silent[c]) for v in sure):14} "
+                        f"{np.median(ratio):15.2g} {ratio.max():12.2g}")
+    return "\n".join(rows)
+
+
+def _part(true: list) -> str:
+    return f"{np.mean(true):9.2%}" if true else "        –"
+
+
+def main() -> None:
+    """Print the table and what is not bounded."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("kind", choices=("run", "curve", "map"))
+    parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--few", action="store_true", help="only the structures of the test suite")
+    parser.add_argument("--only", type=int, help="this draw alone")
+    words = parser.parse_args()
+    began, found, others = time.perf_counter(), [], Counter[str]()
+    first, count = (0, words.count) if words.only is None else (words.only, 1)
+    for verdict in verdicts(words.kind, count, words.seed, FEW if words.few else STRUCTURES, first):
+        if isinstance(verdict, str):
+            others[verdict] += 1
+            continue
+        found.append(verdict)
+        faults = verdict.judged & ~np.isnan(verdict.stated) & (~verdict.bounded | verdict.silent)
+        if faults.any() or words.only is not None:
+            print(describe(verdict), flush=True)
+    print(f"{words.kind}, seed {words.seed}, draws {first} to {first + count - 1}: {len(found)} judged in {time.perf_counter() - began:.0f} s; "
+          + "; ".join(f"{count} {name}" for name, count in others.items()))
+    print(table(found))
+
+
+if __name__ == "__main__":
+    main()

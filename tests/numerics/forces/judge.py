@@ -1,0 +1,159 @@
+"""Verdicts on the largest forces of runs, curve points and map cells: true error against the one that is stated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from granchain_core import NumbersFailed, Scene, resonance_curve, run
+from granchain_core.diagram.cells import cell_of
+from granchain_core.diagram.compute import iter_diagram
+from granchain_core.diagram.grid import Axis, Grid
+from granchain_core.errors import OverBudget
+from granchain_core.integrate import State
+
+from .draw import Draw, draw, draw_steady, strength
+from .located import TooLong, located
+
+COLUMNS = ("input", "output", "elastic")
+#: The tolerances of the truth; how far they differ, so many times, is how well it is known.
+_TIGHT, _LOOSE, _CAUTION = 1e-12, 1e-10, 1.0
+#: Steps after which the truth is given up, and drive periods of relaxing onto an orbit.
+_MOST_STEPS, _PATIENCE = 1_000_000, 4000
+#: The relative distance from its orbit at which a point is judged.
+_ON_ORBIT = 1e-9
+#: A force wrong by more than this, plus ten times what is stated, is wrong in a way that matters.
+SILENT = 1e-3
+#: Seconds for a run.
+BUDGET = 20.0
+#: Points of one curve, columns and rows of one map.
+_POINTS, _ACROSS, _DOWN = 8, 4, 2
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One scene: the relative errors of its three forces, those stated (NaN where none is), and how well the truth is known."""
+
+    kind: str
+    index: int
+    scene: Scene
+    what: str
+    error: np.ndarray
+    stated: np.ndarray
+    known: np.ndarray
+
+    @property
+    def strength(self) -> float:
+        """λ."""
+        return strength(self.scene)
+
+    @property
+    def judged(self) -> np.ndarray:
+        """Columns whose truth is known better than what is stated of them, or than what matters where nothing is."""
+        return self.known < 0.3 * np.where(np.isnan(self.stated), SILENT, np.maximum(self.stated, 1e-9))
+
+    @property
+    def bounded(self) -> np.ndarray:
+        """Columns that are within what is stated."""
+        return self.error <= self.stated + 3.0 * self.known
+
+    @property
+    def silent(self) -> np.ndarray:
+        """Columns that are wrong in a way that matters."""
+        return self.error > SILENT + 10.0 * np.nan_to_num(self.stated) + 3.0 * self.known
+
+
+def apart(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Differences relative to b; 0 where both are 0, infinite where only b is."""
+    a, b = np.maximum(a, 0.0), np.maximum(b, 0.0)  # an open contact has no force, not less than none
+    return np.where(a == b, 0.0, np.abs(a - b) / np.where(b > 0.0, b, 1e-300))
+
+
+def judge_run(drawn: Draw) -> Verdict | str:
+    """The verdict on a whole motion, or why there is none."""
+    chosen = drawn.scene
+    try:
+        found = run(chosen, drawn.periods, drawn.record, 16, budget=BUDGET)
+    except (NumbersFailed, OverBudget):
+        return "refused or failed, and said so"
+    try:
+        true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=_MOST_STEPS).tops for tolerance in (_TIGHT, _LOOSE))
+    except (TooLong, FloatingPointError):
+        return "truth not known"
+    stated = [getattr(found, f"error_estimate_{name}", None) for name in COLUMNS]
+    return Verdict("run", drawn.index, chosen, f"{found.status} {drawn.periods}+{drawn.record}", apart(forces(found), true), _numbers(stated),
+                   _CAUTION * apart(nearly, true))
+
+
+def forces(found: Any) -> np.ndarray:
+    """The three largest forces of a run or a curve point."""
+    return np.array([found.max_input_force, found.max_output_force, found.max_output_force_elastic])
+
+
+def _numbers(stated: list) -> np.ndarray:
+    return np.array([np.nan if one is None else one for one in stated], dtype=float)
+
+
+def on_orbit(chosen: Scene, state: State, n: int) -> tuple[State, float] | None:
+    """The state on the orbit of period n and its relative distance; None where it does not come near."""
+    before = None
+    for _ in range(max(8, _PATIENCE // n)):
+        after = located(chosen, n, 0, 1, 1e-11, state, _MOST_STEPS // 8).state
+        change = max(float(np.abs(getattr(after, x) - getattr(state, x)).max() / max(np.abs(getattr(after, x)).max(), 1e-300))
+                     for x in ("displacement", "velocity"))
+        factor = 0.99 if before is None else min(max(change / before, 0.1), 0.999) if before > 0.0 else 0.1
+        if change * factor / (1.0 - factor) < _ON_ORBIT:
+            return after, change * factor / (1.0 - factor)
+        before, state = change, after
+    return None
+
+
+def judge_point(kind: str, index: int, chosen: Scene, state: State, n: int, tops: np.ndarray, stated: np.ndarray) -> Verdict | str:
+    """The verdict on a periodic point, or why there is none."""
+    try:
+        orbit = on_orbit(chosen, state, n)
+        if orbit is None:
+            return "not periodic within the patience"
+        true, nearly = (located(chosen, 0, n, 1, tolerance, orbit[0], _MOST_STEPS).tops for tolerance in (_TIGHT, _LOOSE))
+    except (TooLong, FloatingPointError):
+        return "truth not known"
+    return Verdict(kind, index, chosen, f"period {n}", apart(tops, true), stated, _CAUTION * apart(nearly, true) + 3.0 * orbit[1])
+
+
+def judge_curve(seed: int, index: int, structures: list) -> Iterator[Verdict | str]:
+    """Verdicts on the periodic points of one short curve from rest."""
+    base = draw_steady(seed, index, structures)
+    frequencies = base.f * np.geomspace(1.0, 1.3, _POINTS)
+    for point in resonance_curve(base, frequencies).points:
+        if point.failure or point.regime.period is None:
+            continue
+        output = point.error_estimate
+        stated = [getattr(point, "error_estimate_input", None), output, getattr(point, "error_estimate_elastic", output)]
+        yield judge_point("curve", index, base.evolve(f=point.frequency), point.state, point.regime.period, forces(point), _numbers(stated))
+
+
+def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str]:
+    """Verdicts on the periodic cells of one small map."""
+    base = draw_steady(seed, index, structures)
+    grid = Grid(base, Axis.of("f", base.f * np.geomspace(1.0, 1.3, _ACROSS)), Axis.of("D", base.D * np.geomspace(0.5, 1.0, _DOWN)))
+    for result in iter_diagram(grid, workers=1):
+        cell = cell_of(result)
+        if result.failure or result.regime.period is None:
+            continue
+        names, output = cell.dtype.names or (), float(cell["error_estimate"])
+        stated = [float(cell[name]) if name in names else other
+                  for name, other in (("error_estimate_input", np.nan), ("error_estimate", output), ("error_estimate_elastic", output))]
+        tops = np.array([cell["max_input_force"], cell["max_output_force"], cell["max_output_force_elastic"]])
+        yield judge_point("map", index, result.scene, result.state, result.regime.period, tops, np.array(stated))
+
+
+def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0) -> Iterator[Verdict | str]:
+    """Verdicts on draws `first` to `first + count − 1` of one kind; words where there is none."""
+    for index in range(first, first + count):
+        if kind == "run":
+            yield judge_run(draw(seed, index, structures))
+        else:
+            yield from (judge_curve if kind == "curve" else judge_map)(seed, index, structures)
