@@ -12,6 +12,7 @@ were chosen are not those by which they are reported.
 from __future__ import annotations
 
 import argparse
+import itertools
 import time
 from collections import Counter
 
@@ -36,7 +37,7 @@ def describe(v: Verdict) -> str:
 def table(found: list[Verdict]) -> str:
     """Rows by damping and force: how many claims, how many bounded, how many wrong by more than what matters."""
     rows = ["      λ          force    scenes  judged  claimed  bounded  wrong by > 1e-3 (all)  silent  median true/stated   worst"]
-    groups = [(f"{a:g}..{b:g}", [v for v in found if a <= v.strength < b]) for a, b in zip(_STRENGTHS, _STRENGTHS[1:], strict=False)]
+    groups = [(f"{a:g}..{b:g}", [v for v in found if a <= v.strength < b]) for a, b in itertools.pairwise(_STRENGTHS)]
     for name, part in [*groups, ("all", found)]:
         for c, force in enumerate(COLUMNS if part else ()):
             sure = [v for v in part if v.judged[c]]

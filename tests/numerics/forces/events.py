@@ -37,8 +37,8 @@ def _rounding(law, y, c, what):
     if c < n:
         u, v = u + abs(y[c]), v + abs(y[n + c])
     if what == OVERLAP:
-        return _ROUNDING * (u + law.static[c]) + 1e-300
-    return _ROUNDING * (law.stiffness[c] * (u + law.static[c]) + law.strength * v) + 1e-300
+        return _ROUNDING * (u + abs(law.static[c])) + 1e-300
+    return _ROUNDING * (law.stiffness[c] * (u + abs(law.static[c])) + law.strength * v) + 1e-300
 
 
 @njit(cache=True)

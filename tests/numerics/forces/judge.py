@@ -28,7 +28,7 @@ _ON_ORBIT = 1e-9
 #: A force wrong by more than this, plus ten times what is stated, is wrong in a way that matters.
 SILENT = 1e-3
 #: Seconds for a run.
-BUDGET = 20.0
+BUDGET = 6.0
 #: Points of one curve, columns and rows of one map.
 _POINTS, _ACROSS, _DOWN = 8, 4, 2
 

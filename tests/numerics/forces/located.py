@@ -67,7 +67,7 @@ class TooLong(Exception):
 def _scales(law, y, tolerance, most, scale):
     """The error allowed in a step, never below what rounding makes of the overlaps and of a preload's forces."""
     n = y.size // 2
-    static = law.static.max()
+    static = max(law.static.max(), 0.0)
     force = law.stiffness.max() * static * np.sqrt(static)
     for row in range(2):
         largest = _START * law.beta if row == 1 else _START * min(1.0, law.beta)
@@ -247,16 +247,17 @@ class Scaled:
 
 
 def located(scene: Scene, periods: int, record: int, samples: int = 16, tolerance: float = 1e-12,
-            state: State | None = None, most_steps: int = 5_000_000) -> Located:
+            state: State | None = None, most_steps: int = 5_000_000, gaps: np.ndarray | None = None) -> Located:
     """The motion from rest (or thrown beads), or from `state` at phase 0: `periods` discarded, then `record` recorded.
 
-    Raises `TooLong`, and `FloatingPointError` where the numbers are not finite.
+    `gaps` (N + 1,) [m] are between bodies that are at their places. Raises `TooLong`, and `FloatingPointError` where the numbers are not finite.
     """
     scaled = Scaled.of(scene)
     y, mode = scaled.start(scene, state), np.zeros(scene.N + 1, np.int64)
+    law = scaled.law if gaps is None else scaled.law._replace(static=scaled.law.static - gaps / scaled.length)
     counts, tops = np.zeros(7), np.full(FORCES, -np.inf)
     closings, rows = np.zeros((_MOST_CLOSINGS, 3)), np.zeros((record, samples + 1, scene.N))
-    ended = _motion(scaled.law, workspace(scene.N), mode, y, periods, record, tolerance, most_steps, np.zeros(2 * scene.N), counts, rows,
+    ended = _motion(law, workspace(scene.N), mode, y, periods, record, tolerance, most_steps, np.zeros(2 * scene.N), counts, rows,
                     tops, closings)
     if ended == TOO_LONG:
         raise TooLong
