@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-from .step import OPEN, PUSH, SLACK, gap_and_rate, gap_and_rate_of
+from .step import OPEN, PUSH, SLACK, gap_and_rate, gap_and_rate_of, jit
 
 #: Places in a step at which contacts are looked at; turning points between them are looked for besides.
 _LOOKS = 8
@@ -16,19 +15,19 @@ _HALVINGS = 60
 OVERLAP, FORCE = 0, 1
 
 
-@njit(cache=True)
+@jit
 def _power_force(law, c, gap, rate):
     """Force by the law over the power of the overlap in g: smooth and not flat where the force is zero."""
     d = max(gap, 0.0)
     return law.stiffness[c] * d ** (1.5 - 0.25 * law.power) + law.strength * rate
 
 
-@njit(cache=True)
+@jit
 def _watched(law, c, what, gap, rate):
     return gap if what == OVERLAP else _power_force(law, c, gap, rate)
 
 
-@njit(cache=True)
+@jit
 def _rounding(law, y, c, what):
     """Values of what is watched below this are rounding."""
     n = law.inverse_mass.size
@@ -41,7 +40,7 @@ def _rounding(law, y, c, what):
     return _ROUNDING * (law.stiffness[c] * (u + abs(law.static[c])) + law.strength * v) + 1e-300
 
 
-@njit(cache=True)
+@jit
 def _least(law, y, scale, c, what):
     """Values of what is watched below this are rounding, or no more than the error allowed in a step."""
     n = law.inverse_mass.size
@@ -50,7 +49,7 @@ def _least(law, y, scale, c, what):
     return _rounding(law, y, c, what) + (u if what == OVERLAP else law.stiffness[c] * u + law.strength * v)
 
 
-@njit(cache=True)
+@jit
 def _sign(law, state, what):
     """+1 where an event makes it positive, −1 where negative, 0 where it is not watched."""
     if what == OVERLAP:
@@ -62,13 +61,13 @@ def _sign(law, state, what):
     return 1.0 if state == SLACK else -1.0
 
 
-@njit(cache=True)
+@jit
 def _value(law, t, y, h, f, c, what, sign, x):
     gap, rate = gap_and_rate(law, t, y, h, f, c, x)
     return sign * _watched(law, c, what, gap, rate)
 
 
-@njit(cache=True)
+@jit
 def _turn(law, t, y, h, f, c, what, sign, a, b):
     """Where the value is largest between a and b, by golden section."""
     part = 0.5 * (np.sqrt(5.0) - 1.0)
@@ -93,7 +92,7 @@ def _turn(law, t, y, h, f, c, what, sign, a, b):
     return 0.5 * (a + b)
 
 
-@njit(cache=True)
+@jit
 def _root(law, t, y, h, f, c, what, sign, a, b):
     """The zero between a, where the value is not positive, and b, where it is."""
     if _value(law, t, y, h, f, c, what, sign, a) >= 0.0:
@@ -109,7 +108,7 @@ def _root(law, t, y, h, f, c, what, sign, a, b):
     return b
 
 
-@njit(cache=True)
+@jit
 def _crossing(law, t, y, scale, h, f, c, what, sign, until):
     """The first place up to `until` where the value has become positive by more than rounding; 2.0 where none is."""
     least = _least(law, y, scale, c, what)
@@ -129,7 +128,7 @@ def _crossing(law, t, y, scale, h, f, c, what, sign, until):
     return 2.0
 
 
-@njit(cache=True)
+@jit
 def _far(law, t, y, h, f, c, sign):
     """Whether the overlap is so far from zero for its rate that it cannot come there within the step."""
     near, fast = -np.inf, 0.0
@@ -139,7 +138,7 @@ def _far(law, t, y, h, f, c, sign):
     return near + h * fast < 0.0
 
 
-@njit(cache=True)
+@jit
 def first_event(law, mode, t, y, scale, h, f):
     """The first event in the step from y: its place (2.0 where there is none), its contact and what becomes zero."""
     where, contact, becomes = 2.0, -1, OVERLAP
@@ -154,7 +153,7 @@ def first_event(law, mode, t, y, scale, h, f):
     return where, contact, becomes
 
 
-@njit(cache=True)
+@jit
 def missing(law, mode, t, y, h, f, end, c, what):
     """How much longer the step of length h must be for what is watched of contact c to be zero at its end; 0 where it
     is as near as rounding lets it be."""
@@ -171,7 +170,7 @@ def missing(law, mode, t, y, h, f, end, c, what):
     return 0.0 if abs(change) * h <= abs(value) * 10.0 else -value / change
 
 
-@njit(cache=True)
+@jit
 def after(law, mode, c, what):
     """What acts in contact c behind its event."""
     if what == FORCE:
@@ -179,7 +178,7 @@ def after(law, mode, c, what):
     return PUSH if mode[c] == OPEN else OPEN
 
 
-@njit(cache=True)
+@jit
 def begin(law, mode, t, y):
     """What acts in each contact of a state: one that touches without overlap is pressed unless it opens."""
     for c in range(mode.size):

@@ -17,7 +17,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from granchain_core import Scene
 from granchain_core.integrate import State
@@ -30,6 +29,7 @@ from .step import (
     between,
     fill,
     gap_and_rate_of,
+    jit,
     largest_in,
     law_force,
     slope,
@@ -63,7 +63,7 @@ class TooLong(Exception):
     """More steps than allowed."""
 
 
-@njit(cache=True)
+@jit
 def _scales(law, y, tolerance, most, scale):
     """The error allowed in a step, never below what rounding makes of the overlaps and of a preload's forces."""
     n = y.size // 2
@@ -79,7 +79,7 @@ def _scales(law, y, tolerance, most, scale):
             scale[j] = max(scale[j], _ROUNDING * (static if row == 0 else force * law.inverse_mass[j - n]))
 
 
-@njit(cache=True)
+@jit
 def _landed(law, mode, t, y, h, step, c, what):
     """Repeat the step so that what is watched of contact c is zero at its end: its length and its error."""
     error = 0.0
@@ -96,7 +96,7 @@ def _landed(law, mode, t, y, h, step, c, what):
     return h, error
 
 
-@njit(cache=True)
+@jit
 def _pass(law, mode, y, c, what, time, t, counts, closings):
     """What acts in contact c behind its event; a closing is kept with the right limit of its force."""
     counts[_EVENTS] += 1
@@ -107,7 +107,7 @@ def _pass(law, mode, y, c, what, time, t, counts, closings):
         _keep_closing(law, y, c, time, t, counts, closings)
 
 
-@njit(cache=True)
+@jit
 def _keep_closing(law, y, c, time, t, counts, closings):
     at = int(counts[_CLOSINGS])
     if at < len(closings):
@@ -116,7 +116,7 @@ def _keep_closing(law, y, c, time, t, counts, closings):
         counts[_CLOSINGS] += 1
 
 
-@njit(cache=True)
+@jit
 def _sample(y, t, h, step, rows, row, period, samples):
     """Displacements at the instants that lie in the step; the row of the next one."""
     n = y.size // 2
@@ -128,7 +128,7 @@ def _sample(y, t, h, step, rows, row, period, samples):
     return row
 
 
-@njit(cache=True)
+@jit
 def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, counts, rows, tops, closings):
     """One drive period from phase 0, y and mode left at its end; where `watched`, `rows` (samples + 1, N) and `tops`."""
     period, t, row, samples = 2.0 * np.pi / law.beta, 0.0, 1, len(rows) - 1
@@ -180,7 +180,7 @@ def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, c
     return DONE
 
 
-@njit(cache=True)
+@jit
 def _motion(law, step, mode, y, periods, record, tolerance, most_steps, most, counts, rows, tops, closings):
     """Run `periods` periods, then record `record`; rows (record, samples + 1, N)."""
     begin(law, mode, 0.0, y)

@@ -12,6 +12,9 @@ import numpy as np
 from numba import njit
 from scipy.integrate._ivp import dop853_coefficients as table
 
+#: Numba's cache knows a function by its file and remembers the name its module was imported by: only the program, which
+#: imports it by one name and the tests by another, keeps what is compiled.
+jit = njit(cache=__name__.startswith("tests."))
 #: What acts in a contact: nothing, the law, or nothing though it touches (tension cut).
 OPEN, PUSH, SLACK = 0, 1, 2
 #: The forces followed: of contact 0, of contact N, of the spring of contact N.
@@ -58,7 +61,7 @@ def workspace(beads: int) -> Step:
     return Step(np.zeros((SLOPES, size)), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros((POLYNOMIAL, size)))
 
 
-@njit(cache=True)
+@jit
 def damping(law, d):
     """g(d) for an overlap d ≥ 0."""
     if law.power == 0:
@@ -68,14 +71,14 @@ def damping(law, d):
     return law.strength * np.sqrt(d)
 
 
-@njit(cache=True)
+@jit
 def law_force(law, c, gap, rate):
     """Force of contact c by the law, whether it would pull or not."""
     d = max(gap, 0.0)
     return law.stiffness[c] * d * np.sqrt(d) + damping(law, d) * rate
 
 
-@njit(cache=True)
+@jit
 def slope(law, mode, t, y, dy):
     """(u̇, v̇) at time t of the period while `mode` says what acts."""
     n = law.inverse_mass.size
@@ -91,7 +94,7 @@ def slope(law, mode, t, y, dy):
         pushed, u, v = force, right_u, right_v
 
 
-@njit(cache=True)
+@jit
 def _stages(law, mode, t, y, h, k, s, first, last, a, c):
     """Slopes `first` to `last`, each from those before it."""
     for i in range(first, last):
@@ -107,7 +110,7 @@ def _stages(law, mode, t, y, h, k, s, first, last, a, c):
         slope(law, mode, t + c[i - first] * h, s, k[i])
 
 
-@njit(cache=True)
+@jit
 def take_step(law, mode, t, y, h, step):
     """A step from y at t: leaves the state in step.end and returns the error over what is allowed.
 
@@ -136,7 +139,7 @@ def take_step(law, mode, t, y, h, step):
     return 0.0 if five == 0.0 else abs(h) * five * five / np.sqrt(five * five + 0.01 * three * three)
 
 
-@njit(cache=True)
+@jit
 def fill(law, mode, t, y, h, step):
     """The polynomial between the ends of the step just taken."""
     k, end, f = step.slopes, step.end, step.polynomial
@@ -153,7 +156,7 @@ def fill(law, mode, t, y, h, step):
             f[3 + r, j] = h * total
 
 
-@njit(cache=True)
+@jit
 def between(y, f, j, x):
     """Component j at the part x of the step that began at y."""
     value = 0.0
@@ -162,7 +165,7 @@ def between(y, f, j, x):
     return y[j] + value
 
 
-@njit(cache=True)
+@jit
 def gap_and_rate(law, t, y, h, f, c, x):
     """Overlap of contact c and its rate at the part x of a step."""
     n = law.inverse_mass.size
@@ -176,7 +179,7 @@ def gap_and_rate(law, t, y, h, f, c, x):
     return u + law.static[c], v
 
 
-@njit(cache=True)
+@jit
 def gap_and_rate_of(law, t, y, c):
     """Overlap of contact c and its rate in state y."""
     n = law.inverse_mass.size
@@ -186,7 +189,7 @@ def gap_and_rate_of(law, t, y, c):
     return u + law.static[c], v
 
 
-@njit(cache=True)
+@jit
 def _force(law, mode, which, gap, rate):
     """The force `which` of a contact with this overlap and rate."""
     c = 0 if which == INPUT else law.inverse_mass.size
@@ -196,20 +199,20 @@ def _force(law, mode, which, gap, rate):
     return law_force(law, c, gap, rate) if mode[c] == PUSH else 0.0
 
 
-@njit(cache=True)
+@jit
 def force_of(law, mode, which, t, y):
     """The force `which` in state y."""
     gap, rate = gap_and_rate_of(law, t, y, 0 if which == INPUT else law.inverse_mass.size)
     return _force(law, mode, which, gap, rate)
 
 
-@njit(cache=True)
+@jit
 def _force_between(law, mode, which, t, y, h, f, x):
     gap, rate = gap_and_rate(law, t, y, h, f, 0 if which == INPUT else law.inverse_mass.size, x)
     return _force(law, mode, which, gap, rate)
 
 
-@njit(cache=True)
+@jit
 def largest_in(law, mode, t, y, h, step, tops, kept):
     """Raise `tops` to the largest forces in the step from y whose polynomial is filled: ends, and tops between.
 
@@ -240,7 +243,7 @@ def largest_in(law, mode, t, y, h, step, tops, kept):
     return 0
 
 
-@njit(cache=True)
+@jit
 def _top(law, mode, which, t, y, h, f, a, b):
     """Where the force is largest between a and b, by golden section."""
     c, d = b - _GOLDEN * (b - a), a + _GOLDEN * (b - a)
