@@ -76,7 +76,7 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     """Types of the arguments of both kernels for section 2's chain with these knobs."""
     chain = scene("sec2").evolve(**knobs)
     e, block = Engine(chain, Setting("rk4-split"), 1), LaneBlock(chain, new_stop())
-    one = (e.work.along, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0], e.work.forces.e, e.peaks,
+    one = (e.work.along, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0], e.work.forces.e, e.log,
            e.counts.array, e.stop)
     return {"wide": tuple(map(numba.typeof, one)), "lanes": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
 
