@@ -131,13 +131,17 @@ def run(arguments: argparse.Namespace) -> None:
             "max_output_force": result.max_output_force,
             "max_output_force_elastic": result.max_output_force_elastic,
             "max_input_force": result.max_input_force, "error_estimate": result.error_estimate,
+            "error_estimate_output": result.force_errors.output, "error_estimate_input": result.force_errors.input,
+            "error_estimate_elastic": result.force_errors.elastic,
             "energy_residual": result.energy_residual, "cost": asdict(result.cost),
         })
         return
     print(f"{chosen.name}: {result.regime.sentence}; {result.status}")
     print(f"largest output force {result.max_output_force:.6g} N (elastic {result.max_output_force_elastic:.6g} N), "
           f"input force {result.max_input_force:.6g} N")
-    print(f"relative error {result.error_estimate:.1e}, energy closes to {result.energy_residual:.1e}; "
+    errors = result.force_errors
+    print(f"relative errors: displacement {result.error_estimate:.1e}, output force {errors.output:.1e} (elastic "
+          f"{errors.elastic:.1e}), input force {errors.input:.1e}; energy closes to {result.energy_residual:.1e}; "
           f"{result.cost.method}, {result.cost.steps} steps, {result.cost.events} contact events, "
           f"{1e3 * result.cost.wall_s:.1f} ms")
 
@@ -188,7 +192,9 @@ def curve(arguments: argparse.Namespace) -> None:
             **{name: [_null(getattr(p, name)) for p in swept.points]
                for name in ("max_output_force", "max_output_force_elastic", "max_input_force")},
             "regime": [p.regime.name for p in swept.points], "period": [p.regime.period for p in swept.points],
-            "error_estimate": [p.error_estimate for p in swept.points], "wall_s": swept.wall_s,
+            "error_estimate": [p.force_errors.output for p in swept.points],
+            "error_estimate_elastic": [p.force_errors.elastic for p in swept.points],
+            "error_estimate_input": [p.force_errors.input for p in swept.points], "wall_s": swept.wall_s,
         })
         return
     print("frequency_Hz  max_output_force_N  elastic_N  max_input_force_N  regime")

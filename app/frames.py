@@ -40,7 +40,10 @@ def round_up(value: float) -> float:
 
 @dataclass(frozen=True)
 class Frames:
-    """Rows in time, equally spaced; `time` in seconds or, when live, in drive periods before now."""
+    """Rows in time, equally spaced; `time` in seconds or, when live, in drive periods before now.
+
+    `input_jumps` and `output_jumps` (J, 2) are times and forces [N] at which the force jumps up from 0, between rows.
+    """
 
     samples: int
     time: np.ndarray
@@ -51,6 +54,13 @@ class Frames:
     input_force: np.ndarray
     output_force: np.ndarray
     output_force_elastic: np.ndarray
+    input_jumps: np.ndarray
+    output_jumps: np.ndarray
+
+    @property
+    def largest_output(self) -> float:
+        """The largest output force in the picture, jumps included [N]."""
+        return float(max(self.output_force.max(), self.output_jumps[:, 1].max(initial=-np.inf)))
 
     @property
     def rows(self) -> int:
@@ -63,7 +73,23 @@ class Frames:
         return self.displacement.shape[1]
 
 
-_SERIES = tuple(field.name for field in fields(Frames) if field.name not in ("samples", "time"))
+_SERIES = tuple(field.name for field in fields(Frames)
+                if field.name not in ("samples", "time", "input_jumps", "output_jumps"))
+
+
+def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A force train as a line whose jumps (J, 2) are vertical: two points more each, at 0 and at the force there."""
+    places = np.searchsorted(time, jumps[:, 0])
+    feet = np.zeros(len(jumps))
+    twice = np.repeat(places, 2)
+    return (np.insert(time, twice, np.repeat(jumps[:, 0], 2)),
+            np.insert(force, twice, np.stack([feet, jumps[:, 1]], axis=1).ravel()))
+
+
+def _jumps(run: Run, contact: int) -> np.ndarray:
+    """Times since the run's first row [s] and forces [N] of one contact's jumps (J, 2), in order."""
+    time, force = run.jumps.of(contact)
+    return np.stack([time - run.time[0], force], axis=1)
 
 
 def samples_for(scene: Scene) -> int:
@@ -88,7 +114,10 @@ def settled_frames(run: Run) -> Frames:
     index = np.concatenate([np.arange(0, rows - 1, stride) for _ in range(copies)] + [np.array([rows - 1])])
     samples = run.samples // stride
     time = np.arange(len(index)) / (samples * run.scene.f)
-    return Frames(samples, time, **{name: getattr(run, name)[index] for name in _SERIES})
+    shifts = [np.array([copy * periods / run.scene.f, 0.0]) for copy in range(copies)]
+    pushed, passed = (np.concatenate([_jumps(run, contact) + shift for shift in shifts]) for contact in (0, run.scene.N))
+    return Frames(samples, time, **{name: getattr(run, name)[index] for name in _SERIES},
+                  input_jumps=pushed, output_jumps=passed)
 
 
 class LiveWindow:
@@ -99,6 +128,7 @@ class LiveWindow:
         self._rows = periods * samples + 1
         self._time = -np.arange(self._rows)[::-1] / samples
         self._series: dict[str, np.ndarray] = {}
+        self._jumps = {name: np.zeros((0, 2)) for name in ("input_jumps", "output_jumps")}
 
     def add(self, run: Run) -> Frames:
         """The window after `run`, whose first row is the last one already shown."""
@@ -108,4 +138,8 @@ class LiveWindow:
             if old is None or old.shape[1:] != new.shape[1:]:
                 old = np.zeros((self._rows, *new.shape[1:]))
             self._series[name] = np.concatenate([old, new[1:]])[-self._rows:]
-        return Frames(self._samples, self._time, **self._series)
+        passed = np.array([(len(run.time) - 1) / self._samples, 0.0])
+        for name, contact in (("input_jumps", 0), ("output_jumps", run.scene.N)):
+            both = np.concatenate([self._jumps[name], _jumps(run, contact) * np.array([run.scene.f, 1.0])]) - passed
+            self._jumps[name] = both[both[:, 0] >= self._time[0]]
+        return Frames(self._samples, self._time, **self._series, **self._jumps)

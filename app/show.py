@@ -39,7 +39,7 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
     with unlocked():
         views.trains.left.yaxis.axis_label = "time (drive periods before now)"
         _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)
-        views.curve.now(run.scene.knobs["f"], float(frames.output_force.max()))
+        views.curve.now(run.scene.knobs["f"], frames.largest_output)
         views.badge.display(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
 
 

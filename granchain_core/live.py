@@ -9,7 +9,7 @@ import numpy as np
 
 from .integrate import Engine, Setting, State
 from .integrate.engine import rest
-from .result import Cost, Run, run_from
+from .result import Cost, Jumps, Run, run_from
 from .scene import Scene
 from .steady.regime import Regime
 
@@ -91,7 +91,9 @@ class LiveChain:
         record = engine.record(count)
         cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)
         run = run_from(engine, record, first, _NOT_ASKED, None, cost)
-        run = replace(run, time=self.time + np.arange(count + 1) * (self.scene.period / self.samples))
+        start = self.time - float(run.time[0])
+        run = replace(run, time=self.time + np.arange(count + 1) * (self.scene.period / self.samples),
+                      jumps=replace(run.jumps, time=run.jumps.time + start))
         self.time = float(run.time[-1])
         self._index = (first + count) % self.samples
         return run
@@ -111,4 +113,6 @@ def joined(pieces: list[Run]) -> Run:
         max_input_force=max(p.max_input_force for p in pieces),
         max_output_force=max(p.max_output_force for p in pieces),
         max_output_force_elastic=max(p.max_output_force_elastic for p in pieces),
+        jumps=Jumps(np.concatenate([p.jumps.time for p in pieces]), np.concatenate([p.jumps.contact for p in pieces]),
+                    np.concatenate([p.jumps.force for p in pieces]), sum(p.jumps.missing for p in pieces)),
     )

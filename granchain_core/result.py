@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -29,12 +29,57 @@ class Cost:
 
 
 @dataclass(frozen=True, eq=False)
+class Jumps:
+    """Forces that jump from 0 because a contact with a linear dashpot closes in motion.
+
+    time (J,) [s], contact (J,) and force (J,) [N], the right limit; `missing` is how many more were not kept.
+    """
+
+    time: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    contact: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    force: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    missing: int = 0
+
+    def of(self, contact: int) -> tuple[np.ndarray, np.ndarray]:
+        """Times and forces of the jumps of one contact."""
+        mine = self.contact == contact
+        return self.time[mine], self.force[mine]
+
+
+@dataclass(frozen=True)
+class ForceErrors:
+    """Relative errors of the largest input, output and elastic output force; None where none is claimed."""
+
+    input: float | None = None
+    output: float | None = None
+    elastic: float | None = None
+
+    @classmethod
+    def of(cls, errors: np.ndarray | None) -> ForceErrors:
+        """From an array (3,) in that order."""
+        return cls() if errors is None else cls(*(float(e) for e in errors))
+
+    @property
+    def row(self) -> tuple[float, float, float]:
+        """The three as numbers, NaN where none is claimed."""
+        values = (self.input, self.output, self.elastic)
+        return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
+
+
+def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """How much each of three largest forces changed from one computation to a finer one, over the finer one's value."""
+    change = np.abs(now - before)
+    return np.divide(change, now, out=np.where(change > 0.0, np.inf, 0.0), where=now > 0.0)
+
+
+@dataclass(frozen=True, eq=False)
 class Run:
     """A recorded motion: T samples of N beads and N + 1 contacts.
 
     `error_estimate` is the largest error of any displacement sample over the largest displacement (None where no
     claim is made); `energy_residual` is (work − lost − stored)/largest of the three (None where no account was
-    kept). Maxima are those between the samples too. `start` says where the motion began: "rest", "thrown beads" or
+    kept). Largest forces are suprema over the recorded time: those between the samples count, and the right limits of
+    `jumps`; `force_errors` are their relative errors. `start` says where the motion began: "rest", "thrown beads" or
     "given state".
     """
 
@@ -54,6 +99,8 @@ class Run:
     energy_residual: float | None
     cost: Cost
     start: str = "rest"
+    force_errors: ForceErrors = ForceErrors()
+    jumps: Jumps = field(default_factory=Jumps)
 
     @property
     def kinetic_energy(self) -> np.ndarray:
@@ -94,7 +141,7 @@ def residual(energy: np.ndarray | None) -> float | None:
 
 
 def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime, error: float | None,
-             cost: Cost, status: str = "done") -> Run:
+             cost: Cost, status: str = "done", force_errors: np.ndarray | None = None) -> Run:
     """The `Run` of recorded samples; time counts from drive phase 0, `first_sample` being the index of row 0."""
     scene, scales = engine.lowered.scene, engine.lowered.scales
     index = first_sample + np.arange(len(samples.displacement))
@@ -109,4 +156,13 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
         drive_displacement=scene.A0 * np.sin(2 * np.pi * inside / engine.samples),
         max_input_force=float(tops[0]), max_output_force=float(tops[1]), max_output_force_elastic=float(tops[2]),
         status=status, regime=regime, error_estimate=error, energy_residual=residual(samples.energy), cost=cost,
+        force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
     )
+
+
+def _jumps(engine: Engine, first_sample: int) -> Jumps:
+    """The jumps of the engine's last record, in SI."""
+    rows, scene = engine.closings, engine.lowered.scene
+    period = (first_sample + rows[:, 0].astype(np.int64)) // engine.samples
+    return Jumps((period + rows[:, 1] / (2.0 * np.pi)) * scene.period, rows[:, 2].astype(np.int64),
+                 rows[:, 3] * engine.lowered.scales.force, engine.closings_missing)

@@ -6,7 +6,7 @@ import numpy as np
 from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
 from bokeh.plotting import figure
 
-from ..frames import Frames, prefixed, round_up
+from ..frames import Frames, prefixed, round_up, with_jumps
 from .figures import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
 
 _WORDS = ("drive u₀", "input force", "output force")
@@ -17,8 +17,10 @@ class Trains:
     """Two figures and one data source; time runs downwards on the axis they share with the map."""
 
     def __init__(self, time: Range1d) -> None:
-        names = ("time", "drive", "input", "output", "elastic")
-        self._source = ColumnDataSource({name: np.zeros(0) for name in names})
+        self._source = ColumnDataSource({name: np.zeros(0) for name in ("time", "drive", "elastic")})
+        # A force that jumps has points of its own there, between the rows.
+        self._input = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
+        self._output = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
         self._lines: list[GlyphRenderer] = []
         self._narrow = False
         self.left = self._left_figure(time)
@@ -36,7 +38,7 @@ class Trains:
         self._lines += [
             plot.line("drive", "time", source=self._source, x_range_name="drive", line_color=DRIVE,
                       line_width=2.0),
-            plot.line("input", "time", source=self._source, line_color=INPUT, line_width=2.5),
+            plot.line("force", "time", source=self._input, line_color=INPUT, line_width=2.5),
         ]
         _few_ticks(plot)
         return plot
@@ -49,27 +51,31 @@ class Trains:
         self._lines += [
             plot.line("elastic", "time", source=self._source, line_color=OUTPUT, line_width=2.0,
                       line_dash=[5, 4]),
-            plot.line("output", "time", source=self._source, line_color=OUTPUT, line_width=2.5),
+            plot.line("force", "time", source=self._output, line_color=OUTPUT, line_width=2.5),
         ]
         _few_ticks(plot)
         return plot
 
     def update(self, frames: Frames, time: np.ndarray) -> None:
         """Show `frames`, whose rows are at `time` on the shared axis."""
+        scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
         drive_high = round_up(float(np.abs(frames.drive_displacement).max()))
-        input_range = _span(frames.input_force)
-        output_range = _span(frames.output_force, frames.output_force_elastic)
+        (input_time, input_force), (output_time, output_force) = (
+            with_jumps(time, force, jumps * np.array([scale, 1.0])) for force, jumps in
+            ((frames.input_force, frames.input_jumps), (frames.output_force, frames.output_jumps)))
+        input_range = _span(input_force)
+        output_range = _span(output_force, frames.output_force_elastic)
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
         out, out_letter = prefixed(max(map(abs, output_range)))
         columns = {
             "time": time,
             "drive": frames.drive_displacement / drive,
-            "input": frames.input_force / push,
-            "output": frames.output_force / out,
             "elastic": frames.output_force_elastic / out,
         }
-        self._source.data = {name: np.asarray(column, dtype=np.float32) for name, column in columns.items()}
+        pushed, passed = {"time": input_time, "force": input_force / push}, {"time": output_time, "force": output_force / out}
+        for source, values in ((self._source, columns), (self._input, pushed), (self._output, passed)):
+            source.data = {name: np.asarray(column, dtype=np.float32) for name, column in values.items()}
         edge = 1.15 * drive_high / drive
         self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
         self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)

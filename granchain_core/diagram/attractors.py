@@ -16,6 +16,7 @@ from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, State
 from ..integrate.engine import rest
 from ..orbits import Orbit
+from ..result import ForceErrors
 from ..scene import Scene
 from ..steady.lane_job import LaneResult, Start
 from ..steady.regime import Regime
@@ -47,7 +48,7 @@ class Origin:
 class Attractor:
     """A steady state with what leads to it.
 
-    Forces are the largest ones [N], with their relative error where the motion is periodic. `orbit` is the certified
+    Forces are the largest ones [N], with their relative errors where the motion is periodic. `orbit` is the certified
     orbit with its multipliers, None where the motion is not periodic or Newton's method did not reach it. `share` is
     the part of the random states that end here, `share_error` its standard error.
     """
@@ -57,12 +58,17 @@ class Attractor:
     max_input_force: float
     max_output_force: float
     max_output_force_elastic: float
-    error_estimate: float | None
+    force_errors: ForceErrors
     state: State
     orbit: Orbit | None = None
     origins: list[Origin] = field(default_factory=list)
     share: float = 0.0
     share_error: float = 0.0
+
+    @property
+    def error_estimate(self) -> float | None:
+        """Relative error of the output force; None where none is claimed."""
+        return self.force_errors.output
 
     @property
     def stable(self) -> bool | None:
@@ -173,8 +179,8 @@ def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
         tops = np.max([one.result.tops for one in group], axis=0)
     regime = _regime([one.result.regime for one in group])
     state = first.result.state if first.orbit is None else first.orbit.state
-    return Attractor(best.scene, regime, float(tops[0]), float(tops[1]), float(tops[2]), best.error_estimate, state,
-                     first.orbit, [origins[one.result.number] for one in group])
+    return Attractor(best.scene, regime, float(tops[0]), float(tops[1]), float(tops[2]), ForceErrors.of(best.errors),
+                     state, first.orbit, [origins[one.result.number] for one in group])
 
 
 def _regime(regimes: list[Regime]) -> Regime:

@@ -52,7 +52,11 @@ def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
 
 def _as_result(start: Start, point: CurvePoint) -> LaneResult:
     tops = np.array([point.max_input_force, point.max_output_force, point.max_output_force_elastic])
-    return LaneResult(start.scene, tops, point.regime, point.error_estimate, point.state, point.failure, start.number)
+    return LaneResult(start.scene, tops, point.regime, _errors(point), point.state, point.failure, start.number)
+
+
+def _errors(point: CurvePoint) -> np.ndarray | None:
+    return None if point.error_estimate is None else np.array(point.force_errors.row)
 
 
 def block_cells(grid: Grid, numbers: Sequence[int], stop: np.ndarray | None = None) -> np.ndarray:

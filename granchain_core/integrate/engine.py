@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from ..kernels.dopri5 import Dopri5, run_without_events
 from ..kernels.effects.driver import Harmonic
 from ..kernels.events import ENDS
 from ..kernels.fixed_step import Rk4, Rk4Split, Stages
+from ..kernels.largest_forces import new_log
 from ..kernels.motion import place
 from ..kernels.naive import Rk4Naive, VerletNaive, naive_motion
 from ..kernels.peaks import ROWS, forget, next_period
@@ -25,62 +25,19 @@ from ..scene import Scene
 from .failures import check_start, raise_for
 from .flushed import flushed
 from .methods import METHODS, Setting
+from .state import Counts, State, new_stop, rest
 
-#: Grid points for following force maxima lie at most this far apart in scaled time; a Hertzian pulse lasts about 6.
-_PEAK_SPACING = 0.25
 #: The certified method makes at least this many steps a period, so that the driver is never stepped over.
 _LEAST_STEPS = 16
 
+#: Places for closings of a contact in one period; one that bounces more often does so ever more gently.
+_CLOSINGS = 16
 #: Steps in a period up to which the driver's motion is tabulated.
 _LARGEST_TABLE = 200_000
 
 _FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split, "rk4-naive": Rk4Naive, "verlet-naive": VerletNaive}
 #: Adaptive methods with the kernel that runs them.
 _ADAPTIVE: dict[str, Any] = {"dop853": (Dop853, run_certified), "dopri5": (Dopri5, run_without_events)}
-
-
-@dataclass(frozen=True, eq=False)
-class State:
-    """Where the chain is: displacement and velocity (N,) in SI and the drive phase as a fraction of a period."""
-
-    displacement: np.ndarray
-    velocity: np.ndarray
-    phase: float = 0.0
-
-
-@dataclass
-class Counts:
-    """What a computation cost: accepted steps, evaluations of the equations, contact events, rejected steps."""
-
-    array: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
-
-    @property
-    def steps(self) -> int:
-        """Accepted steps."""
-        return int(self.array[0])
-
-    @property
-    def rhs(self) -> int:
-        """Evaluations of the equations of motion."""
-        return int(self.array[1])
-
-    @property
-    def events(self) -> int:
-        """Contact events located."""
-        return int(self.array[2])
-
-
-def rest(scene: Scene) -> State:
-    """The scene's start: at rest at drive phase 0, except for beads that are given a velocity."""
-    velocity = np.zeros(scene.N)
-    for bead, v in scene.start_velocity:
-        velocity[bead - 1] = v
-    return State(np.zeros(scene.N), velocity)
-
-
-def new_stop() -> np.ndarray:
-    """A stop flag for kernels: one byte, polled; set it to 1 from any thread."""
-    return np.zeros(1, dtype=np.uint8)
 
 
 class Engine:
@@ -97,7 +54,7 @@ class Engine:
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
-        self.peaks = np.zeros(3 * ROWS)
+        self.log = new_log()
         self.stop = new_stop() if stop is None else stop
         self.y = np.zeros(self.lowered.size)
         self._adaptive = METHODS[setting.method].adaptive
@@ -169,7 +126,7 @@ class Engine:
         self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
                          slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2), forces=lo.forces())
         self.clock = np.array([min(0.01, lo.period / _LEAST_STEPS)])
-        self.grid = self.samples * max(1, int(np.ceil(lo.period / self.samples / _PEAK_SPACING)))
+        self.grid = self.samples
 
     # --- state ---------------------------------------------------------------------------------------------
 
@@ -233,16 +190,17 @@ class Engine:
         Raises `NumbersFailed`, `Cancelled`.
         """
         self._remember()
-        samples = self.empty_samples(count + 1)
+        samples, periods = self.empty_samples(count + 1), count / self.samples
+        self.log = new_log(self.log, round(_CLOSINGS * (1.0 + periods) * self.lowered.row))
         every = self.grid // self.samples
         lo, work = self.lowered, self.work
         if self._adaptive:
             status, rows = self._run(self.method, lo.slots, lo.beta, lo.period, self.y, work, self.clock,
-                                     self.grid_index, count * every, self.grid, every, samples, self.peaks,
+                                     self.grid_index, count * every, self.grid, every, samples, self.log,
                                      self.counts.array, self.stop)
         else:
             status, rows = sampling.run_samples(self.method, lo.slots, self.drive, self.h, self.y, work,
-                                                self.grid_index, every, samples, self.peaks, self.counts.array,
+                                                self.grid_index, every, samples, self.log, self.counts.array,
                                                 self.stop)
         self.grid_index = (self.grid_index + count * every) % self.grid
         raise_for(self, status, max(0, rows - 1) / self.samples, self._before)
@@ -251,12 +209,22 @@ class Engine:
 
     def forget_peaks(self) -> None:
         """Watch for the largest forces afresh."""
-        forget(self.peaks)
+        forget(self.log.peaks)
 
     @property
     def tops(self) -> np.ndarray:
         """The largest input, output and elastic output force since then, in scaled units."""
-        return self.peaks[::ROWS].copy()
+        return self.log.peaks[::ROWS].copy()
+
+    @property
+    def closings(self) -> np.ndarray:
+        """The jumps of the last record (J, 4): sample before it, drive phase θ, contact, scaled force just after."""
+        return self.log.closings[: self.log.met[0]]
+
+    @property
+    def closings_missing(self) -> int:
+        """How many jumps there were behind these, for which there was no place."""
+        return max(0, int(self.log.met[0]) - len(self.log.closings))
 
     @flushed
     def periods(self, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:
@@ -267,12 +235,13 @@ class Engine:
         not look for the forces and they are NaN.
         """
         self._remember()
+        self.log = new_log(self.log)
         strobes, tops = np.zeros((count + 1, 2, self.lowered.row)), np.full((count, 3), np.nan)
         if self._adaptive:
             self._certified_periods(strobes, tops, watch)
         else:
             status, done = sampling.run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
-                                                strobes, self.peaks, tops, self.counts.array, self.stop)
+                                                strobes, self.log, tops, self.counts.array, self.stop)
             raise_for(self, status, done, self._before)
         self.elapsed += count
         return strobes[:, :, 1:-1], tops
@@ -281,9 +250,9 @@ class Engine:
         lo, keep, row = self.lowered, self.empty_samples(2), self.lowered.row
         strobes[0] = self.y[:row], self.work.k[0, :row]
         for p in range(len(tops)):
-            next_period(self.peaks)
+            next_period(self.log.peaks)
             status, _ = self._run(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
-                                  self.grid, self.grid, self.grid if watch else 0, keep, self.peaks,
+                                  self.grid, self.grid, self.grid if watch else 0, keep, self.log,
                                   self.counts.array, self.stop)
             self.raise_for(status, p)
             strobes[p + 1] = self.y[:row], self.work.k[0, :row]

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import Cancelled, NumbersFailed
 from ..kernels import sampling
+from ..kernels.largest_forces import new_log
 from .methods import METHODS
 
 if TYPE_CHECKING:
@@ -115,11 +116,11 @@ def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: i
     # new vectors: those of the failed call are full of what failed
     work = engine.work._replace(along=engine.new_along() if vectors else None, k=np.zeros_like(engine.work.k))
     work.k[0] = slope
-    kept, peaks = engine.empty_samples(2), np.zeros_like(engine.peaks)
+    kept, log = engine.empty_samples(2), new_log()
     j = first
     while j < last:
         stride = min(last, (j // n + 1) * n) - j
         sampling.run_samples(engine.method, engine.lowered.slots, engine.drive, engine.h, now, work, j % n, stride,
-                             kept, peaks, np.zeros(4, dtype=np.int64), np.zeros(1, dtype=np.uint8))
+                             kept, log, np.zeros(4, dtype=np.int64), np.zeros(1, dtype=np.uint8))
         j += stride
     return now, work.k

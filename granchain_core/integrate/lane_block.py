@@ -58,7 +58,7 @@ class LaneBlock:
         whole = [np.zeros(LANES, dtype=np.int64) for _ in range(9)]
         parts = [np.zeros(LANES) for _ in range(2)]
         self.state = kernels.LaneState(
-            y=aligned(rows), gaps=aligned(n + 1), phase=aligned(2), peaks=aligned(3 * ROWS),
+            y=aligned(rows), gaps=aligned(n + 1), ends=aligned(4), phase=aligned(2), peaks=aligned(3 * ROWS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
             wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], jumped=parts[1],
             before=np.zeros((LANES, 2, n + 2)),
@@ -92,6 +92,7 @@ class LaneBlock:
         state.peaks[:, lane] = 0.0
         state.steps[lane] = state.left[lane] = steps
         state.y[:, lane], state.gaps[:, lane] = y, 0.0
+        state.ends[:, lane] = 1.0  # closed: what follows is no closing
         state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
         state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
         state.ready[lane], state.wait[lane], state.slowest[lane], state.jumped[lane] = 0, _WAIT, 0.0, 0.0

@@ -48,15 +48,19 @@ def smooth_steps(along, slots, drive, j, count, dtheta, h, y, peaks):
     now, before, blocks = along.now, along.before, along.inverse_mass.shape[0]
     m = slots.chain.inverse_mass.size
     unpack(y, m, now, blocks)
-    done = 0
+    done, first, last = 0, False, False
     while True:
         i = 2 * (j + done)
         changed = first_stage(along, slots, drive_displacement(slots, drive, i, dtheta), h)
+        v0 = drive_velocity(slots, drive, i, dtheta)
+        first_before, last_before = first, last
+        first, last = comes_nearer(along, slots, v0)
         if done > 0:
-            if changed:
+            # one that came nearer and now goes away from zero may have been beyond it in between
+            if changed or (first_before and not first) or (last_before and not last):
                 pack(before, blocks, y, m)
                 return done - 1
-            watch_ends(slots, along, drive_velocity(slots, drive, i, dtheta), peaks)
+            watch_ends(slots, along, v0, peaks)
         if done == count:
             pack(now, blocks, y, m)
             return done
@@ -130,6 +134,15 @@ for _law in LAWS:
     @along_velocity.of(_law)
     def _(law, w, inverse_mass, before, G):
         return w + inverse_mass * (from_left(before, G) - G)
+
+
+@part
+def comes_nearer(along, slots, v0):
+    """Whether the overlaps of the first and of the last contact move towards zero at the last step's start."""
+    last = slots.chain.stiffness.size - 1
+    first_gap, last_gap = along.gap[0, 0], along.gap[last // LANES, last % LANES]
+    first_rate, last_rate = v0 - along.slope[0, 1], along.slope[last // LANES, last % LANES]
+    return (first_rate > 0.0) != (first_gap > 0.0), (last_rate > 0.0) != (last_gap > 0.0)
 
 
 @kernel

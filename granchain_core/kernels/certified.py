@@ -15,9 +15,11 @@ from .effects.balance import add_to_account, slack_loss
 from .effects.driver import driver_displacement
 from .effects.preload import overlap
 from .effects.tension import NoTension
+from .force_search import follow_step
 from .jit import kernel, part, term
+from .largest_forces import note_closings, stamp
 from .motion import copy
-from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
+from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep
 from .slackening import first_kink, leave_slack, note_slack
 
 #: A step is aimed to end this overlap behind the event, some roundings of the largest displacement, and lands within
@@ -222,20 +224,19 @@ def look_inside(slots, beta, t, h, at, y, work):
 
 
 @kernel
-def run_certified(method, slots, beta, period, y, work, clock, first, points, grid, every, samples, peaks, counts,
+def run_certified(method, slots, beta, period, y, work, clock, first, points, grid, every, samples, log, counts,
                   stop):
     """Run over `points` points of a grid of `grid` points a period, starting at grid point `first`.
 
-    With every > 0 each grid point is watched for the largest forces and each every-th is kept in `samples`, whose
-    row 0 is the start; with every = 0 nothing is looked at. Returns (status, rows or points done).
+    With every > 0 the largest forces are followed and closings noted in `log`, and each every-th grid point is kept in
+    `samples`, whose row 0 is the start; with every = 0 nothing is looked at. Returns (status, rows or points done).
     """
     m = slots.chain.inverse_mass.size
     spacing = period / grid
-    g, done, row, events = first, 0, 1, 0
+    g, done, row, events, noted = first, 0, 1, 0, 0
     t = g * spacing
     evaluate(slots, beta, t, y, work.k[0], work.forces)
     if every > 0:
-        watch_forces(slots, y, work.k[0], work.forces.e, peaks)
         keep(slots, 0, y, work.k[0], work.forces.e, samples)
     while done < points:
         if stop[0] != 0:
@@ -250,19 +251,23 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
         if events > _EVENTS_PER_CONTACT * (m - 1):
             return CHATTER, row if every > 0 else done
         ready, lost = False, slack_loss(slots.balance, slots, y, work.end)
+        if every > 0:
+            ready = follow_step(slots, beta, t, h, y, work, False, log.peaks, counts)
+            noted = log.met[0]
+            note_closings(slots.dissipation, slots, y, work.k[0], work.end, work.k[STAGES], beta * t, beta * h, log)
         while done < points and (g + 1) * spacing <= end + 1e-13 * period:
             g += 1
             done += 1
-            if every > 0:
+            if every > 0 and g % every == 0:
                 if not ready:
                     prepare_dense(slots, beta, t, h, y, work)
                     counts[1] += 3
                     ready = True
                 look_inside(slots, beta, t, h, g * spacing, y, work)
-                watch_forces(slots, work.probe, work.slope, work.forces.e, peaks)
-                if g % every == 0:
-                    keep(slots, row, work.probe, work.slope, work.forces.e, samples)
-                    row += 1
+                keep(slots, row, work.probe, work.slope, work.forces.e, samples)
+                row += 1
+        if every > 0:
+            stamp(log, noted, row - 1)
         copy(work.end, y)
         copy(work.k[STAGES], work.k[0])
         add_to_account(slots.balance, y, 0.0, lost)

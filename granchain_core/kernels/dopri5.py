@@ -14,9 +14,9 @@ import numpy as np
 
 from .dop853 import evaluate, new_scale
 from .jit import kernel, part
-from .motion import contact_force, copy
-from .peaks import INPUT, OUTPUT
-from .sampling import CANCELLED, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep, watch_forces
+from .largest_forces import stamp, watch_crossings, watch_state
+from .motion import copy
+from .sampling import CANCELLED, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep
 
 
 class Dopri5(NamedTuple):
@@ -88,16 +88,9 @@ def step(method, slots, beta, t, limit, y, work, clock, counts):
     return DONE, h
 
 
-@part
-def watch_steps(slots, y, dy, e, peaks):
-    """Follow the largest forces at the steps themselves, which are too uneven to look between them."""
-    peaks[INPUT] = max(peaks[INPUT], contact_force(slots, y, dy, e, 0))
-    peaks[OUTPUT] = max(peaks[OUTPUT], contact_force(slots, y, dy, e, e.size - 1))
-
-
 @kernel
-def run_without_events(method, slots, beta, period, y, work, clock, first, points, grid, every, samples, peaks,
-                       counts, stop):
+def run_without_events(method, slots, beta, period, y, work, clock, first, points, grid, every, samples, log, counts,
+                       stop):
     """Run over `points` points of a grid of `grid` points a period; arguments and result as of run_certified.
 
     Steps end at samples and at periods only.
@@ -106,8 +99,8 @@ def run_without_events(method, slots, beta, period, y, work, clock, first, point
     g, done, row, stride = first, 0, 1, every if every > 0 else grid
     t = g * spacing
     evaluate(slots, beta, t, y, work.k[0], work.forces)
+    watch_state(slots, y, work.k[0], work.forces.e, 0.0, log)
     if every > 0:
-        watch_forces(slots, y, work.k[0], work.forces.e, peaks)
         keep(slots, 0, y, work.k[0], work.forces.e, samples)
     while done < points:
         goal = min((g // stride + 1) * stride, grid, g + points - done)
@@ -118,17 +111,19 @@ def run_without_events(method, slots, beta, period, y, work, clock, first, point
             status, h = step(method, slots, beta, t, limit, y, work, clock, counts)
             if status != DONE:
                 return status, row if every > 0 else done
+            theta, noted = beta * t, log.met[0]
             t = limit if limit - (t + h) < 1e-13 * period else t + h
+            watch_crossings(slots.dissipation, slots, y, work.k[0], work.end, work.k[_STAGES], h, theta, beta * h, log)
+            stamp(log, noted, row - 1)
             copy(work.end, y)
             copy(work.k[_STAGES], work.k[0])
             new_scale(y, work, m)
-            watch_steps(slots, y, work.k[0], work.forces.e, peaks)
+            watch_state(slots, y, work.k[0], work.forces.e, h, log)
             if first_not_finite(y, m) != 0:
                 return NOT_FINITE, row if every > 0 else done
         done += goal - g
         g = goal
         if every > 0 and g % every == 0:
-            watch_forces(slots, y, work.k[0], work.forces.e, peaks)
             keep(slots, row, y, work.k[0], work.forces.e, samples)
             row += 1
         if g == grid:

@@ -18,7 +18,7 @@ GAP, RATE, GAP_END, RATE_END, IMPULSE, PATH, ENDS = range(7)
 #: More contacts than this many changing in one step: the rest of the step is taken whole.
 MOST_SPLITS = 64
 #: An overlap that is none but for its sign.
-_TINY = 1e-300
+TINY = 1e-300
 
 
 @kernel
@@ -44,7 +44,7 @@ def hermite_root(d0, s0, d1, s1, high):
     return x
 
 
-@part
+@kernel
 def hermite_turn(d0, s0, d1, s1):
     """Where the same cubic turns between ends at which its slopes have opposite signs."""
     a = 2.0 * (d0 - d1) + s0 + s1
@@ -102,7 +102,7 @@ def note_event(law, stiffness, ends, c, h, done):
     Simpson's rule fails over the part of the step on the contact's closed side and over the whole steps beyond it.
     """
     rate = ends[RATE, c]
-    ends[GAP, c] = copysign(_TINY, rate)  # what the cubic leaves of it is no second event
+    ends[GAP, c] = copysign(TINY, rate)  # what the cubic leaves of it is no second event
     speed, part = abs(rate), 1.0 - done if rate > 0.0 else done
     ends[IMPULSE, c] += stiffness * speed * sqrt(speed) * h * h * sqrt(h) * three_halves_excess(part)
     note_path(law, ends, c, speed, h, part)

@@ -26,6 +26,7 @@ from .events import (
     note_event,
 )
 from .jit import kernel, part, term
+from .largest_forces import watch_crossings, watch_event
 from .motion import copy, motion
 
 
@@ -133,8 +134,12 @@ def _(balance, excess, y):
 
 
 @term
-def step(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
-    """Advance y by one step from half-step index 2j of the drive table; slope in stages.k[0] before and after."""
+def step(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
+    """Advance y by one step from half-step index 2j of the drive table; slope in stages.k[0] before and after.
+
+    What happens to the forces inside the step is written to `log`. Returns how far behind the last state at which they
+    were followed the step ends.
+    """
     raise NotImplementedError
 
 
@@ -148,31 +153,38 @@ def whole_step(slots, drive, j, dtheta, h, y, stages):
 
 
 @step.of(Rk4)
-def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
+def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
+    k, end = stages.k, stages.end
+    motion(slots, ub, vb, end, k[3], stages.forces)
+    watch_crossings(slots.dissipation, slots, y, k[0], end, k[3], h, theta, dtheta, log)
     for i in range(y.size):
-        y[i] = stages.end[i]
-    motion(slots, ub, vb, y, stages.k[0], stages.forces)
+        y[i], k[0, i] = end[i], k[3, i]
     counts[0] += 1
     counts[1] += 4
+    return h
 
 
 @step.of(Rk4Split)
-def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
+def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
-    k, end = stages.k, stages.end
+    k, end, left = stages.k, stages.end, h
     motion(slots, ub, vb, end, k[3], stages.forces)
     counts[0] += 1
     counts[1] += 4
     if may_change(slots, y, k[0], end, k[3]):
-        split(slots, theta, dtheta, ub, vb, h, y, stages, counts)
+        left = split(slots, theta, dtheta, ub, vb, h, y, stages, log, counts)
     for i in range(y.size):
         y[i], k[0, i] = end[i], k[3, i]
+    return left
 
 
 @kernel
-def split(slots, theta, dtheta, u_end, v_end, h, y, stages, counts):
-    """Repeat a step in which contacts change from event to event; leaves its end in stages.end."""
+def split(slots, theta, dtheta, u_end, v_end, h, y, stages, log, counts):
+    """Repeat a step in which contacts change from event to event; leaves its end in stages.end.
+
+    Returns how far behind the last event the step ends.
+    """
     ends, end, k = stages.ends, stages.end, stages.k
     begin_split(ends)
     keep_ends(slots, y, k[0], ends, GAP, RATE)
@@ -181,7 +193,7 @@ def split(slots, theta, dtheta, u_end, v_end, h, y, stages, counts):
         keep_ends(slots, end, k[3], ends, GAP_END, RATE_END)
         first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
         if first > 1.0:
-            return
+            break
         part = first * (1.0 - done)
         middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
         u, v = driver_displacement(slots.driver, there), driver_velocity(slots.driver, there)
@@ -191,6 +203,7 @@ def split(slots, theta, dtheta, u_end, v_end, h, y, stages, counts):
         motion(slots, u, v, y, k[0], stages.forces)
         done += part
         keep_ends(slots, y, k[0], ends, GAP, RATE)
+        watch_event(slots, y, k[0], stages.forces.e, h * part, contact, there, log)
         note_event(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
@@ -199,3 +212,4 @@ def split(slots, theta, dtheta, u_end, v_end, h, y, stages, counts):
         motion(slots, u_end, v_end, end, k[3], stages.forces)
         counts[1] += 8
         counts[2] += 1
+    return h * (1.0 - done)

@@ -70,6 +70,8 @@ def place_lane(state, lane, where):
         state.y[i, lane], state.y[m + i, lane] = where[0, i], where[1, i]
     for c in range(m - 1):
         state.gaps[c, lane] = 0.0
+    for row in range(4):
+        state.ends[row, lane] = 1.0  # closed: what follows is no closing
     state.kept[lane] = 0
     keep_lane_strobe(state, lane)
 

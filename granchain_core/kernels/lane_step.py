@@ -5,14 +5,15 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from .effects.contact import positive_part
-from .effects.dissipation import LAWS, damping, shape
+from .effects.dissipation import LAWS, LinearDashpot, damping, shape
 from .effects.foundation import pull_back
 from .effects.preload import lane_overlap
 from .effects.unequal import over_mass, times_stiffness
 from .jit import inlined, term
+from .largest_forces import brief_touch, closing_rate
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch_lanes
-from .simd import blank, load, store
-from .simd_math import above_zero, root, root_by_series
+from .simd import blank, load, positive_mask, store
+from .simd_math import above_zero, clip, gate, larger, root, root_by_series
 
 
 class Values(NamedTuple):
@@ -149,10 +150,40 @@ def lane_step(values, y, h, u0, middle, end):
 
 
 @inlined
-def watch_ends(values, gap_first, gap_last, v0, ends, peaks):
+def watch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
     """Follow input force, output force and its elastic part in all lanes, where a step began."""
     first = damping(values.law, positive_part(gap_first)) * (v0 - ends.v_first)
     last = damping(values.law, positive_part(gap_last)) * ends.v_last
     watch_lanes(peaks, INPUT, ends.pushed + first)
     watch_lanes(peaks, OUTPUT, ends.passed + last)
     watch_lanes(peaks, OUTPUT_ELASTIC, ends.passed)
+    watch_jumps(values.law, values, h, gap_first, v0 - ends.v_first, gap_last, ends.v_last, before, peaks)
+
+
+@term
+def watch_jumps(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks):
+    """Follow the jumps of both end contacts over the last step. Absent, and where g(0) = 0: forces have none."""
+
+
+@watch_jumps.of(LinearDashpot)
+def _(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks):
+    first, last = over_mass(values.unequal, 1, law.coefficient), over_mass(values.unequal, values.last, law.coefficient)
+    watch_jump(law.coefficient, first, h, gap_first, rate_first, before, 0, peaks, INPUT)
+    watch_jump(law.coefficient, last, h, gap_last, rate_last, before, 2, peaks, OUTPUT)
+
+
+@inlined
+def watch_jump(coefficient, own, h, gap, rate, before, row, peaks, peak):
+    """Follow the jump of one contact; its overlap and rate a step ago are rows of `before`, and become those of now."""
+    gap_before, rate_before = load(before, row), load(before, row + 1)
+    store(before, row, gap)
+    store(before, row + 1, rate)
+    zero, was, now = blank(gap), positive_mask(gap_before), positive_mask(gap)
+    if now & ~was != 0:
+        _, closing = closing_rate(gap_before, gap, rate_before, rate + own * clip(gap), own, h)
+        closed = gate(zero - gap_before, gate(gap, coefficient * closing))
+        store(peaks, peak, larger(load(peaks, peak), closed))
+    if ~now & ~was & positive_mask(rate_before) & positive_mask(zero - rate) != 0:
+        touched = coefficient * brief_touch(gap_before, gap, rate_before, rate, h)
+        open_still = gate(zero - gap_before, gate(zero - gap, gate(rate_before, gate(zero - rate, touched))))
+        store(peaks, peak, larger(load(peaks, peak), open_still))

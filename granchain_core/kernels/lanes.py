@@ -44,8 +44,8 @@ class Lanes(NamedTuple):
 
 
 class LaneState(NamedTuple):
-    """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), sin and cos of the phase (2, 8),
-    peaks (15, 8).
+    """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), overlap and rate of the first and of
+    the last contact a step ago (4, 8), sin and cos of the phase (2, 8), peaks (15, 8).
 
     Per lane: steps in a period and steps left, periods run, the period to stop at in any case and the next at which the
     strobes are looked at; the period from which an approach may be followed and how long it is waited after a vain one,
@@ -57,6 +57,7 @@ class LaneState(NamedTuple):
 
     y: np.ndarray
     gaps: np.ndarray
+    ends: np.ndarray
     phase: np.ndarray
     peaks: np.ndarray
     steps: np.ndarray
@@ -99,7 +100,7 @@ def lane_steps(lanes, state, count):
         gap_first = lane_overlap(values.preload, sine, load(y, 1), 0)
         gap_last = lane_overlap(values.preload, load(y, last), load(y, last + 1), last)
         ends = lane_step(values, y, h, sine, middle, end)
-        watch_ends(values, gap_first, gap_last, beta * cosine, ends, state.peaks)
+        watch_ends(values, h, gap_first, gap_last, beta * cosine, ends, state.ends, state.peaks)
         sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
     store(state.phase, 1, cosine)

@@ -13,9 +13,11 @@ from .effects.contact import elastic_force, positive_part
 from .effects.dissipation import damping
 from .effects.foundation import pull_back
 from .effects.preload import overlap
-from .effects.tension import NoTension
+from .effects.tension import cut_at_zero
 from .fixed_step import drive_displacement, drive_velocity, step
-from .jit import kernel, term
+from .jit import kernel
+from .largest_forces import watch_crossings
+from .motion import copy
 
 
 class Rk4Naive(NamedTuple):
@@ -30,17 +32,6 @@ class VerletNaive(NamedTuple):
     steps_per_period: int
 
 
-@term
-def cut(tension, force):
-    """The contact force as it is. Absent: tension is allowed."""
-    return force
-
-
-@cut.of(NoTension)
-def _(tension, force):
-    return max(force, 0.0)
-
-
 @kernel
 def naive_motion(slots, u0, v0, y, dy, forces):
     """dy/dτ in (u, v); leaves the elastic forces (with what a cut adds to them) in forces.e, as `motion` does."""
@@ -53,7 +44,7 @@ def naive_motion(slots, u0, v0, y, dy, forces):
     for c in range(m - 1):
         d = positive_part(overlap(slots.preload, y, c))
         damped = damping(slots.dissipation, d) * (dy[c] - dy[c + 1])
-        force = cut(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped)
+        force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped)
         forces.e[c] = force - damped
         if c > 0:
             dy[m + c] = inverse_mass[c] * pull_back(slots.foundation, left - force, y[c])
@@ -61,7 +52,7 @@ def naive_motion(slots, u0, v0, y, dy, forces):
 
 
 @step.of(Rk4Naive)
-def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
+def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     k, stage, forces = stages.k, stages.stage, stages.forces
     ua, va = drive_displacement(slots, drive, 2 * j + 1, dtheta), drive_velocity(slots, drive, 2 * j + 1, dtheta)
     ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
@@ -74,16 +65,22 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
     for i in range(y.size):
         stage[i] = y[i] + h * k[2, i]
     naive_motion(slots, ub, vb, stage, k[3], forces)
+    copy(y, stages.end)
     for i in range(y.size):
         y[i] += h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
-    naive_motion(slots, ub, vb, y, k[0], forces)
+    naive_motion(slots, ub, vb, y, k[3], forces)
+    watch_crossings(slots.dissipation, slots, stages.end, k[0], y, k[3], h, theta, dtheta, log)
+    copy(k[3], k[0])
     counts[0] += 1
     counts[1] += 4
+    return h
 
 
 @step.of(VerletNaive)
-def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
+def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     m, k = slots.chain.inverse_mass.size, stages.k
+    copy(y, stages.end)
+    copy(k[0], k[1])
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         y[i] += h * y[m + i]
@@ -92,5 +89,7 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         k[0, i] = y[m + i]
+    watch_crossings(slots.dissipation, slots, stages.end, k[1], y, k[0], h, theta, dtheta, log)
     counts[0] += 1
     counts[1] += 1
+    return h

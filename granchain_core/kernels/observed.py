@@ -7,11 +7,12 @@ from __future__ import annotations
 
 from .fixed_step import PATIENCE, step
 from .jit import kernel
-from .sampling import CANCELLED, DONE, NOT_FINITE, first_not_finite, keep, watch_forces
+from .largest_forces import watch_state
+from .sampling import CANCELLED, DONE, NOT_FINITE, first_not_finite, keep
 
 
 @kernel
-def run_observed(method, slots, spans, pieces, substeps, y, stages, drive, samples, peaks, counts, stop):
+def run_observed(method, slots, spans, pieces, substeps, y, stages, drive, samples, log, counts, stop):
     """Run through all intervals and keep the state at every sample, the first one included.
 
     Interval i lasts spans[i], its force is the cubic pieces[i] (constant term first) and it is taken in substeps[i]
@@ -19,15 +20,15 @@ def run_observed(method, slots, spans, pieces, substeps, y, stages, drive, sampl
     """
     m = slots.chain.inverse_mass.size
     taken = 0
-    watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+    watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
     keep(slots, 0, y, stages.k[0], stages.forces.e, samples)
     for i in range(spans.size):
         for q in range(4):
             slots.driver.piece[q] = pieces[i, q]
         h = spans[i] / substeps[i]
         for j in range(substeps[i]):
-            step(method, slots, drive, j, j * h, h, h, y, stages, counts)
-            watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+            left = step(method, slots, drive, j, j * h, h, h, y, stages, log, counts)
+            watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
             taken += 1
             if taken % PATIENCE == 0 and stop[0] != 0:
                 return CANCELLED, i + 1

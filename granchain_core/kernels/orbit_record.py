@@ -2,7 +2,7 @@
 
 Each accepted step of the certified method is looked at on its dense output. A contact's overlap has a turning point
 where its bodies move equally fast; the smallest of these are the touches and separations about to appear or vanish. The
-forces are maximised inside the steps, so that their tops are as exact as the dense output (about 1e-9), not as a grid.
+largest forces are searched inside the steps (force_search.py).
 """
 
 from __future__ import annotations
@@ -12,20 +12,15 @@ from typing import NamedTuple
 import numpy as np
 
 from .certified import certified_step, inner_extremum, overlap_in_step
-from .dop853 import dense_value, evaluate, new_scale, prepare_dense
+from .dop853 import evaluate, new_scale, prepare_dense
 from .dop853_tableau import STAGES
-from .effects.contact import elastic_force, positive_part
-from .effects.preload import overlap
+from .force_search import follow_step
 from .jit import kernel, part
-from .motion import contact_force, copy
+from .motion import copy
 from .sampling import CANCELLED, DONE, NOT_FINITE, first_not_finite
 
 #: Outcome: there were more turning points than places to keep them.
 FULL = 5
-#: Golden sections around the top of a force; each shrinks the bracket to 0.618 of it.
-_SECTIONS = 32
-#: Only what comes this near to the largest force so far is maximised.
-_WORTH = 0.98
 
 
 class OrbitRecord(NamedTuple):
@@ -33,59 +28,11 @@ class OrbitRecord(NamedTuple):
 
     Turning points are rows of `turns` (T, 4): contact, +1 for a largest and −1 for a smallest overlap, scaled time
     since the orbit's phase 0, overlap.
-    `tops` (3,) are the largest input, output and elastic output force.
+    `peaks` (15,) are the largest input, output and elastic output force (peaks.py).
     """
 
     turns: np.ndarray
-    tops: np.ndarray
-
-
-@kernel
-def force_in_step(slots, beta, t, h, y, work, x, which):
-    """Input (0), output (1) or elastic output force (2) at fraction x of the step."""
-    for i in range(y.size):
-        work.probe[i] = dense_value(work.dense, y[i], x, i)
-    evaluate(slots, beta, t + x * h, work.probe, work.slope, work.forces)
-    last = work.forces.e.size - 1
-    if which == 2:
-        d = positive_part(overlap(slots.preload, work.probe, last))
-        return elastic_force(slots.chain.stiffness[last], d)
-    return contact_force(slots, work.probe, work.slope, work.forces.e, 0 if which == 0 else last)
-
-
-@part
-def top_in_step(slots, beta, t, h, y, work, which):
-    """Largest value of a force inside the step, by golden section; that at an end where it lies there."""
-    ratio = 0.6180339887498949
-    low, high = 0.0, 1.0
-    a, b = 1.0 - ratio, ratio
-    fa = force_in_step(slots, beta, t, h, y, work, a, which)
-    fb = force_in_step(slots, beta, t, h, y, work, b, which)
-    for _ in range(_SECTIONS):
-        if fa > fb:
-            high, b, fb = b, a, fa
-            a = high - ratio * (high - low)
-            fa = force_in_step(slots, beta, t, h, y, work, a, which)
-        else:
-            low, a, fa = a, b, fb
-            b = low + ratio * (high - low)
-            fb = force_in_step(slots, beta, t, h, y, work, b, which)
-    return max(fa, fb)
-
-
-@part
-def follow_forces(slots, beta, t, h, y, work, tops):
-    """Raise the largest forces to what the step holds."""
-    for which in range(3):
-        start = force_in_step(slots, beta, t, h, y, work, 0.0, which)
-        middle = force_in_step(slots, beta, t, h, y, work, 0.5, which)
-        end = force_in_step(slots, beta, t, h, y, work, 1.0, which)
-        largest = max(start, middle, end)
-        worth = largest > _WORTH * tops[which] and largest > 0.0
-        turns = 4.0 * middle - 3.0 * start - end > 0.0 and 4.0 * middle - start - 3.0 * end > 0.0
-        if worth and turns:
-            largest = max(largest, top_in_step(slots, beta, t, h, y, work, which))
-        tops[which] = max(tops[which], largest)
+    peaks: np.ndarray
 
 
 @part
@@ -121,7 +68,7 @@ def record_orbit(method, slots, beta, period, periods, y, work, clock, record, c
                 return status, p, row
             prepare_dense(slots, beta, t, h, y, work)
             row = follow_turns(slots, beta, t, h, y, work, p * period + t, record, row)
-            follow_forces(slots, beta, t, h, y, work, record.tops)
+            follow_step(slots, beta, t, h, y, work, True, record.peaks, counts)
             copy(work.end, y)
             new_scale(y, work, m)
             copy(work.k[STAGES], work.k[0])

@@ -12,6 +12,7 @@ from .effects.contact import elastic_force, positive_part
 from .effects.preload import overlap
 from .fixed_step import PATIENCE, drive_displacement, drive_velocity, step
 from .jit import kernel, term
+from .largest_forces import stamp, watch_state
 from .motion import contact_force, copy, motion, stored_energy
 from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
 from .wide import Wide
@@ -59,16 +60,6 @@ def _(balance, slots, row, y, dy, samples):
 
 
 @kernel
-def watch_forces(slots, y, dy, e, peaks):
-    """Follow input force, output force and its elastic part at one state."""
-    last = e.size - 1
-    watch(peaks, INPUT, contact_force(slots, y, dy, e, 0))
-    watch(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
-    d = positive_part(overlap(slots.preload, y, last))
-    watch(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
-
-
-@kernel
 def first_not_finite(y, m):
     """Number of the first bead whose displacement or w is not finite, or 0."""
     for i in range(1, m - 1):
@@ -86,28 +77,28 @@ def keep_strobe(y, dy, strobe):
 
 
 @term
-def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts, stop):
+def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
 
     The stop flag is asked often enough to end within milliseconds; the steps are then incomplete.
     """
     for i in range(j, j + count):
-        step(method, slots, drive, i, i * dtheta, dtheta, h, y, stages, counts)
-        watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+        left = step(method, slots, drive, i, i * dtheta, dtheta, h, y, stages, log, counts)
+        watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
         if i % PATIENCE == 0 and stop[0] != 0:
             break
 
 
 @advance.of(Wide)
-def _(along, method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts, stop):
-    wide_steps(along, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, peaks, counts, stop)
+def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+    wide_steps(along, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, log, counts, stop)
 
 
 @advance.of(Along)
-def _(along, method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts, stop):
+def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     done = 0
     while done < count and stop[0] == 0:
-        smooth = smooth_steps(along, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y, peaks)
+        smooth = smooth_steps(along, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y, log.peaks)
         if smooth > 0:
             done += smooth
             counts[0] += smooth
@@ -116,13 +107,25 @@ def _(along, method, slots, drive, j, count, dtheta, h, y, stages, peaks, counts
             u0, v0 = drive_displacement(slots, drive, i, dtheta), drive_velocity(slots, drive, i, dtheta)
             motion(slots, u0, v0, y, stages.k[0], stages.forces)
         if done < count:
-            step(method, slots, drive, j + done, (j + done) * dtheta, dtheta, h, y, stages, counts)
-            watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+            watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
+            left = step(method, slots, drive, j + done, (j + done) * dtheta, dtheta, h, y, stages, log, counts)
+            watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
+            watch_equal(slots, y, stages.k[0], stages.forces.e, log.peaks)
             done += 1
 
 
 @kernel
-def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts, stop):
+def watch_equal(slots, y, dy, e, peaks):
+    """Follow the three forces at one of equal steps (peaks.py)."""
+    last = e.size - 1
+    watch(peaks, INPUT, contact_force(slots, y, dy, e, 0))
+    watch(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
+    d = positive_part(overlap(slots.preload, y, last))
+    watch(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
+
+
+@kernel
+def run_periods(method, slots, drive, h, y, stages, strobes, log, tops, counts, stop):
     """Run whole periods with a fixed-step method, keeping the state and the largest forces of each.
 
     strobes (P+1, 2, N+2) hold displacement and velocity, the start first; tops (P, 3) in the order of `peaks`.
@@ -132,36 +135,39 @@ def run_periods(method, slots, drive, h, y, stages, strobes, peaks, tops, counts
     dtheta = 2.0 * np.pi / n
     m = slots.chain.inverse_mass.size
     keep_strobe(y, stages.k[0], strobes[0])
+    watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
     for p in range(tops.shape[0]):
         if first_not_finite(y, m) != 0:  # looked at before a step spreads it, so that the bead can be named
             return NOT_FINITE, p
-        next_period(peaks)
-        advance(stages.along, method, slots, drive, 0, n, dtheta, h, y, stages, peaks, counts, stop)
+        next_period(log.peaks)
+        advance(stages.along, method, slots, drive, 0, n, dtheta, h, y, stages, log, counts, stop)
         if stop[0] != 0:
             return CANCELLED, p
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p
         keep_strobe(y, stages.k[0], strobes[p + 1])
-        copy(peaks[::ROWS], tops[p])
+        copy(log.peaks[::ROWS], tops[p])
     return DONE, tops.shape[0]
 
 
 @kernel
-def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples, peaks, counts, stop):
+def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples, log, counts, stop):
     """Run with a fixed-step method from step index `first_step` of the period, keeping every stride-th state.
 
-    Row 0 of `samples` is the state it starts from. Returns (status, rows filled).
+    Row 0 of `samples` is the state it starts from. Closings are noted in `log`. Returns (status, rows filled).
     """
     n = method.steps_per_period
     dtheta = 2.0 * np.pi / n
     m = slots.chain.inverse_mass.size
     j = first_step
-    watch_forces(slots, y, stages.k[0], stages.forces.e, peaks)
+    watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
     keep(slots, 0, y, stages.k[0], stages.forces.e, samples)
     for row in range(1, samples.displacement.shape[0]):
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, row - 1
-        advance(stages.along, method, slots, drive, j, stride, dtheta, h, y, stages, peaks, counts, stop)
+        noted = log.met[0]
+        advance(stages.along, method, slots, drive, j, stride, dtheta, h, y, stages, log, counts, stop)
+        stamp(log, noted, row - 1)
         j = 0 if j + stride == n else j + stride
         if stop[0] != 0:
             return CANCELLED, row

@@ -13,10 +13,11 @@ from .sampling import CANCELLED, DONE, NOT_FINITE, first_not_finite, keep_strobe
 
 
 @kernel
-def run_shadowed(method, slots, drive, h, y, other, stages, shadow_stages, growth, strobes, counts, stop):
+def run_shadowed(method, slots, drive, h, y, other, stages, shadow_stages, growth, strobes, forces, counts, stop):
     """Run y and `other` through growth.size periods, noting the log of each period's growth of their distance.
 
-    Both start at phase 0 with their slopes in place; strobes (P, 2, N+2) are those of y. Returns (status, periods).
+    Both start at phase 0 with their slopes in place; strobes (P, 2, N+2) are those of y. The forces of either go into
+    the log `forces`, which nobody reads. Returns (status, periods).
     """
     n = method.steps_per_period
     dtheta = 2.0 * np.pi / n
@@ -24,8 +25,8 @@ def run_shadowed(method, slots, drive, h, y, other, stages, shadow_stages, growt
     start = distance(y, other, m)
     for p in range(growth.size):
         for j in range(n):
-            step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, counts)
-            step(method, slots, drive, j, j * dtheta, dtheta, h, other, shadow_stages, counts)
+            step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, forces, counts)
+            step(method, slots, drive, j, j * dtheta, dtheta, h, other, shadow_stages, forces, counts)
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p
         now = max(distance(y, other, m), 1e-300)

@@ -10,6 +10,7 @@ from .effects.driver import driver_displacement, driver_velocity
 from .events import GAP, IMPULSE, MOST_SPLITS, PATH, RATE, begin_split, first_event, note_event
 from .fixed_step import drive_displacement, drive_velocity
 from .jit import inlined, kernel, part
+from .largest_forces import watch_ends
 from .peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from .simd import at, blank, positive_mask, store
 from .simd_math import larger
@@ -34,7 +35,7 @@ from .wide import (
 
 
 @part
-def split_row(wide, slots, theta, dtheta, u_end, v_end, h, counts):
+def split_row(wide, slots, theta, dtheta, u_end, v_end, h, log, counts):
     """Repeat the step in the workspace from contact event to contact event; its end is written there anew."""
     ends, row, driver, done = wide.ends, row_of(wide, slots), slots.driver, 0.0
     begin_split(ends)
@@ -50,6 +51,7 @@ def split_row(wide, slots, theta, dtheta, u_end, v_end, h, counts):
         store_at(wide, BEGIN, event)
         done += part
         note_event(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
+        watch_ends(slots, ends, contact, there, log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
                        given_back(row, load_row(wide.width, ends, PATH)),
@@ -81,7 +83,7 @@ def watch_block(values, count, largest, peaks, first):
 
 
 @part
-def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, peaks, counts, stop):
+def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, counts, stop):
     """Take `count` steps from step index j of the period, slope dy and forces e at the end included.
 
     The stop flag leaves them incomplete.
@@ -106,16 +108,16 @@ def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, peaks, counts,
             if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
                 store_at(wide, BEGIN, x)
                 store_at(wide, END, end)
-                split_row(wide, slots, (first + k) * dtheta, dtheta, ub, vb, h, counts)
+                split_row(wide, slots, (first + k) * dtheta, dtheta, ub, vb, h, log, counts)
                 end = load_at(wide, END)
                 closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
             x, closed, rising = end, closed_after, rising_after
             pushed, passed, elastic = keep_forces(wide, row, m - 2, k, x)
             top_in, top_out = larger(top_in, pushed), larger(top_out, passed)
             top_elastic = larger(top_elastic, elastic)
-        watch_block(wide.forces[0], block, top_in, peaks, INPUT)
-        watch_block(wide.forces[1], block, top_out, peaks, OUTPUT)
-        watch_block(wide.forces[2], block, top_elastic, peaks, OUTPUT_ELASTIC)
+        watch_block(wide.forces[0], block, top_in, log.peaks, INPUT)
+        watch_block(wide.forces[1], block, top_out, log.peaks, OUTPUT)
+        watch_block(wide.forces[2], block, top_elastic, log.peaks, OUTPUT_ELASTIC)
         if stop[0] != 0:
             break
     restore_subnormals(before)

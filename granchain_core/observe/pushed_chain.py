@@ -13,6 +13,7 @@ from ..kernels import sampling
 from ..kernels.effects.pushed import Sampled
 from ..kernels.events import ENDS
 from ..kernels.fixed_step import Rk4Split, Stages
+from ..kernels.largest_forces import new_log
 from ..kernels.motion import place
 from ..kernels.observed import run_observed
 from ..kernels.peaks import ROWS, forget
@@ -33,7 +34,7 @@ class PushedChain:
         self.record = record
         self.counts = Counts() if counts is None else counts
         self._stop = stop
-        self._peaks = np.zeros(3 * ROWS)
+        self._log = new_log()
         scales = driven.scales
         self._spans = np.diff(record.time) * scales.rate
         self._pieces = record.cubics() / scales.force / scales.rate ** np.arange(4)
@@ -44,7 +45,7 @@ class PushedChain:
     @property
     def tops(self) -> np.ndarray:
         """Largest input, output and elastic output force of the last run, in scaled units."""
-        return self._peaks[::ROWS].copy()
+        return self._log.peaks[::ROWS].copy()
 
     def run(self, start: State, halvings: int) -> sampling.Samples:
         """The motion from `start` in steps halved so many times; one row a sample, in scaled units."""
@@ -62,11 +63,11 @@ class PushedChain:
                         lo.forces(), None)
         lo.slots.driver.piece[:] = self._pieces[0]
         place(lo.slots, 0.0, y, stages.k[0], stages.forces, True)
-        forget(self._peaks)
+        forget(self._log.peaks)
         rows = len(self._spans) + 1
         samples = sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
         status, done = run_observed(Rk4Split(0), lo.slots, self._spans, self._pieces, substeps, y, stages,
-                                    np.zeros((0, 2)), samples, self._peaks, self.counts.array, self._stop)
+                                    np.zeros((0, 2)), samples, self._log, self.counts.array, self._stop)
         if status == sampling.CANCELLED:
             raise Cancelled
         if status == sampling.NOT_FINITE:

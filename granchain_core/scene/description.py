@@ -151,6 +151,11 @@ class Scene:
         return self.dissipation != "none" and self.D > 0
 
     @property
+    def forces_jump(self) -> bool:
+        """Whether a contact's force jumps when it closes in motion: a linear dashpot's does, as g(0) > 0."""
+        return self.has_dissipation and self.dissipation == "linear"
+
+    @property
     def cuts_tension(self) -> bool:
         """Whether contact forces are cut at zero: there has to be damping for them to be below."""
         return self.tension == "cut" and self.has_dissipation

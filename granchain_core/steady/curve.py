@@ -14,6 +14,7 @@ from ..errors import BadInput, NumbersFailed, unknown_name
 from ..integrate import Engine, State
 from ..integrate.engine import new_stop
 from ..integrate.lane_block import can_share_lanes
+from ..result import ForceErrors, relative_changes
 from ..scene import Scene
 from .lane_curve import lane_results
 from .lane_job import LaneResult
@@ -30,7 +31,7 @@ MOST_POINTS = 100_000
 
 @dataclass(frozen=True, eq=False)
 class CurvePoint:
-    """The steady state at one frequency: largest forces [N], regime, relative error of the output force.
+    """The steady state at one frequency: largest forces [N], regime, relative errors of the forces.
 
     Where the motion is not periodic the forces are the largest seen in the last periods and no error is claimed.
     `failure` is a sentence if the numbers failed there, `status` the outcome's name; the forces are then NaN.
@@ -41,10 +42,15 @@ class CurvePoint:
     max_output_force_elastic: float
     max_input_force: float
     regime: Regime
-    error_estimate: float | None
+    force_errors: ForceErrors
     state: State
     failure: str = ""
     status: str = "done"
+
+    @property
+    def error_estimate(self) -> float | None:
+        """Relative error of the output force; None where none is claimed."""
+        return self.force_errors.output
 
 
 @dataclass(eq=False)
@@ -94,13 +100,14 @@ def _certified_point(way: Settling) -> CurvePoint:
     finer.start(engine.state)
     _, second = finer.periods(n)
     tops, before = second.max(axis=0), first.max(axis=0)
-    change = float(np.abs(tops[1:] - before[1:]).max() / tops[1]) if tops[1] > 0.0 else 0.0
     # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
-    return _point(way.scene, tops * finer.lowered.scales.force, way.regime, change + 1.5 * distance, finer)
+    errors = relative_changes(tops, before) + 1.5 * distance
+    return _point(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer)
 
 
-def _point(scene: Scene, tops: np.ndarray, regime: Regime, error: float | None, engine: Engine) -> CurvePoint:
-    return CurvePoint(scene.f, float(tops[1]), float(tops[2]), float(tops[0]), regime, error, engine.state)
+def _point(scene: Scene, tops: np.ndarray, regime: Regime, errors: np.ndarray | None, engine: Engine) -> CurvePoint:
+    return CurvePoint(scene.f, float(tops[1]), float(tops[2]), float(tops[0]), regime, ForceErrors.of(errors),
+                      engine.state)
 
 
 def safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
@@ -110,7 +117,7 @@ def safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoin
     except NumbersFailed as failed:
         nothing = Regime("unsettled", None, None, None, 0)
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
-        return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, None, start or resting, failed.sentence,
+        return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, ForceErrors(), start or resting, failed.sentence,
                           failed.status)
 
 
@@ -166,7 +173,7 @@ def _points(scenes: Iterator[Scene], flag: np.ndarray) -> Iterator[CurvePoint]:
 def _from_lane(result: LaneResult) -> CurvePoint:
     tops = result.tops
     return CurvePoint(result.scene.f, float(tops[1]), float(tops[2]), float(tops[0]), result.regime,
-                      result.error_estimate, result.state, result.failure,
+                      ForceErrors.of(result.errors), result.state, result.failure,
                       "not-finite" if result.failure else "done")
 
 

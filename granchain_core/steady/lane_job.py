@@ -6,16 +6,19 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..integrate import State
+from ..integrate import Engine, Setting, State
 from ..integrate.engine import rest
 from ..integrate.lane_block import LaneBlock, state_of
 from ..lower import Lowered
+from ..result import relative_changes
 from ..scene import Scene
 from .regime import SLOW_RECORD, Regime, slowing
 from .settle import MOST_PERIODS, MOST_STEPS, SLOW_PERIODS
 
 #: The method's order is uneven at contact events, so its error is not taken for less than this times the change.
 _CAUTION = 2.0
+#: How the largest forces on an orbit are found where they jump: finer than the lanes that found the orbit.
+_LOCATED = Setting("rk4-split", refine=4)
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
 
@@ -33,16 +36,21 @@ class Start:
 class LaneResult:
     """A steady state found in a lane: largest forces [N] in the order input, output, elastic output.
 
-    `number` is that of its start.
+    `errors` (3,) are their relative errors, None where none is claimed; `number` is that of its start.
     """
 
     scene: Scene
     tops: np.ndarray
     regime: Regime
-    error_estimate: float | None
+    errors: np.ndarray | None
     state: State
     failure: str = ""
     number: int = 0
+
+    @property
+    def error_estimate(self) -> float | None:
+        """Relative error of the output force; None where none is claimed."""
+        return None if self.errors is None else float(self.errors[1])
 
 
 @dataclass(eq=False)
@@ -78,14 +86,24 @@ class Job:
         assert self.coarse is not None
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
-        tops = block.tops(lane, regime.period)
-        change = float(np.abs(tops[1:] - before[1:]).max() / tops[1]) if tops[1] > 0.0 else 0.0
-        distance = float(block.state.seen[lane, 2])
+        y, distance = block.state.y[:, lane], float(block.state.seen[lane, 2])
         # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
-        error = _CAUTION * change + 1.5 * max(distance, regime.distance)
-        state = state_of(self.lowered, block.state.y[:, lane])
+        tops = block.tops(lane, regime.period)
+        errors = _CAUTION * relative_changes(tops, before) + 1.5 * max(distance, regime.distance)
+        if self.scene.forces_jump:
+            tops = self._located_tops(y, regime.period)
         tops = tops * self.lowered.scales.force
-        return LaneResult(self.scene, tops, replace(regime, distance=distance), error, state, number=self.number)
+        return LaneResult(self.scene, tops, replace(regime, distance=distance), errors, state_of(self.lowered, y),
+                          number=self.number)
+
+    def _located_tops(self, y: np.ndarray, period: int) -> np.ndarray:
+        """Largest forces (3,) on the orbit through the scaled state y, with the steps split at contact events.
+
+        Lanes take their steps across events: what they see of a jump is off by an order of the step.
+        """
+        engine, row = Engine(self.scene, _LOCATED, 1, lowered=self.lowered), self.lowered.row
+        engine.start_scaled(np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]]))
+        return engine.periods(period)[1].max(axis=0)
 
 
 def draft_result(job: Job, block: LaneBlock, lane: int) -> LaneResult:

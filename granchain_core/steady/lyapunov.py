@@ -7,6 +7,7 @@ import numpy as np
 from ..integrate import Engine
 from ..integrate.lane_block import NEVER, LaneBlock
 from ..kernels.lane_looks import REMEMBERED
+from ..kernels.largest_forces import new_log
 from ..kernels.section import LONGEST_PERIOD
 from ..kernels.shadow import run_shadowed
 from ..lower import Lowered
@@ -65,6 +66,6 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     # step by step, whatever vectors the engine has: one kernel for chains of every length
     one, other = engine.work._replace(along=None), shadow.work._replace(along=None)
     status, done = run_shadowed(engine.method, engine.lowered.slots, engine.drive, engine.h, engine.y, shadow.y,
-                                one, other, growth, strobes, engine.counts.array, engine.stop)
+                                one, other, growth, strobes, new_log(), engine.counts.array, engine.stop)
     engine.raise_for(status, done)
     return growth[block:].reshape(blocks, block).mean(axis=1), strobes[:, :, 1:-1]

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..integrate import Engine, Setting, State, method_for
 from ..integrate.engine import rest
-from ..result import Cost, Run, run_from
+from ..result import Cost, Run, relative_changes, run_from
 from ..scene import Scene
 from .extrapolate import ORDER, reduced_rank, within_reach
 from .lyapunov import exponents
@@ -202,8 +202,11 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     fine.counts.array += way.engine.counts.array + engine.counts.array + coarse.counts.array
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(way.regime, distance=distance)
-    integration /= 1.0 - slowness(way.regime)
-    run = run_from(fine, record, 0, regime, integration + distance, cost)
+    # an error e of the n-period map moves its fixed point by e/(1 − |μ|), and the forces with it
+    still = 1.0 / (1.0 - slowness(way.regime))
+    forces = relative_changes(fine.tops, coarse.tops) + 1.5 * still * integration
+    integration *= still
+    run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces + 1.5 * distance)
     return Settled(run, regime, start, origin, False, True)
 
 

@@ -1,7 +1,8 @@
 """Two-parameter diagrams as HDF5: /map with the two knobs as labelled axes.
 
 /map    one dimension scale per knob, named as the knob; max_input_force, max_output_force, max_output_force_elastic,
-        error_estimate, multiplier, lyapunov, lyapunov_error, regime, period, periods_run (y, x)
+        their relative errors error_estimate_input, error_estimate (of the output force), error_estimate_elastic,
+        multiplier, lyapunov, lyapunov_error, regime, period, periods_run (y, x)
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ _COLUMNS = {  # name: (unit, meaning)
     "max_input_force": ("N", "largest force of the driver on bead 1 in the steady state"),
     "max_output_force": ("N", "largest force on the wall in the steady state"),
     "max_output_force_elastic": ("N", "largest elastic force on the wall in the steady state, the paper's F_out"),
-    "error_estimate": ("1", "relative error of the output forces, NaN where none is claimed"),
+    "error_estimate_input": ("1", "relative error of the largest input force, NaN where none is claimed"),
+    "error_estimate": ("1", "relative error of the largest output force, NaN where none is claimed"),
+    "error_estimate_elastic": ("1", "relative error of the largest elastic output force, NaN where none is claimed"),
     "regime": ("", "what the motion is"),
     "period": ("1", "period in drive periods, 0 where not periodic"),
     "periods_run": ("1", "drive periods run until that was decided"),
@@ -67,7 +70,7 @@ def load_diagram(path: str | Path) -> Diagram:
                         Axis.of(y, file["map"][y][()]))
             cells = empty_cells(grid)
             for name in CELL.names or ():
-                if name != "number":
+                if name != "number" and name in file["map"]:  # earlier versions kept one error only
                     cells[name] = file["map"][name][()].reshape(-1)
             return Diagram(grid, cells, float(file.attrs["wall_s"]))
     except BadInput:

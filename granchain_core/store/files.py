@@ -2,7 +2,9 @@
 
 /run    time (s), bead, contact; displacement, velocity, kinetic_energy (time, bead); force (time, contact);
         drive_displacement, input_force, output_force, output_force_elastic (time)
-/curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, error_estimate (frequency);
+        jump; jump_time (s), jump_contact, jump_force (N) (jump): closings at which the force jumps from 0
+/curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, their relative errors
+        error_estimate (of the output force), error_estimate_elastic, error_estimate_input (frequency);
         regime, status, period (frequency)
 The root carries schema version, scene, method, accuracy asked and reached, cost, versions and time of writing. A file
 is written under a temporary name, synced and renamed: there is never half a file under its own name.
@@ -25,7 +27,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..quantities import QUANTITIES
-from ..result import Cost, Run
+from ..result import Cost, ForceErrors, Jumps, Run
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..steady.curve import Curve
@@ -45,6 +47,8 @@ _RUN = {  # name: (dimensions, unit, meaning)
 #: File systems take 255 bytes; the temporary name needs some of them.
 _LONGEST_NAME = 230
 _MAXIMA = ("max_input_force", "max_output_force", "max_output_force_elastic")
+#: Where the relative errors of the largest forces stand in a run's file.
+_ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
 
 
 def save(result: Run, path: str | Path) -> Path:
@@ -60,14 +64,25 @@ def save(result: Run, path: str | Path) -> Path:
         file.attrs["regime"] = json.dumps(asdict(result.regime))
         for name in _MAXIMA:
             file.attrs[name] = getattr(result, name)
+        for name, value in zip(_ERRORS, result.force_errors.row, strict=True):
+            file.attrs[name] = value
         group = file.create_group("run")
         _scale(group, "time", result.time, "s", "time since the start, at drive phase 0")
         _scale(group, "bead", np.arange(1, result.scene.N + 1), "1", "bead number from the driver")
         _scale(group, "contact", np.arange(result.scene.N + 1), "1", "contact number; c joins bodies c and c + 1")
         for name, (dimensions, unit, meaning) in _RUN.items():
             _variable(group, name, getattr(result, name), dimensions, unit, meaning)
+        _save_jumps(group, result.jumps)
 
     return _write(path, write)
+
+
+def _save_jumps(group: h5py.Group, jumps: Jumps) -> None:
+    _scale(group, "jump", np.arange(len(jumps.time)), "1", "number of the closing at which a contact force jumps")
+    _variable(group, "jump_time", jumps.time, ("jump",), "s", "time at which a contact closes in motion")
+    _variable(group, "jump_contact", jumps.contact, ("jump",), "1", "contact that closes")
+    _variable(group, "jump_force", jumps.force, ("jump",), "N", "its force just after, where it was 0 before")
+    group["jump_time"].attrs["missing"] = jumps.missing
 
 
 def save_curve(curve: Curve, path: str | Path) -> Path:
@@ -82,8 +97,10 @@ def save_curve(curve: Curve, path: str | Path) -> Path:
         for name in _MAXIMA:
             words = name.replace("_", " ").replace("max", "largest", 1)
             _variable(group, name, curve.column(name), ("frequency",), "N", f"{words} in the steady state")
-        errors = np.array([_or_nan(p.error_estimate) for p in curve.points])
-        _variable(group, "error_estimate", errors, ("frequency",), "1", "relative error of the output forces")
+        errors = np.array([p.force_errors.row for p in curve.points])
+        for column, (name, force) in enumerate((("error_estimate_input", "input"), ("error_estimate", "output"),
+                                                ("error_estimate_elastic", "elastic output"))):
+            _variable(group, name, errors[:, column], ("frequency",), "1", f"relative error of largest {force} force")
         periods = np.array([p.regime.period or 0 for p in curve.points])
         _variable(group, "period", periods, ("frequency",), "1", "period in drive periods, 0 where not periodic")
         outcomes = np.array([p.status for p in curve.points], dtype=h5py.string_dtype())
@@ -111,7 +128,7 @@ def _read(path: str | Path) -> Run:
             raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
         group = file["run"]
         arrays = {n: group[n][()] for n in ("time", "displacement", "velocity", "force", "drive_displacement")}
-        attrs = dict(file.attrs)
+        attrs, jumps = dict(file.attrs), _read_jumps(group)
     regime = json.loads(attrs["regime"])
     regime["lyapunov"] = tuple(regime["lyapunov"]) if regime["lyapunov"] else None
     scene = Scene.from_json(json.loads(attrs["scene"]))
@@ -126,8 +143,17 @@ def _read(path: str | Path) -> Run:
         regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
         error_estimate=_or_none(attrs["accuracy_reached"]), energy_residual=_or_none(attrs["energy_residual"]),
         max_input_force=float(attrs["max_input_force"]), max_output_force=float(attrs["max_output_force"]),
-        max_output_force_elastic=float(attrs["max_output_force_elastic"]), **arrays,
+        max_output_force_elastic=float(attrs["max_output_force_elastic"]), jumps=jumps,
+        force_errors=ForceErrors(*(_or_none(attrs.get(name, np.nan)) for name in _ERRORS)), **arrays,
     )
+
+
+def _read_jumps(group: h5py.Group) -> Jumps:
+    """The jumps of a run; files written before they were kept have none."""
+    if "jump_time" not in group:
+        return Jumps()
+    return Jumps(group["jump_time"][()], group["jump_contact"][()], group["jump_force"][()],
+                 int(group["jump_time"].attrs["missing"]))
 
 
 def _or_nan(value: float | None) -> float:

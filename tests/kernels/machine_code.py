@@ -1,28 +1,35 @@
 """Program: vector instructions in the machine code of the two SIMD steps, effect by effect, as JSON.
 
-    GRANCHAIN_CACHE=<empty folder> python machine_code.py
+    python machine_code.py types > types.pickle
+    NUMBA_CPU_NAME=… NUMBA_CPU_FEATURES=… GRANCHAIN_CACHE=<empty folder> python machine_code.py < types.pickle
 
 {kernel: {case: counts}} for `wide` (one chain along the lanes, its split step included) and `lanes` (eight chains), with
 nothing but contacts and driver, with one effect more, and, under "… by hand", for the same source with the absent
 effects struck out by hand (struck_out.py). Only code that is fresh can be read: what comes from the cache has none.
+
+The first call runs kernels, to learn the types of their arguments; the second only compiles, for whatever processor it
+is told, and that need not be the one it runs on.
 """
 
 from __future__ import annotations
 
 import json
+import pickle
 import re
+import sys
 import tempfile
 from collections import Counter
 from pathlib import Path
 
 import numba
 import struck_out
+from numba import types
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.engine import new_stop
 from granchain_core.integrate.lane_block import LaneBlock
-from granchain_core.kernels import lanes, wide, wide_run
+from granchain_core.kernels import lanes, wide_run
 
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
 NOTHING = {"dissipation": "none"}
@@ -50,7 +57,7 @@ def functions(text: str) -> dict[str, list[str]]:
 
 def counts(kernel, arguments) -> dict:
     """Packed arithmetic by kind, and all instructions and mnemonics of the kernel with what it calls."""
-    kernel.compile(tuple(numba.typeof(a) for a in arguments))
+    kernel.compile(arguments)
     text = kernel.inspect_asm(kernel.signatures[-1])
     found, mnemonics = Counter(), Counter()
     for lines in functions(text).values():
@@ -65,32 +72,44 @@ def counts(kernel, arguments) -> dict:
     return {"packed": dict(found), "all": sum(mnemonics.values()), "mnemonics": dict(sorted(mnemonics.items()))}
 
 
-def wide_counts(module, steps, e: Engine) -> dict:
-    """Of the step of one chain: its workspace is of `module`, its code in `steps`."""
-    space = module.Wide(module.WIDTHS[e.work.along.width.lanes], *e.work.along[1:])
-    return counts(steps.wide_steps, (space, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0],
-                                      e.work.forces.e, e.peaks, e.counts.array, e.stop))
+def argument_types(knobs: dict) -> dict[str, tuple]:
+    """Types of the arguments of both kernels for section 2's chain with these knobs."""
+    chain = scene("sec2").evolve(**knobs)
+    e, block = Engine(chain, Setting("rk4-split"), 1), LaneBlock(chain, new_stop())
+    one = (e.work.along, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0], e.work.forces.e, e.log,
+           e.counts.array, e.stop)
+    return {"wide": tuple(map(numba.typeof, one)), "lanes": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
 
 
-def lane_counts(module, block: LaneBlock) -> dict:
-    """Of the step of eight chains."""
-    return counts(module.lane_steps, (block.lanes, block.state, 4))
+def by_hand(found: dict[str, tuple], absent: tuple[str, ...]) -> dict[str, dict]:
+    """Counts of both kernels with the absent effects struck out of their source."""
+    with tempfile.TemporaryDirectory() as folder:
+        struck = struck_out.without(absent, Path(folder))
+        workspace, *others = found["wide"]
+        width = numba.typeof(struck["wide"].WIDTHS[16])
+        own = types.NamedTuple((width, *workspace.types[1:]), struck["wide"].Wide)
+        return {"wide": counts(struck["wide_run"].wide_steps, (own, *others)),
+                "lanes": counts(struck["lanes"].lane_steps, found["lanes"])}
+
+
+def cases() -> dict[str, dict]:
+    """Knobs by case: nothing, and one effect alone."""
+    return {"nothing": NOTHING, **{effect: {**NOTHING, **knobs} for effect, knobs in EFFECTS.items()}}
 
 
 def main() -> None:
-    """Print the counts."""
+    """Write the types, or read them and print the counts."""
+    if sys.argv[1:] == ["types"]:
+        sys.stdout.buffer.write(pickle.dumps({case: argument_types(knobs) for case, knobs in cases().items()}))
+        return
     found: dict[str, dict] = {"wide": {}, "lanes": {}}
-    cases = {"nothing": NOTHING, **{effect: {**NOTHING, **knobs} for effect, knobs in EFFECTS.items()}}
-    for case, knobs in cases.items():
-        chain = scene("sec2").evolve(**knobs)
-        engine, block = Engine(chain, Setting("rk4-split"), 1), LaneBlock(chain, new_stop())
-        found["wide"][case], found["lanes"][case] = wide_counts(wide, wide_run, engine), lane_counts(lanes, block)
+    for case, signatures in pickle.loads(sys.stdin.buffer.read()).items():
+        found["wide"][case] = counts(wide_run.wide_steps, signatures["wide"])
+        found["lanes"][case] = counts(lanes.lane_steps, signatures["lanes"])
         if case in BY_HAND:
             absent = (*(effect for effect in EFFECTS if effect != case), "unequal")
-            with tempfile.TemporaryDirectory() as folder:
-                struck = struck_out.without(absent, Path(folder))
-                found["wide"][f"{case} by hand"] = wide_counts(struck["wide"], struck["wide_run"], engine)
-                found["lanes"][f"{case} by hand"] = lane_counts(struck["lanes"], block)
+            for kernel, counted in by_hand(signatures, absent).items():
+                found[kernel][f"{case} by hand"] = counted
     print(json.dumps(found))
 
 

@@ -60,6 +60,27 @@ def _(law, d):
 
 
 @term
+def damping_slope(law, d):
+    """g'(d) for d = [δ]_+; 0 where the contact is open, though the last two have an infinite slope there."""
+    return 0.0
+
+
+@damping_slope.of(LinearDashpot)
+def _(law, d):
+    return 0.0
+
+
+@damping_slope.of(Tsuji)
+def _(law, d):
+    return gate(d, 0.25 * law.coefficient / (root(d) * root(root(d))))
+
+
+@damping_slope.of(KuwabaraKono)
+def _(law, d):
+    return gate(d, 0.5 * law.coefficient / root(d))
+
+
+@term
 def primitive(law, d):
     """G(d) with G' = g and G(0) = 0."""
     return 0.0

@@ -50,6 +50,11 @@ def _(driver, theta):
     return p[0] + theta * (p[1] + theta * (p[2] + theta * p[3]))
 
 
+@driver_acceleration.of(Sampled)
+def _(driver, u0):
+    return 0.0
+
+
 @driver_displacement.of(Echo)
 def _(driver, theta):
     return driver.amplitude * sin(theta)

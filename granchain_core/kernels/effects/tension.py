@@ -89,6 +89,17 @@ def _(tension, slots, y, dy, e):
 
 
 @term
+def cut_at_zero(tension, force):
+    """A contact's force as it acts. Absent: tension is allowed."""
+    return force
+
+
+@cut_at_zero.of(NoTension)
+def _(tension, force):
+    return max(force, 0.0)
+
+
+@term
 def unless_slack(tension, c, force):
     """The force of contact c, or 0 where it is slack. Absent: none is."""
     return force
