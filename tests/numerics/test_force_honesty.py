@@ -13,7 +13,7 @@ from forces.judge import Verdict, verdicts
 from forces.located import located
 from hard.fuzzing import oracle
 
-from granchain_core import Run, scene
+from granchain_core import scene
 
 LAWS = [("linear", "allowed"), ("linear", "cut"), ("tsuji", "cut"), ("kuwabara-kono", "allowed")]
 #: Seed of the slice of random scenes, not one by which factors were chosen.
@@ -80,7 +80,6 @@ def slice_of(kind: str, count: int) -> list[Verdict]:
     return [v for v in verdicts(kind, count, SEED, FEW if kind == "run" else FEW[:1]) if isinstance(v, Verdict)]
 
 
-@pytest.mark.skipif("error_estimate_input" not in Run.__dataclass_fields__, reason="runs state no errors of their forces")
 @pytest.mark.parametrize(("kind", "count"), [("run", 40), ("curve", 3), ("map", 3)])
 def test_largest_forces_are_within_what_is_stated_of_them(kind, count):
     """In 99.5 % of all (`python -m tests.numerics.forces`), which is one force of these some hundred at most; and none is

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from granchain_core import NumbersFailed, Scene, resonance_curve, run
-from granchain_core.diagram.cells import cell_of
+from granchain_core.diagram.cells import ERRORS, cell_of
 from granchain_core.diagram.compute import iter_diagram
 from granchain_core.diagram.grid import Axis, Grid
 from granchain_core.errors import OverBudget
@@ -83,18 +83,13 @@ def judge_run(drawn: Draw) -> Verdict | str:
         true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=_MOST_STEPS).tops for tolerance in (_TIGHT, _LOOSE))
     except (TooLong, FloatingPointError):
         return "truth not known"
-    stated = [getattr(found, f"error_estimate_{name}", None) for name in COLUMNS]
-    return Verdict("run", drawn.index, chosen, f"{found.status} {drawn.periods}+{drawn.record}", apart(forces(found), true), _numbers(stated),
-                   _CAUTION * apart(nearly, true))
+    return Verdict("run", drawn.index, chosen, f"{found.status} {drawn.periods}+{drawn.record}", apart(forces(found), true),
+                   np.array(found.force_errors.row), _CAUTION * apart(nearly, true))
 
 
 def forces(found: Any) -> np.ndarray:
     """The three largest forces of a run or a curve point."""
     return np.array([found.max_input_force, found.max_output_force, found.max_output_force_elastic])
-
-
-def _numbers(stated: list) -> np.ndarray:
-    return np.array([np.nan if one is None else one for one in stated], dtype=float)
 
 
 def on_orbit(chosen: Scene, state: State, n: int) -> tuple[State, float] | None:
@@ -130,9 +125,8 @@ def judge_curve(seed: int, index: int, structures: list) -> Iterator[Verdict | s
     for point in resonance_curve(base, frequencies).points:
         if point.failure or point.regime.period is None:
             continue
-        output = point.error_estimate
-        stated = [getattr(point, "error_estimate_input", None), output, getattr(point, "error_estimate_elastic", output)]
-        yield judge_point("curve", index, base.evolve(f=point.frequency), point.state, point.regime.period, forces(point), _numbers(stated))
+        yield judge_point("curve", index, base.evolve(f=point.frequency), point.state, point.regime.period, forces(point),
+                          np.array(point.force_errors.row))
 
 
 def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str]:
@@ -143,11 +137,9 @@ def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str
         cell = cell_of(result)
         if result.failure or result.regime.period is None:
             continue
-        names, output = cell.dtype.names or (), float(cell["error_estimate"])
-        stated = [float(cell[name]) if name in names else other
-                  for name, other in (("error_estimate_input", np.nan), ("error_estimate", output), ("error_estimate_elastic", output))]
+        stated = np.array([cell[name] for name in ERRORS])
         tops = np.array([cell["max_input_force"], cell["max_output_force"], cell["max_output_force_elastic"]])
-        yield judge_point("map", index, result.scene, result.state, result.regime.period, tops, np.array(stated))
+        yield judge_point("map", index, result.scene, result.state, result.regime.period, tops, stated)
 
 
 def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0) -> Iterator[Verdict | str]:
