@@ -9,10 +9,12 @@ lies half way between on a logarithmic scale.
 from __future__ import annotations
 
 import functools
+import threading
 import time
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numba.core import event
 
 from .errors import OverBudget
 from .integrate import METHODS, Setting
@@ -40,6 +42,46 @@ class Estimate:
 
     seconds: float
     steps: float
+
+
+class _Compiler(event.Listener):
+    """Seconds that each thread has spent in Numba's compiler, waiting for it, or loading what it compiled before."""
+
+    def __init__(self) -> None:
+        self._own = threading.local()
+
+    @property
+    def seconds(self) -> float:
+        """Those of this thread so far."""
+        return getattr(self._own, "seconds", 0.0)
+
+    def on_start(self, event: event.Event) -> None:
+        """The compiler is asked for; kernels that call others ask again meanwhile."""
+        self._own.depth = getattr(self._own, "depth", 0) + 1
+        if self._own.depth == 1:
+            self._own.began = time.perf_counter()
+
+    def on_end(self, event: event.Event) -> None:
+        """The compiler is done."""
+        self._own.depth -= 1
+        if self._own.depth == 0:
+            self._own.seconds = self.seconds + time.perf_counter() - self._own.began
+
+
+_COMPILER = _Compiler()
+event.register("numba:compiler_lock", _COMPILER)
+
+
+class Stopwatch:
+    """What a computation in this thread takes by itself: a kernel's first use compiles it, which is no part of it."""
+
+    def __init__(self) -> None:
+        self._began, self._compiled = time.perf_counter(), _COMPILER.seconds
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since the stopwatch was made, without those of the compiler."""
+        return time.perf_counter() - self._began - (_COMPILER.seconds - self._compiled)
 
 
 @functools.cache

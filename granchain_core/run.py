@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .budget import BUDGET, check_budget
+from .budget import BUDGET, Stopwatch, check_budget
 from .errors import BadInput
 from .integrate import Engine, Setting, State, method_for
 from .integrate.engine import Counts, new_stop, rest
@@ -60,11 +60,12 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     The scene's accuracy is the relative error of the displacements asked for; `method` overrides the choice made from
     it. `stop` is a flag from `new_stop`, `progress` is told the fraction of the present computation. Status is "done",
     "accuracy-not-reached" where no finer computation came near enough (chaos amplifies every error), or "over-budget"
-    where the next finer one would go beyond `budget` seconds. A run that would do so from the beginning is not begun.
+    where the next finer one would go beyond `budget` seconds, in which compiling does not count. A run that would do so
+    from the beginning is not begun.
     Raises `BadInput`, `OverBudget` (which is one), `NumbersFailed`, `Cancelled`.
     """
     _check_sizes(scene, periods, record, samples)
-    began = time.perf_counter()
+    began, spent = time.perf_counter(), Stopwatch()
     flag = new_stop() if stop is None else stop
     begin = rest(scene) if start is None else start
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
@@ -72,14 +73,14 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     total, status = Counts(), "accuracy-not-reached"
     before = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
     while True:
-        setting, lap = setting.finer_than(before.engine.lowered, samples), time.perf_counter()
+        setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
         now = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
         error = _stated(setting, scene, _difference(now, before))
         forces = _force_errors(setting, scene, now, before)
         lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
         if error <= scene.accuracy or setting.finest or lost:
             break
-        if time.perf_counter() - began + _TWICE * (time.perf_counter() - lap) > budget:
+        if spent.seconds + _TWICE * lap.seconds > budget:
             status = "over-budget"
             break
         before = now
