@@ -60,7 +60,7 @@ class Controller:
         self.parts = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "ready": self._ready, "visible": lambda _: self._painter.restart(),
+            "ping": lambda _: self.views.chain.tell(type="pong"), "ready": self._ready, "visible": lambda _: self._painter.restart(),
             "painted": lambda m: self._painter.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood, "cover": self._cover,
@@ -223,7 +223,7 @@ class Controller:
         session = self.session
         self.views.header.display(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, look=session.look,
-            speeds=list(SPEEDS), speed=session.speed, playing=session.playing)
+            speeds=list(SPEEDS), speed=session.speed, playing=session.playing, query=session.link)
 
     def _describe(self) -> None:
         scene = self.session.scene
@@ -251,7 +251,7 @@ class Controller:
     def _echo(self, seq: object = None) -> None:
         scene = self.session.scene
         self.views.knobs.tell(type="values", seq=seq, values=dict(scene.knobs),
-                              foundation=foundation_words(scene))
+                              foundation=foundation_words(scene), query=self.session.link)
 
     def _turned(self, name: str) -> None:
         self.compute()

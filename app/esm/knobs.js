@@ -122,6 +122,7 @@ class Knob {
 }
 
 export function render({ model }) {
+  const page = window.granchain;
   const root = document.createElement("div");
   root.className = "part";
   let knobs = new Map();
@@ -137,6 +138,7 @@ export function render({ model }) {
   };
   const send = (message, now) => {
     waiting.set(message.name, message);
+    page.asks(message.name, message.do === "set" ? message.value : model.state.preset[message.name]);
     if (resting || now) flush();
   };
 
@@ -169,9 +171,14 @@ export function render({ model }) {
   };
   model.on("state", build);
   model.on("msg:custom", (message) => {
+    if (message.type !== "values") return;
+    const newest = (message.seq ?? -1) >= sent && !waiting.size;
+    page.told(message.query, newest ? [...knobs.keys()] : []);
     // An answer to an older movement must not pull the knob from under the hand.
-    if (message.type === "values" && (message.seq ?? sent) >= sent && !waiting.size) show(message);
+    if ((message.seq ?? sent) >= sent && !waiting.size) show(message);
   });
+  const disable = (lost) => root.querySelectorAll("input, select").forEach((input) => { input.disabled = lost; });
+  page.on("lost", disable);
   build();
   return root;
 }
