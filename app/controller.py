@@ -60,7 +60,8 @@ class Controller:
         self.parts = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "ping": lambda _: self.views.chain.tell(type="pong"), "ready": self._ready, "visible": lambda _: self._painter.restart(),
+            "ping": lambda _: self.views.chain.tell(type="pong"),
+            "ready": self._ready, "visible": lambda _: self._painter.restart(),
             "painted": lambda m: self._painter.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood, "cover": self._cover,

@@ -4,7 +4,7 @@
   const page = window.granchain;
   // Milliseconds: between looks at the clock, from an answer to the next ping, until silence counts as loss (together
   // below 2 s), between tries to reach a lost server, and how long its socket may stay silent once it can be reached.
-  const TICK = 100, REST = 400, PATIENCE = 1400, TRY = 400, GRACE = 3000;
+  const TICK = 100, REST = 300, PATIENCE = 1300, TRY = 400, GRACE = 3000;
   const LOST = "Connection lost – trying again … These are the last pictures.";
   const BACK = "Connected again – the page is being built from its knobs …";
   const AGAIN = "granchain-again";
@@ -74,10 +74,10 @@
     else reached += 1;
   };
 
-  // Time is counted in ticks of at most two, so that a computer that slept or a page that was busy is no silent server.
+  // Time is counted in ticks, none for more than four, so that a computer that slept or a page that was busy is no silent server.
   let last = performance.now();
   const tick = () => {
-    const now = performance.now(), passed = Math.min(now - last, 2 * TICK);
+    const now = performance.now(), passed = Math.min(now - last, 4 * TICK);
     last = now;
     if (leaving || !ping || document.hidden) return;
     if (!closed && waited === null && (rested += passed) >= REST) {
