@@ -19,6 +19,7 @@ from .curves import Curves
 from .diagrams import MapTab
 from .effects import EffectsPanel
 from .exchange import Exchange
+from .foundation import beside_kappa, foundation_words
 from .frames import samples_for
 from .hard import HardPage
 from .jobs import LatestWins, Stop
@@ -31,7 +32,7 @@ from .session import SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
 from .stability import StabilityPage
 from .transport import Transport
-from .views.knobs import foundation_words, knob_state
+from .views.knobs import knob_state
 from .views.shell import Views
 
 log = logging.getLogger("granchain")
@@ -252,7 +253,7 @@ class Controller:
     def _echo(self, seq: object = None) -> None:
         scene = self.session.scene
         self.views.knobs.tell(type="values", seq=seq, values=dict(scene.knobs),
-                              foundation=foundation_words(scene), query=self.session.link)
+                              foundation=foundation_words(scene), kept=beside_kappa(scene), query=self.session.link)
 
     def _turned(self, name: str) -> None:
         self.compute()

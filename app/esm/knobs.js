@@ -156,18 +156,20 @@ export function render({ model }) {
       if (spec.name === "kappa") {
         const aside = document.createElement("div");
         aside.className = "aside";
-        aside.title = "Frequency of one bead on its foundation spring alone: √(k/m) / 2π.";
-        aside.innerHTML = "foundation frequency <span></span>";
+        aside.innerHTML = `<div class="kept" title="κ = k/(K√A₀): at the same k another A₀ has another κ. Set κ to have the old one back."></div>
+          <div title="Frequency of one bead on its foundation spring alone: √(k/m) / 2π.">foundation frequency <span></span></div>`;
         root.append(aside);
       }
     }
     root.append(more);
     show(model.state);
   };
-  const show = ({ values, preset, foundation }) => {
+  const show = ({ values, preset, foundation, kept }) => {
     for (const [name, knob] of knobs) if (name in values) knob.show(values[name], preset?.[name]);
     const aside = root.querySelector(".aside span");
     if (aside) aside.textContent = foundation;
+    const moved = root.querySelector(".kept");
+    if (moved) moved.textContent = kept ?? "";
   };
   model.on("state", build);
   model.on("msg:custom", (message) => {
