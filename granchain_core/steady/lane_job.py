@@ -11,8 +11,9 @@ from ..integrate.engine import rest
 from ..integrate.lane_block import LaneBlock, state_of
 from ..lower import Lowered
 from ..scene import Scene
+from .decide import MOST_PERIODS, SLOW_PERIODS
 from .regime import SLOW_RECORD, Regime, slowing
-from .settle import MOST_PERIODS, MOST_STEPS, SLOW_PERIODS
+from .settle import MOST_STEPS
 
 #: The method's order is uneven at contact events, so its error is not taken for less than this times the change.
 _CAUTION = 2.0
@@ -33,7 +34,7 @@ class Start:
 class LaneResult:
     """A steady state found in a lane: largest forces [N] in the order input, output, elastic output.
 
-    `number` is that of its start.
+    `number` is that of its start. Where it is `doubtful` the lanes did not decide, and `settle` has to, from `state`.
     """
 
     scene: Scene
@@ -43,14 +44,15 @@ class LaneResult:
     state: State
     failure: str = ""
     number: int = 0
+    doubtful: bool = False
 
 
 @dataclass(eq=False)
 class Job:
     """A scene on its way, from the scaled state y at phase 0, after `run` periods before.
 
-    `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record and
-    its forces [N].
+    `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record, its
+    forces [N] and what a first measurement of its Lyapunov exponent said.
     """
 
     scene: Scene
@@ -61,6 +63,7 @@ class Job:
     in_doubt: bool = False
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     tops: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    measured: Regime | None = None
     number: int = 0
 
     @property
