@@ -17,12 +17,10 @@ from ..integrate import Engine, Setting, State, method_for
 from ..integrate.engine import rest
 from ..result import Cost, Run, run_from
 from ..scene import Scene
-from .decide import MOST_PERIODS, Decisions
+from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
 from .regime import Regime, changes, find_period
 
-#: Strobes looked at when the regime is decided.
-_REMEMBERED = 420
 #: Steps of the live method after which settling is given up in any case: about half a minute.
 MOST_STEPS = 100_000_000
 #: Samples a period of a picture.
@@ -104,7 +102,7 @@ class Settling:
     def _note(self, strobes: np.ndarray) -> None:
         """Add strobes to the record and look for a period."""
         self.strobes = np.concatenate([self.strobes, strobes])
-        self.regime = replace(find_period(self.strobes[-_REMEMBERED:]), periods_run=self._run + self._here)
+        self.regime = replace(find_period(self.strobes[-REMEMBERED:]), periods_run=self._run + self._here)
 
     def _steps_left(self) -> int:
         return MOST_STEPS - self.engine.counts.steps
@@ -126,7 +124,7 @@ class Settling:
         if self._steps_left() <= 0 and self.regime.name != "periodic":
             self.decided = True
             return
-        found = self.decisions.next(self.engine, self.strobes[-_REMEMBERED:], self.regime)
+        found = self.decisions.next(self.engine, self.strobes[-REMEMBERED:], self.regime)
         if found.state is not None:
             self.engine.start_scaled(found.state)
         if found.regime is not None:

@@ -1,7 +1,7 @@
 """Two-parameter diagrams as HDF5: /map with the two knobs as labelled axes.
 
 /map    one dimension scale per knob, named as the knob; max_input_force, max_output_force, max_output_force_elastic,
-        error_estimate, multiplier, lyapunov, lyapunov_error, regime, period, periods_run (y, x)
+        error_estimate, decay, multiplier, lyapunov, lyapunov_error, regime, period, periods_run (y, x)
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ _COLUMNS = {  # name: (unit, meaning)
     "regime": ("", "what the motion is"),
     "period": ("1", "period in drive periods, 0 where not periodic"),
     "periods_run": ("1", "drive periods run until that was decided"),
-    "multiplier": ("1", "modulus of the leading multiplier seen in the decay"),
+    "decay": ("1", "what changes shrank to per orbit, NaN where not seen"),
+    "multiplier": ("1", "modulus of the leading multiplier, NaN where not computed"),
     "lyapunov": ("1", "largest Lyapunov exponent per drive period, NaN where not measured"),
     "lyapunov_error": ("1", "standard error of the Lyapunov exponent"),
 }
@@ -67,8 +68,10 @@ def load_diagram(path: str | Path) -> Diagram:
                         Axis.of(y, file["map"][y][()]))
             cells = empty_cells(grid)
             for name in CELL.names or ():
-                if name != "number":
+                if name in file["map"]:
                     cells[name] = file["map"][name][()].reshape(-1)
+            if "decay" not in file["map"]:  # files written before the two were told apart
+                cells["decay"], cells["multiplier"] = cells["multiplier"].copy(), np.nan
             return Diagram(grid, cells, float(file.attrs["wall_s"]))
     except BadInput:
         raise

@@ -4,7 +4,7 @@
 
 Every point is run once more from the state in which the sweep began it, through 5,000 periods of a quarter of the live
 method's step, and longer where that does not decide. It is periodic with the shortest n over which its strobes repeat
-to 1e-9; of other motions the Lyapunov exponent is measured twice over 2,000 periods: chaotic if both are well above zero,
+to 1e-9 while changes over shorter n stay what they are; of other motions the Lyapunov exponent is measured twice over 2,000 periods: chaotic if both are well above zero,
 quasi-periodic if both are zero. What that rule cannot decide is not judged.
 """
 
@@ -63,11 +63,9 @@ def truth(chosen: Scene, start: State | None) -> str:
     engine.start(rest(chosen) if start is None else start)
     for _ in range(PATIENCE // PERIODS):
         strobes, _ = engine.periods(PERIODS, watch=False)
-        late = strobes[-4 * LONGEST :]
-        largest = np.abs(late).max(axis=(0, 2))[:, None]
-        for n in range(1, LONGEST + 1):
-            if (np.abs(late[n:] - late[:-n]) / largest).max() <= REPEATS:
-                return f"period {n}"
+        repeats = [n for n in range(1, LONGEST + 1) if _moved(strobes, n)[1] <= REPEATS]
+        if repeats and not any(_changing(strobes, n) for n in range(1, repeats[0])):
+            return f"period {repeats[0]}"
         if not _on_its_way(strobes):
             break
     means = [exponents(engine, 100, 20)[0] for _ in range(2)]
@@ -77,12 +75,20 @@ def truth(chosen: Scene, start: State | None) -> str:
 
 
 def _on_its_way(strobes: np.ndarray) -> bool:
-    """Whether changes over some period still become smaller or larger: the last fifth beside the one before the last."""
-    for n in range(1, LONGEST + 1):
-        moved = np.abs(strobes[n:] - strobes[:-n]).max(axis=(1, 2))[-2000:].reshape(2, -1).max(axis=1)
-        if not 0.99 < moved[1] / moved[0] < 1.01:
-            return True
-    return False
+    """Whether changes over some period still become smaller or larger."""
+    return any(_changing(strobes, n) for n in range(1, LONGEST + 1))
+
+
+def _moved(strobes: np.ndarray, n: int) -> np.ndarray:
+    """Largest relative change over n periods in the last 2,000 periods and, second, in the last 1,000."""
+    change = np.abs(strobes[n:] - strobes[:-n]) / np.abs(strobes).max(axis=(0, 2))[:, None]
+    return np.asarray(change.max(axis=(1, 2))[-2000:].reshape(2, -1).max(axis=1))
+
+
+def _changing(strobes: np.ndarray, n: int) -> bool:
+    """Whether changes over n periods become smaller or larger still: a slow turn nearly comes back after some n."""
+    before, now = _moved(strobes, n)
+    return not 0.99 * before <= now <= 1.01 * before
 
 
 def judged(place: float, width: float, step: float, direction: str) -> Iterator[Judged]:
