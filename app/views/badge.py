@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from granchain_core import Run, Settled
-from granchain_core.steady.resonance import pushes
+from granchain_core.steady.resonance import Place, place_words, pushes
 
 from ..words import duration, short_error
 from .component import Component, text
@@ -18,23 +18,20 @@ class Badge(Component):
     _stylesheets = [text("controls.css"), text("badge.css")]  # noqa: RUF012
 
 
-def settled_entries(picture: Settled, nature: str) -> dict[str, Any]:
-    """The badge of a settled picture; `nature` is "resonance", "anti-resonance" or "" for its place on the curve."""
+def settled_entries(picture: Settled, place: Place | None) -> dict[str, Any]:
+    """The badge of a settled picture; `place` is where it lies on the curve from rest, None while there is none."""
     return {
-        "regime": regime_words(picture, nature),
+        "regime": regime_words(picture, place),
         "start": f"from {picture.start}",
         **run_entries(picture.run),
     }
 
 
-def regime_words(picture: Settled, nature: str) -> str:
+def regime_words(picture: Settled, place: Place | None) -> str:
     """The regime in words: strong pushes of the driver in how many periods, what the curve has here, the evidence."""
     ready = "" if picture.final else "preview, "
-    regime, pushed = picture.regime, pushes(picture.run)
-    if pushed is None or (pushed[0] > 1 and nature == "resonance"):
-        return ready + regime.sentence
-    ratio = f"{pushed[0]}:{pushed[1]} {nature or 'motion'}, "
-    return ready + ratio + regime.sentence
+    counted = place_words(pushes(picture.run), place)
+    return ready + (f"{counted}, " if counted else "") + picture.regime.sentence
 
 
 def accuracy_words(run: Run) -> str:

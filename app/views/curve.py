@@ -10,9 +10,9 @@ from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Range1d, Span
 from bokeh.plotting import figure
 
-from granchain_core import CurvePoint
+from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Feature, Measured
-from granchain_core.steady.resonance import nature
+from granchain_core.steady.resonance import Place, place_of
 
 from ..frames import prefixed, round_up
 from .figures import OUTPUT, quiet_axis, quiet_figure
@@ -149,12 +149,14 @@ class Curve:
         self._points[direction] = []
         self.add(direction, points, covers=True)
 
-    def nature(self, frequency: float) -> str:
-        """What this frequency is on the whole curve from rest: "resonance", "anti-resonance" or ""."""
+    def place(self, run: Run) -> Place | None:
+        """Where a run lies on the whole curve from rest; None while there is none."""
         if not self._whole:
-            return ""
+            return None
         points = sorted(self._points["rest"], key=lambda point: point.frequency)
-        return nature([p.frequency for p in points], [p.max_output_force for p in points], frequency)
+        transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
+        return place_of([p.frequency for p in points], [p.max_output_force for p in points],
+                        [p.regime.period for p in points], run.scene.f, run.max_output_force, transmission)
 
     def finished(self, direction: str) -> None:
         """All points of a direction are there."""
