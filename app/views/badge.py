@@ -40,10 +40,19 @@ def accuracy_words(run: Run) -> str:
     return f"asked {short_error(run.scene.accuracy)} · {reached} · {duration(run.cost.wall_s)}"
 
 
+def errors_hint(run: Run) -> str:
+    """Of which quantity each error is: displacements, and the three largest forces."""
+    said = [f"{name} {'no claim' if error is None else short_error(error)}" for name, error in (
+        ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
+        ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
+    return f"Relative errors: {', '.join(said)}. Click: what accuracy costs."
+
+
 def run_entries(run: Run) -> dict[str, Any]:
     """Accuracy, method and effects of a run."""
     return {
         "accuracy": accuracy_words(run),
+        "accuracy_hint": errors_hint(run),
         "energy": "" if run.energy_residual is None else f"energy closes to {short_error(run.energy_residual)}",
         "method": run.cost.method,
         "effects": list(run.scene.effects),

@@ -15,6 +15,7 @@ from granchain_core.experiment import Feature, Measured
 from granchain_core.steady.resonance import Place, place_of
 
 from ..frames import prefixed, round_up
+from ..words import short_error
 from .figures import OUTPUT, quiet_axis, quiet_figure
 
 REGIMES = {
@@ -27,7 +28,7 @@ REGIMES = {
 
 _DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 _MARK = "#8a8f98"
-_COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime")
+_COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "error")
 
 
 def regime_key(point: CurvePoint) -> str:
@@ -83,7 +84,8 @@ class Curve:
                 line_color="colour", line_width=1.5)
             self._renderers[direction].append(marks)
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=[
-                ("f", "@frequency{0.0} Hz"), ("force", "@force{0.000}"), ("regime", "@regime"),
+                ("f", "@frequency{0.0} Hz"), ("largest output force", "@force{0.000}"),
+                ("its relative error", "@error"), ("regime", "@regime"),
                 ("start", {"rest": "from rest", "up": "sweep up", "down": "sweep down"}[direction])]))
         return source
 
@@ -240,4 +242,6 @@ class Curve:
             "colour": [look[1] for look in looks],
             "size": [look[2] for look in looks],
             "regime": [point.regime.sentence for point in points],
+            "error": ["no claim" if point.error_estimate is None else short_error(point.error_estimate)
+                      for point in points],
         }
