@@ -12,7 +12,8 @@ from granchain_core import BadInput, Cancelled
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch
 from granchain_core.orbits.branch import MOST_POINTS
 
-from .commands import chosen_scene, in_background, say
+from .commands import chosen_scene, in_background, say, say_if
+from .foundation import kept_along
 
 #: Points between two words on progress.
 _EVERY = 25
@@ -89,7 +90,9 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> Branch:
     for option, value in (("--knob", arguments.knob), ("--from", arguments.start), ("--to", arguments.end)):
         if value is None:
             raise BadInput(f"granchain branch needs {option}, for example --knob f --from 340 --to 100.")
-    return begin_branch(chosen_scene(arguments), arguments.knob, arguments.start, arguments.end, arguments.period,
+    chosen = chosen_scene(arguments)
+    say_if(kept_along(chosen, arguments.knob))
+    return begin_branch(chosen, arguments.knob, arguments.start, arguments.end, arguments.period,
                         both=arguments.both, stop=stop)
 
 

@@ -13,6 +13,8 @@ from typing import Any, TypeVar
 
 from granchain_core import BadInput, Scene, scene, scene_names
 
+from .foundation import kept_spring
+
 T = TypeVar("T")
 
 
@@ -29,12 +31,21 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
         if name in changes:
             raise BadInput(f"{name} is set twice, to {changes[name]} and to {value}; give it once.")
         changes[name] = value
-    return scene(arguments.scene).evolve(**changes)
+    preset = scene(arguments.scene)
+    chosen = preset.evolve(**changes)
+    say_if(kept_spring(preset, chosen, changes))
+    return chosen
 
 
 def say(*words: object) -> None:
     """Tell a person something, on stderr: stdout is for results."""
     print(*words, file=sys.stderr, flush=True)
+
+
+def say_if(sentence: str) -> None:
+    """Tell a person something if there is something to tell."""
+    if sentence:
+        say(sentence)
 
 
 def show_json(data: dict[str, Any]) -> None:

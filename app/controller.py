@@ -19,6 +19,7 @@ from .curves import Curves
 from .diagrams import MapTab
 from .effects import EffectsPanel
 from .exchange import Exchange
+from .foundation import beside_kappa, foundation_words
 from .frames import samples_for
 from .hard import HardPage
 from .jobs import LatestWins, Stop
@@ -31,7 +32,7 @@ from .session import SPEEDS, Session, presets, slider_range
 from .show import show_live, show_settled
 from .stability import StabilityPage
 from .transport import Transport
-from .views.knobs import foundation_words, knob_state
+from .views.knobs import knob_state
 from .views.shell import Views
 
 log = logging.getLogger("granchain")
@@ -60,6 +61,7 @@ class Controller:
         self.parts = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
         self.covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "ping": lambda _: self.views.chain.tell(type="pong"),
             "ready": self._ready, "visible": lambda _: self._painter.restart(),
             "painted": lambda m: self._painter.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
@@ -223,7 +225,7 @@ class Controller:
         session = self.session
         self.views.header.display(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, look=session.look,
-            speeds=list(SPEEDS), speed=session.speed, playing=session.playing)
+            speeds=list(SPEEDS), speed=session.speed, playing=session.playing, query=session.link)
 
     def _describe(self) -> None:
         scene = self.session.scene
@@ -251,7 +253,7 @@ class Controller:
     def _echo(self, seq: object = None) -> None:
         scene = self.session.scene
         self.views.knobs.tell(type="values", seq=seq, values=dict(scene.knobs),
-                              foundation=foundation_words(scene))
+                              foundation=foundation_words(scene), kept=beside_kappa(scene), query=self.session.link)
 
     def _turned(self, name: str) -> None:
         self.compute()

@@ -35,8 +35,7 @@ def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
         return method_for(scene.accuracy, scene.cuts_tension)
     if picture.preview or picture.regime.name != "periodic":
         return Setting(picture.run.cost.method)
-    rate = min(0.999, picture.regime.multiplier or 0.5)
-    return certified_setting(scene, scene.accuracy, rate).finer()
+    return certified_setting(scene, scene.accuracy, picture.regime.slowness).finer()
 
 
 def locate(setting: Setting, rows: Sequence[Row]) -> Now | None:

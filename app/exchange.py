@@ -11,8 +11,6 @@ from granchain_core import BadInput
 from granchain_core.experiment import read_measured_csv
 from granchain_core.store import save
 
-from .share import encode
-
 if TYPE_CHECKING:
     from .controller import Controller
 
@@ -30,9 +28,7 @@ class Exchange:
         }
 
     def _share(self, _: dict[str, Any]) -> None:
-        session = self._page.session
-        query = encode(session.scene, {"mode": session.mode, "start": session.start})
-        self._page.views.header.tell(type="link", query=query)
+        self._page.views.header.tell(type="link", query=self._page.session.link)
 
     def _save(self, _: dict[str, Any]) -> None:
         run = self._page.shown_run()

@@ -115,7 +115,7 @@ def settled_frames(run: Run) -> Frames:
     samples = run.samples // stride
     time = np.arange(len(index)) / (samples * run.scene.f)
     shifts = [np.array([copy * periods / run.scene.f, 0.0]) for copy in range(copies)]
-    pushed, passed = (np.concatenate([_jumps(run, contact) + shift for shift in shifts]) for contact in (0, run.scene.N))
+    pushed, passed = (np.concatenate([_jumps(run, c) + shift for shift in shifts]) for c in (0, run.scene.N))
     return Frames(samples, time, **{name: getattr(run, name)[index] for name in _SERIES},
                   input_jumps=pushed, output_jumps=passed)
 

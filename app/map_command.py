@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from app.commands import chosen_scene, in_background, say
+from app.commands import chosen_scene, in_background, say, say_if
+from app.foundation import kept_along
 from granchain_core import BadInput, Cancelled
 from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
 from granchain_core.diagram.blocks import Blocks, folder_of
@@ -75,6 +76,7 @@ def map_scene(arguments: argparse.Namespace) -> None:
     from granchain_core.store.diagrams import load_diagram, save_diagram
 
     grid = Grid(chosen_scene(arguments), axis_from("--x", arguments.x), axis_from("--y", arguments.y))
+    say_if(kept_along(grid.scene, grid.x.knob, grid.y.knob))
     check_writable(arguments.out)
     if arguments.resume and Path(arguments.out).exists() and not folder_of(arguments.out).exists():
         found = load_diagram(arguments.out)

@@ -13,6 +13,7 @@ from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
 from .effect_switches import ACCOUNT, changes
+from .share import encode
 
 MODES = ("settled", "live")
 STARTS = ("rest", "previous")
@@ -36,6 +37,11 @@ class Session:
     notice: str = ""
     account: bool = False
     remembered: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def link(self) -> str:
+        """The query string that brings back scene, knobs, mode and start."""
+        return encode(self.scene, {"mode": self.mode, "start": self.start})
 
     def change(self, name: str, value: object) -> None:
         """Turn knob `name` to `value`."""

@@ -23,13 +23,13 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
         _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s")
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
         views.shown = picture
-        views.badge.display(**settled_entries(picture, views.curve.nature(picture.run.scene.f)))
+        views.badge.display(**settled_entries(picture, views.curve.place(picture.run)))
 
 
 def show_regime(views: Views) -> None:
     """The badge's words once more, after the curve that names the place has come."""
     if views.shown is not None:
-        views.badge.display(**settled_entries(views.shown, views.curve.nature(views.shown.run.scene.f)))
+        views.badge.display(**settled_entries(views.shown, views.curve.place(views.shown.run)))
 
 
 def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:

@@ -12,8 +12,8 @@ from granchain_core import NumbersFailed, Scene, Settled, State
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import Mode, mode, orbit_section
 from granchain_core.orbits.search import search_orbit
+from granchain_core.steady.decide import MOST_PERIODS
 from granchain_core.steady.poincare import Section, iter_section
-from granchain_core.steady.settle import MOST_PERIODS
 
 from .jobs import Stop
 

@@ -19,7 +19,7 @@ class Transport:
         self._page = page
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
-            "reset": self._reset, "step": self._step,
+            "reset": self._reset, "step": self._step, "again": self._again,
         }
 
     def _mode(self, message: dict[str, Any]) -> None:
@@ -46,6 +46,15 @@ class Transport:
             if not page.session.playing:
                 page.jobs.submit(partial(page.live_step, 1))
         page.idle()
+
+    def _again(self, message: dict[str, Any]) -> None:
+        """The page had lost its server and was built again from its knobs."""
+        self._speed({"value": message.get("speed")})
+        if not message.get("playing"):
+            self._playing({"value": False})
+            self._page.header()
+        self._page.say("The connection was lost and the page was built again from its knobs; "
+                       "the chain started anew from rest.")
 
     def _reset(self, _: dict[str, Any]) -> None:
         page = self._page

@@ -22,8 +22,8 @@ from .kernels.sampling import Samples
 from .result import Cost, Run, relative_changes, residual, run_from
 from .scene import Scene
 from .scene.validity import overlap_warnings
-from .steady.lyapunov import exponents
-from .steady.regime import Regime, find_period, irregular
+from .steady.decide import as_it_stands
+from .steady.regime import Regime, find_period
 
 #: Most periods in all and most recorded rows of one run.
 MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
@@ -173,16 +173,14 @@ def _force_errors(setting: Setting, scene: Scene, now: _Attempt, before: _Attemp
 
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> Regime:
-    """The regime as far as these periods show it; a long irregular run is told apart by its Lyapunov exponent."""
+    """The regime as far as these periods show it; a slow one is told apart by multipliers or its Lyapunov exponent."""
     tolerance = 10.0 * scene.accuracy
-    regime = find_period(attempt.strobes, rounding=min(1e-6, tolerance))
-    if regime.name == "periodic" or periods < _ENOUGH or attempt.engine.grid_index != 0:
+    regime = replace(find_period(attempt.strobes, rounding=min(1e-6, tolerance)), periods_run=periods)
+    if periods < _ENOUGH or attempt.engine.grid_index != 0:
         return regime
     engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
     engine.start(attempt.engine.state)
-    found, strobes = exponents(engine, 10, 20)
-    late = find_period(strobes)
-    return late if late.name == "periodic" else irregular(found, strobes, periods + len(strobes))
+    return as_it_stands(engine, attempt.strobes, regime)
 
 
 def warnings(result: Run) -> list[str]:

@@ -32,6 +32,7 @@ export function render({ model }) {
   new ResizeObserver(measure).observe(document.getElementById("chain"));
 
   model.on("msg:custom", (message) => {
+    page.heard();
     if (message.type === "frames") {
       unpack(message);
       document.getElementById("scale-high").textContent = message.energy_label;
@@ -59,9 +60,9 @@ export function render({ model }) {
   });
 
   const loop = (now) => {
-    clock.tick(now);
+    clock.tick(now, page.lost);
     const { frames } = clock;
-    if (frames && !page.covered && (dirty || (clock.playing && !frames.live))) {
+    if (frames && !page.covered && (dirty || (clock.playing && !frames.live && !page.lost))) {
       drawing.draw(frames, clock.row);
       cursor.place();
       dirty = false;
@@ -71,8 +72,9 @@ export function render({ model }) {
     requestAnimationFrame(loop);
   };
   requestAnimationFrame(loop);
-  setTimeout(() => model.send_msg({
-    do: "ready", look: page.look(), narrow: matchMedia("(max-width: 820px)").matches,
-  }), 0);
+  setTimeout(() => {
+    model.send_msg({ do: "ready", look: page.look(), narrow: matchMedia("(max-width: 820px)").matches });
+    page.connect(() => model.send_msg({ do: "ping" }));
+  }, 0);
   return canvas;
 }

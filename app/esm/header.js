@@ -49,7 +49,7 @@ export function render({ model }) {
   };
 
   const drawer = button(icon("knobs", "knobs"), "Show the knobs", () => page.drawer(true), "knobs-button");
-  const scene = chooser("scene", "scene", (name) => send({ do: "scene", name }));
+  const scene = chooser("scene", "scene", (name) => { page.asks("scene", name); send({ do: "scene", name }); });
   const reset = button(icon("reset", "reset"), "Back to rest", () => send({ do: "reset" }));
   const play = button("", "Play or pause (space)", () => setPlaying(!playing));
   const period = button(icon("step", "period"), "One drive period on", () => {
@@ -62,9 +62,9 @@ export function render({ model }) {
   segments.setAttribute("role", "group");
   const modes = ["settled", "live"].map((mode) => button(mode, mode === "settled"
     ? "The steady state for these knobs, replayed" : "The run goes on while you move the knobs",
-  () => send({ do: "mode", value: mode })));
+  () => { page.asks("mode", mode); send({ do: "mode", value: mode }); }));
   segments.append(...modes);
-  const start = chooser("where the steady state starts", "start", (value) => send({ do: "start", value }));
+  const start = chooser("where the steady state starts", "start", (value) => { page.asks("start", value); send({ do: "start", value }); });
   start.add(new Option("from rest", "rest"));
   start.add(new Option("from where it was", "previous"));
   const share = button(icon("share", "share"), "Link to this picture", () => send({ do: "share", origin: location.href }));
@@ -89,6 +89,7 @@ export function render({ model }) {
     if (value === playing) return;
     playing = value;
     drawPlay();
+    page.kept = { ...page.kept, playing };
     page.emit("play", playing);
     send({ do: "playing", value: playing });
   };
@@ -118,6 +119,14 @@ export function render({ model }) {
       page.emit("play", playing);
     }
     drawPlay();
+    page.kept = { speed: state.speed, playing };
+    if (!state.query) return;
+    page.told(state.query, ["scene", "mode", "start"]);
+    if (page.again) {
+      const { speed: value = 1, playing: goesOn = true } = page.again;
+      page.again = null;
+      send({ do: "again", speed: value, playing: goesOn });
+    }
   };
   if (model.state.look && model.state.look !== "auto") page.setLook(model.state.look, false);
   model.on("state", show);

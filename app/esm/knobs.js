@@ -122,6 +122,7 @@ class Knob {
 }
 
 export function render({ model }) {
+  const page = window.granchain;
   const root = document.createElement("div");
   root.className = "part";
   let knobs = new Map();
@@ -137,6 +138,7 @@ export function render({ model }) {
   };
   const send = (message, now) => {
     waiting.set(message.name, message);
+    page.asks(message.name, message.do === "set" ? message.value : model.state.preset[message.name]);
     if (resting || now) flush();
   };
 
@@ -154,24 +156,31 @@ export function render({ model }) {
       if (spec.name === "kappa") {
         const aside = document.createElement("div");
         aside.className = "aside";
-        aside.title = "Frequency of one bead on its foundation spring alone: √(k/m) / 2π.";
-        aside.innerHTML = "foundation frequency <span></span>";
+        aside.innerHTML = `<div class="kept" title="κ = k/(K√A₀): at the same k another A₀ has another κ. Set κ to have the old one back."></div>
+          <div title="Frequency of one bead on its foundation spring alone: √(k/m) / 2π.">foundation frequency <span></span></div>`;
         root.append(aside);
       }
     }
     root.append(more);
     show(model.state);
   };
-  const show = ({ values, preset, foundation }) => {
+  const show = ({ values, preset, foundation, kept }) => {
     for (const [name, knob] of knobs) if (name in values) knob.show(values[name], preset?.[name]);
     const aside = root.querySelector(".aside span");
     if (aside) aside.textContent = foundation;
+    const moved = root.querySelector(".kept");
+    if (moved) moved.textContent = kept ?? "";
   };
   model.on("state", build);
   model.on("msg:custom", (message) => {
+    if (message.type !== "values") return;
+    const newest = (message.seq ?? -1) >= sent && !waiting.size;
+    page.told(message.query, newest ? [...knobs.keys()] : []);
     // An answer to an older movement must not pull the knob from under the hand.
-    if (message.type === "values" && (message.seq ?? sent) >= sent && !waiting.size) show(message);
+    if ((message.seq ?? sent) >= sent && !waiting.size) show(message);
   });
+  const disable = (lost) => root.querySelectorAll("input, select").forEach((input) => { input.disabled = lost; });
+  page.on("lost", disable);
   build();
   return root;
 }

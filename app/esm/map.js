@@ -45,7 +45,7 @@ function mapTold(cell) {
   const regime = cell.period > 0 ? `period ${cell.period}` : name;
   const error = Number.isFinite(cell.error) ? ` ± ${Number((100 * cell.error).toPrecision(1))} %` : ", the largest seen";
   const exponent = Number.isFinite(cell.exponent) ? `; Lyapunov exponent ${cell.exponent.toFixed(3)} ± ${cell.spread.toFixed(3)}` : "";
-  return `${place}: ${regime}, ${newtons(cell.force)}${error}${exponent}`;
+  return `${place}: ${regime}, largest output force ${newtons(cell.force)}${error}${exponent}`;
 }
 
 function mapScale(host) {

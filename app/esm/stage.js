@@ -22,11 +22,11 @@ class Clock {
     this.frames = frames;
   }
 
-  tick(now) {
+  tick(now, stopped) {
     const seconds = Math.min(0.1, (now - this.last) / 1000);
     this.last = now;
     const { frames } = this;
-    if (!frames || frames.live || !this.playing) return;
+    if (!frames || frames.live || !this.playing || stopped) return;
     this.row = (this.row + seconds * this.speed * frames.samples) % (frames.rows - 1);
   }
 

@@ -10,11 +10,12 @@ from bokeh.events import Tap
 from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Range1d, Span
 from bokeh.plotting import figure
 
-from granchain_core import CurvePoint
+from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Feature, Measured
-from granchain_core.steady.resonance import nature
+from granchain_core.steady.resonance import Place, place_of
 
 from ..frames import prefixed, round_up
+from ..words import short_error
 from .figures import OUTPUT, quiet_axis, quiet_figure
 
 REGIMES = {
@@ -27,7 +28,7 @@ REGIMES = {
 
 _DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 _MARK = "#8a8f98"
-_COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime")
+_COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "error")
 
 
 def regime_key(point: CurvePoint) -> str:
@@ -83,7 +84,8 @@ class Curve:
                 line_color="colour", line_width=1.5)
             self._renderers[direction].append(marks)
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=[
-                ("f", "@frequency{0.0} Hz"), ("force", "@force{0.000}"), ("regime", "@regime"),
+                ("f", "@frequency{0.0} Hz"), ("largest output force", "@force{0.000}"),
+                ("its relative error", "@error"), ("regime", "@regime"),
                 ("start", {"rest": "from rest", "up": "sweep up", "down": "sweep down"}[direction])]))
         return source
 
@@ -149,12 +151,14 @@ class Curve:
         self._points[direction] = []
         self.add(direction, points, covers=True)
 
-    def nature(self, frequency: float) -> str:
-        """What this frequency is on the whole curve from rest: "resonance", "anti-resonance" or ""."""
+    def place(self, run: Run) -> Place | None:
+        """Where a run lies on the whole curve from rest; None while there is none."""
         if not self._whole:
-            return ""
+            return None
         points = sorted(self._points["rest"], key=lambda point: point.frequency)
-        return nature([p.frequency for p in points], [p.max_output_force for p in points], frequency)
+        transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
+        return place_of([p.frequency for p in points], [p.max_output_force for p in points],
+                        [p.regime.period for p in points], run.scene.f, run.max_output_force, transmission)
 
     def finished(self, direction: str) -> None:
         """All points of a direction are there."""
@@ -238,4 +242,6 @@ class Curve:
             "colour": [look[1] for look in looks],
             "size": [look[2] for look in looks],
             "regime": [point.regime.sentence for point in points],
+            "error": ["no claim" if point.error_estimate is None else short_error(point.error_estimate)
+                      for point in points],
         }

@@ -10,6 +10,7 @@ from granchain_core.diagram import Attractor, Grid
 from granchain_core.diagram.cells import REGIMES as NAMES
 from granchain_core.orbits import response
 from granchain_core.quantities import QUANTITIES
+from granchain_core.steady.regime import modulus_words
 
 from ..words import short_error
 from .chain import PALETTE
@@ -62,7 +63,8 @@ def described(attractor: Attractor) -> dict[str, Any]:
     if kind:
         words.append(kind)
     if attractor.orbit is not None:
-        words.append(f"|μ| {abs(attractor.orbit.multipliers[0]):.2f}" + ("" if attractor.stable else ", unstable"))
+        leading = modulus_words(abs(attractor.orbit.multipliers[0]))
+        words.append(f"|μ| {leading}" + ("" if attractor.stable else ", unstable"))
     elif regime.lyapunov is not None:
         words.append(f"Lyapunov exponent {regime.lyapunov[0]:+.3f} ± {regime.lyapunov[1]:.3f} per period")
     return {

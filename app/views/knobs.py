@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from granchain_core import Scene, scene
 from granchain_core.quantities import QUANTITIES
 
+from ..foundation import beside_kappa, foundation_words
 from ..session import slider_range
 from .component import Component, text
 
@@ -39,14 +39,8 @@ def knob_state(current: Scene) -> dict[str, Any]:
         "specs": [_spec(name, current) for name in MAIN + MORE],
         "values": {name: current.knobs[name] for name in MAIN + MORE},
         "preset": {name: preset[name] for name in MAIN + MORE},
-        "foundation": foundation_words(current),
+        "foundation": foundation_words(current), "kept": beside_kappa(current),
     }
-
-
-def foundation_words(current: Scene) -> str:
-    """The foundation frequency, or that there is none."""
-    frequency = current.foundation_frequency
-    return f"{frequency:.1f} Hz" if frequency > 0 and math.isfinite(frequency) else "none"
 
 
 def _spec(name: str, current: Scene) -> dict[str, Any]:

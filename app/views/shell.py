@@ -60,7 +60,7 @@ class Views:
         """The page; its layout is a CSS grid in page.css."""
         page = pn.Template((_APP / "page.html").read_text(encoding="utf-8"))
         page.add_variable("page_css", (_APP / "page.css").read_text(encoding="utf-8"))
-        page.add_variable("page_js", text("page.js"))
+        page.add_variable("page_js", text("page.js") + text("connection.js"))
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)
         page.add_variable("gap", GAP)

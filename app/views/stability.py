@@ -12,6 +12,7 @@ from granchain_core import Settled
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
 from granchain_core.steady.poincare import Section
+from granchain_core.steady.regime import modulus_words
 
 from ..frames import prefixed
 from ..stability_work import Analysis
@@ -25,13 +26,6 @@ class Stability(Component):
     _esm = "".join(text(name) for name in ("plot.js", "chaindrawing.js", "multipliers.js", "section.js", "mode.js",
                                            "stability.js"))
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "multipliers", "stability")]  # noqa: RUF012
-
-
-def modulus_words(modulus: float) -> str:
-    """A modulus with as many figures as tell it from 1 and from 0."""
-    if abs(modulus - 1.0) < 0.01:
-        return f"{modulus:.6f}" if abs(modulus - 1.0) < 1e-4 else f"{modulus:.4f}"
-    return f"{modulus:.2f}" if modulus >= 0.095 else f"{modulus:.3f}" if modulus >= 0.0095 else short_error(modulus)
 
 
 def period_words(orbit: Orbit) -> str:
@@ -134,8 +128,9 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
 def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
     orbit = analysis.orbit
     size = abs(orbit.multipliers[0])
-    seen = picture.regime.multiplier
-    row("|μ| largest", f"{size:.4f}" + (f"; seen in the decay {seen:.2f}" if analysis.target.followed and seen else ""),
+    seen = picture.regime.decay
+    decay = f"; decay {modulus_words(seen)} per orbit" if analysis.target.followed and seen else ""
+    row("|μ| largest", modulus_words(size) + decay,
         "The largest multiplier, and how fast the changes from period to period died out while settling.")
     residuals = analysis.target.residuals or orbit.newton_residuals
     row("Newton's residual", " → ".join(short_error(r) for r in residuals),

@@ -73,7 +73,8 @@ class Trains:
             "drive": frames.drive_displacement / drive,
             "elastic": frames.output_force_elastic / out,
         }
-        pushed, passed = {"time": input_time, "force": input_force / push}, {"time": output_time, "force": output_force / out}
+        pushed = {"time": input_time, "force": input_force / push}
+        passed = {"time": output_time, "force": output_force / out}
         for source, values in ((self._source, columns), (self._input, pushed), (self._output, passed)):
             source.data = {name: np.asarray(column, dtype=np.float32) for name, column in values.items()}
         edge = 1.15 * drive_high / drive

@@ -13,13 +13,13 @@ from .grid import Grid
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
 REGIMES = ("periodic", "quasi-periodic", "chaotic", "unsettled", "failed")
 #: One cell. Forces in N, NaN where the numbers failed; error estimates are relative, that without a name of the output
-#: force, NaN where none is claimed;
-#: `period` in drive periods, 0 where not periodic; `multiplier` and `lyapunov` (per drive period) NaN where not seen.
+#: force, NaN where none is claimed; `period` in drive periods, 0 where not periodic; `decay` per orbit, `multiplier`
+#: (the largest |μ|) and `lyapunov` (per drive period) NaN where not seen or not computed.
 CELL = np.dtype([
     ("number", "<i4"), ("regime", "i1"), ("period", "<i2"), ("periods_run", "<i4"), ("max_input_force", "<f8"),
     ("max_output_force", "<f8"), ("max_output_force_elastic", "<f8"), ("error_estimate_input", "<f8"),
     ("error_estimate", "<f8"), ("error_estimate_elastic", "<f8"),
-    ("multiplier", "<f8"), ("lyapunov", "<f8"), ("lyapunov_error", "<f8"),
+    ("decay", "<f8"), ("multiplier", "<f8"), ("lyapunov", "<f8"), ("lyapunov_error", "<f8"),
 ])
 
 
@@ -32,7 +32,7 @@ def empty_cells(grid: Grid) -> np.ndarray:
     cells = np.zeros(grid.size, dtype=CELL)
     cells["number"] = np.arange(grid.size)
     cells["regime"] = -1
-    for name in ("max_input_force", "max_output_force", "max_output_force_elastic", *ERRORS, "multiplier",
+    for name in ("max_input_force", "max_output_force", "max_output_force_elastic", *ERRORS, "decay", "multiplier",
                  "lyapunov", "lyapunov_error"):
         cells[name] = np.nan
     return cells
@@ -44,8 +44,8 @@ def cell_of(result: LaneResult) -> np.ndarray:
     name = "failed" if result.failure else regime.name
     mean, error = regime.lyapunov or (np.nan, np.nan)
     return np.array((result.number, REGIMES.index(name), regime.period or 0, regime.periods_run, *result.tops,
-                     *((np.nan,) * 3 if result.errors is None else result.errors), _or_nan(regime.multiplier), mean,
-                     error), dtype=CELL)
+                     *((np.nan,) * 3 if result.errors is None else result.errors), _or_nan(regime.decay),
+                     _or_nan(regime.multiplier), mean, error), dtype=CELL)
 
 
 def _or_nan(value: float | None) -> float:
@@ -75,6 +75,6 @@ class Diagram:
         if not 0 <= cell["regime"] < REGIMES.index("failed"):
             return None
         lyapunov = None if np.isnan(cell["lyapunov"]) else (float(cell["lyapunov"]), float(cell["lyapunov_error"]))
-        return Regime(REGIMES[cell["regime"]], int(cell["period"]) or None,
-                      None if np.isnan(cell["multiplier"]) else float(cell["multiplier"]), None,
-                      int(cell["periods_run"]), lyapunov)
+        decay, multiplier = (None if np.isnan(cell[name]) else float(cell[name]) for name in ("decay", "multiplier"))
+        return Regime(REGIMES[cell["regime"]], int(cell["period"]) or None, decay, None, int(cell["periods_run"]),
+                      lyapunov, multiplier)

@@ -10,7 +10,7 @@ import numpy as np
 from ..integrate.engine import new_stop
 from ..integrate.lane_block import can_share_lanes
 from ..scene import Scene
-from ..steady.curve import CurvePoint, safe_point
+from ..steady.curve import CurvePoint, safe_point, second_look
 from ..steady.lane_curve import lane_states
 from ..steady.lane_job import LaneResult, Start
 from ..steady.threads import on_all_cores
@@ -39,7 +39,9 @@ def settle_starts(starts: Iterable[Start], stop: np.ndarray) -> Iterator[LaneRes
         return
     together = _chained(first, rest_of_them)
     if can_share_lanes(first.scene):
-        yield from lane_states(together, stop)
+        for result in lane_states(together, stop):
+            yield result if not result.doubtful else _as_result(Start(result.scene, number=result.number),
+                                                                second_look(result, stop))
         return
     for one in together:
         yield _as_result(one, safe_point(one.scene, one.state, stop))

@@ -23,6 +23,7 @@ _EXPECTED = Expected(
     needed=("frequency", "force"), naming="frequency_Hz, force_N and, if there is one, error_N",
     short="frequency_Hz, force_N, error_N", content="frequency in Hz and force in N",
     widths="2 (frequency in Hz, force in N) or 3 (and error in N)", most_bytes=MOST_BYTES, most_rows=MOST_ROWS,
+    units={"frequency": ("Hz",), "force": ("N",), "error": ("N",)},
 )
 
 

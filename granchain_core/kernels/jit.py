@@ -102,5 +102,9 @@ def term(absent):
 
         return register
 
-    generic.of = of
+    def absent_for(*slot_classes):
+        """Let slots of these classes be as good as absent to this function."""
+        implementations.update(dict.fromkeys(slot_classes, absent))
+
+    generic.of, generic.absent_for = of, absent_for
     return generic

@@ -3,8 +3,8 @@
 A coarse lane is followed to where it leads only if the jump is one that the decay itself predicts, and the change
 behind it must be smaller than before it: else it is taken back. A chain may approach an unstable orbit before it
 leaves it, and an extrapolation would put it there: so an orbit found with its help is disturbed, and counts only if
-the disturbance decays. So the orbit is the one the chain was going to. A fine lane starts on the coarse orbit and is
-followed to its own.
+the disturbance decays; where it decays slowly, multipliers are asked for (steady/lane_curve.py). So the orbit is the
+one the chain was going to. A fine lane starts on the coarse orbit and is followed to its own, each jump proved.
 """
 
 from __future__ import annotations
@@ -38,6 +38,8 @@ FORGET, _MOST_ROUNDS = 0.02, 6
 #: An orbit is disturbed by so much, relative to the motion, for so many orbits, at whose end no more than this part of
 #: what was seen in their first quarter may be left; where more is, nothing is followed for so many periods.
 _DISTURBANCE, _TEST_ORBITS, _LEFT, _NO_MORE = 1e-4, 16, 0.97, 400
+#: The decay of a disturbance that did not shrink in the end: whoever reads it asks for more.
+_NEARLY_ONE = 0.9999
 #: The slowest decay that an extrapolation is taken to have left behind: slower ones are not seen well enough.
 _SLOWEST = 0.98
 #: Columns of what is known of a fine lane: period, rate, the coarse run's largest forces, orbits a round, rounds.
@@ -149,18 +151,24 @@ def disturb(state, lane, period):
 
 @part
 def decayed(state, lane):
-    """Whether the disturbance of a lane has become smaller; the lane is then put back on its orbit."""
+    """Whether the disturbance of a lane has become smaller; the lane is then put back, and its decay is known."""
     n, m = state.testing[lane], state.limit.shape[1]
     state.testing[lane] = 0
-    first, last = 0.0, 0.0
+    first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
         there = 0.0
         for q in range(2):
             for i in range(m):
                 there = max(there, abs(state.strobes[lane, k * n, q, i] - state.before[lane, q, i]) / state.scale[q])
-        first, last = max(first, there) if 4 * k <= _TEST_ORBITS else first, there
+        quarter = 4 * k // (_TEST_ORBITS + 1)
+        first = max(first, there) if quarter == 0 else first
+        middle = max(middle, there) if quarter == 1 else middle
+        late = max(late, there) if quarter == 3 else late
+        last = there
     if last <= _LEFT * first:
         place_lane(state, lane, state.before[lane])
+        rate = (late / middle) ** (2.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # quarters half of the orbits apart
+        state.seen[lane, 1] = max(state.seen[lane, 1], min(rate, _NEARLY_ONE))
         return True
     state.slowest[lane], state.jumped[lane] = 0.0, 0.0
     state.ready[lane] = state.periods[lane] + _NO_MORE
@@ -178,13 +186,22 @@ def largest_top(state, lane, n, q):
 
 @part
 def look_fine(state, lane):
-    """Whether a fine lane has forgotten the coarse orbit; if not, it is followed to its own."""
+    """Whether a fine lane has forgotten the coarse orbit; if not, it is followed to its own.
+
+    Where changes are not smaller behind a jump it is taken back, and the lane goes on without.
+    """
     fine, kept, seen = state.fine[lane], state.kept[lane], state.seen[lane]
     n, rate = int(fine[PERIOD]), fine[RATE]
     record = state.strobes[lane, kept - 1 - n : kept]
     largest_of(record, state.scale)
     change = change_between(record, state.scale, n, 0)
     seen[0], seen[1], seen[2] = n, rate, change * rate / (1.0 - rate)
+    proved = change < state.jumped[lane] or state.jumped[lane] == 0.0
+    state.jumped[lane] = 0.0
+    if not proved:
+        place_lane(state, lane, state.before[lane])
+        state.earliest[lane], fine[ROUNDS] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND]), _MOST_ROUNDS
+        return False
     moved = 0.0
     for q in range(1, 3):
         largest = largest_top(state, lane, n, q)
@@ -192,7 +209,10 @@ def look_fine(state, lane):
     if seen[2] <= max(SETTLED_DISTANCE, FORGET * moved) or fine[ROUNDS] >= _MOST_ROUNDS:
         return True
     fine[ROUNDS] += 1.0
-    follow(state, lane, n, rate, change)
+    copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
+    copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
+    if follow(state, lane, n, rate, change):
+        state.jumped[lane] = change
     state.earliest[lane] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND])
     return False
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from .effects.contact import positive_part
-from .effects.dissipation import LAWS, LinearDashpot, damping, shape
+from .effects.dissipation import LAWS, SMOOTH_LAWS, LinearDashpot, damping, shape
 from .effects.foundation import pull_back
 from .effects.preload import lane_overlap
 from .effects.unequal import over_mass, times_stiffness
@@ -170,6 +170,9 @@ def _(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks)
     first, last = over_mass(values.unequal, 1, law.coefficient), over_mass(values.unequal, values.last, law.coefficient)
     watch_jump(law.coefficient, first, h, gap_first, rate_first, before, 0, peaks, INPUT)
     watch_jump(law.coefficient, last, h, gap_last, rate_last, before, 2, peaks, OUTPUT)
+
+
+watch_jumps.absent_for(*SMOOTH_LAWS)
 
 
 @inlined

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .effects.contact import elastic_force, positive_part
-from .effects.dissipation import LinearDashpot, damping, damping_slope
+from .effects.dissipation import SMOOTH_LAWS, LinearDashpot, damping, damping_slope
 from .effects.driver import driver_acceleration
 from .effects.foundation import pull_back
 from .effects.preload import overlap
@@ -197,6 +197,10 @@ def _(law, slots, y, dy, end, end_slope, theta, dtheta, log):
                 note_closing(law, dy[c] - dy[c + 1], c, last, theta, log)
 
 
+note_closing.absent_for(*SMOOTH_LAWS)
+note_closings.absent_for(*SMOOTH_LAWS)
+
+
 @kernel
 def stamp(log, first, row):
     """Write the number of the last sample to the closings from number `first` on."""
@@ -256,3 +260,6 @@ def _(law, slots, before, slope, y, dy, h, theta, dtheta, log):
             note_closing(law, rate, c, last, theta + s * dtheta, log)
         elif s0 > 0.0 and s1 < 0.0:
             note_closing(law, brief_touch(d0, d1, s0, s1, h), c, last, theta + 0.5 * dtheta, log)
+
+
+watch_crossings.absent_for(*SMOOTH_LAWS)

@@ -58,7 +58,8 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
 
 def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: str | None = None) -> ForceRecord:
     """The force in the text of a CSV file."""
-    table = read_table(text, _EXPECTED)
+    table = read_table(text, replace(_EXPECTED, units={
+        "time": (time_unit or "s", *TIME_UNITS), **dict.fromkeys(_FORCES, (force_unit or "N", *FORCE_UNITS))}))
     seconds, told_time = _unit(table, "time", TIME_UNITS, time_unit, "s")
     newtons, told_force = _unit(table, "force", FORCE_UNITS, force_unit, "N")
     numbers = [number for number, _ in table.rows]

@@ -25,13 +25,11 @@ import numpy as np
 from ..integrate import Engine, Setting
 from ..result import Cost, Run, run_from
 from ..steady.regime import Regime
-from ..steady.resonance import ENDED, pushes
+from ..steady.resonance import ENDED, STOPS, pushes
 from .orbit import Orbit
 
 #: A push is met by the reflected pulse if bead 1 comes back with this part of the drive's largest speed.
 IN_STEP = 1.0 / 3.0
-#: Less than this part of the input force at the wall: nothing travels through the chain.
-STOPS = 0.15
 #: Samples a period, and the tolerance of a step: events are placed to about a degree of the drive.
 _SAMPLES, _TOLERANCE = 480, 1e-9
 
@@ -94,5 +92,6 @@ def recorded(orbit: Orbit) -> Run:
     engine = Engine(orbit.scene, Setting("dop853", tolerance=_TOLERANCE), _SAMPLES)
     engine.start(orbit.state)
     samples = engine.record(orbit.period * _SAMPLES)
-    regime = Regime("periodic", orbit.period, float(np.abs(orbit.multipliers).max()), None, orbit.period)
+    leading = float(np.abs(orbit.multipliers).max())
+    regime = Regime("periodic", orbit.period, None, None, orbit.period, multiplier=leading)
     return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, "dop853"))

@@ -6,7 +6,7 @@ import itertools
 import os
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -164,10 +164,18 @@ def _points(scenes: Iterator[Scene], flag: np.ndarray) -> Iterator[CurvePoint]:
         return
     rest_of_them = itertools.chain([first], scenes)
     if can_share_lanes(first):
-        yield from (_from_lane(result) for result in lane_results(rest_of_them, flag))
+        yield from (_from_lane(result) if not result.doubtful else second_look(result, flag)
+                    for result in lane_results(rest_of_them, flag))
         return
     for one in rest_of_them:
         yield safe_point(one, None, flag)
+
+
+def second_look(result: LaneResult, stop: np.ndarray) -> CurvePoint:
+    """The point of a result that the lanes left in doubt: its chain by itself, from where they left it."""
+    point = safe_point(result.scene, result.state, stop)
+    run = result.regime.periods_run + point.regime.periods_run
+    return replace(point, regime=replace(point.regime, periods_run=run))
 
 
 def _from_lane(result: LaneResult) -> CurvePoint:

@@ -4,7 +4,8 @@ Every scene starts in a lane at a coarse step. When its regime is decided its pl
 periodic scene comes back once more at a third of the step, from where it settled, until the coarse orbit is
 forgotten. The forces of the finer run are given, with their change as error estimate. A slow approach is followed to
 where it leads (extrapolate.py), on the way to the coarse orbit and to the finer one. What is not periodic within the
-budget is told apart by its Lyapunov exponent, four scenes at a time.
+budget is told apart by its Lyapunov exponent, four scenes at a time. Results that this leaves in doubt are marked: they
+are for `settle`, which takes one chain at a time (curve.py).
 """
 
 from __future__ import annotations
@@ -19,18 +20,21 @@ from ..integrate.lane_block import NEVER, LaneBlock, scaled_state, state_of
 from ..kernels.lanes import LANES
 from ..lower import lower
 from ..scene import Scene
+from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
 from .lane_job import Job, LaneResult, Start, draft_result, failed, look_coarse
 from .lyapunov import MOST_APART, exponents_in_pairs
-from .regime import find_period, irregular
-from .settle import MOST_PERIODS, SLOW_PERIODS
+from .nearby_orbit import MOST_BEADS
+from .regime import agree, clearly_chaotic, find_period, irregular
+from .strobe_map import StrobeMap
 
 #: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
 #: which is what is claimed.
 _FINER = 3
 #: Periods after which a draft gives up.
 _DRAFT = 300
-#: Blocks and periods a block for the Lyapunov exponent.
-_BLOCKS, _BLOCK = 10, 20
+#: Decay per drive period above which a periodic result needs its multipliers, and largest |μ|, as seen by coarse
+#: differences, that settles it.
+_SLOW, _SURE = 0.99, 0.995
 #: Scenes whose exponents are found at once.
 _PAIRS = LANES // 2
 
@@ -64,7 +68,7 @@ class _Lanes:
             return
         regime, tops = job.coarse
         assert regime.period is not None
-        rate = min(0.999, max(1e-3, regime.multiplier or 0.5))
+        rate = max(1e-3, regime.slowness)
         self.block.put_fine(lane, job.lowered, job.y, _FINER, regime.period, rate, tops)
 
     def step(self) -> LaneResult | None:
@@ -83,7 +87,7 @@ class _Lanes:
             return None
         self._free(lane)
         if isinstance(outcome, LaneResult):
-            return outcome
+            return confirmed(outcome, self.stop)
         (self.doubtful if outcome.in_doubt else self.waiting).append(outcome)
         return None
 
@@ -103,7 +107,7 @@ class _Lanes:
     def decide(self, jobs: list[Job]) -> Iterator[LaneResult]:
         """Tell doubtful jobs apart; one whose neighbours come closer is given more time."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
-        found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], _BLOCKS, _BLOCK, self.stop)
+        found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], BLOCKS, BLOCK, self.stop)
         for job, (growth, strobes, tops, y) in zip(jobs, found, strict=True):
             if not np.isfinite(growth).all():
                 yield failed(job)
@@ -115,11 +119,16 @@ class _Lanes:
                 job.coarse = (regime, tops[-regime.period :].max(axis=0))
                 self.waiting.append(job)
                 continue
-            regime = irregular(growth, job.record, job.run)
-            if regime.name == "unsettled" and growth.mean() < 0.0 and job.run < SLOW_PERIODS and job.affordable:
+            regime, before = irregular(growth, job.record, job.run), job.measured
+            if regime.name == "chaotic" and before is None and not clearly_chaotic(growth):
+                job.measured, job.in_doubt = regime, True
+                self.doubtful.append(job)
+            elif regime.name == "unsettled" and growth.mean() < 0.0 and job.run < SLOW_PERIODS and job.affordable:
                 self.waiting.append(job)
             else:
-                yield LaneResult(job.scene, job.tops, regime, None, state_of(job.lowered, y), number=job.number)
+                unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
+                yield LaneResult(job.scene, job.tops, regime, None, state_of(job.lowered, y), number=job.number,
+                                 doubtful=unclear and job.affordable)
 
 
 def lane_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False) -> Iterator[LaneResult]:
@@ -151,6 +160,17 @@ def lane_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) 
             result = lanes.step()
             if result is not None:
                 yield result
+
+
+def confirmed(result: LaneResult, stop: np.ndarray) -> LaneResult:
+    """The result; one that is periodic with a slow decay is in doubt unless its multipliers are clearly below 1."""
+    regime, scene = result.regime, result.scene
+    if regime.period is None or (regime.decay or 0.0) ** (1.0 / regime.period) <= _SLOW or scene.N > MOST_BEADS:
+        return result
+    strobe = StrobeMap(scene, regime.period, stop, refine=1.0)
+    x = strobe.inner(scaled_state(strobe.engine.lowered, result.state))
+    largest = float(np.abs(np.linalg.eigvals(strobe.derivative(x, central=False))).max())
+    return result if largest < _SURE else replace(result, doubtful=True)
 
 
 def _steps(job: Job) -> int:

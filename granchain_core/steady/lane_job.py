@@ -12,8 +12,9 @@ from ..integrate.lane_block import LaneBlock, state_of
 from ..lower import Lowered
 from ..result import relative_changes
 from ..scene import Scene
+from .decide import MOST_PERIODS, SLOW_PERIODS
 from .regime import SLOW_RECORD, Regime, slowing
-from .settle import MOST_PERIODS, MOST_STEPS, SLOW_PERIODS
+from .settle import MOST_STEPS
 
 #: The method's order is uneven at contact events, so its error is not taken for less than this times the change.
 _CAUTION = 2.0
@@ -36,7 +37,8 @@ class Start:
 class LaneResult:
     """A steady state found in a lane: largest forces [N] in the order input, output, elastic output.
 
-    `errors` (3,) are their relative errors, None where none is claimed; `number` is that of its start.
+    `errors` (3,) are their relative errors, None where none is claimed; `number` is that of its start. Where it is
+    `doubtful` the lanes did not decide, and `settle` has to, from `state`.
     """
 
     scene: Scene
@@ -46,6 +48,7 @@ class LaneResult:
     state: State
     failure: str = ""
     number: int = 0
+    doubtful: bool = False
 
     @property
     def error_estimate(self) -> float | None:
@@ -57,8 +60,8 @@ class LaneResult:
 class Job:
     """A scene on its way, from the scaled state y at phase 0, after `run` periods before.
 
-    `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record and
-    its forces [N].
+    `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record, its
+    forces [N] and what a first measurement of its Lyapunov exponent said.
     """
 
     scene: Scene
@@ -69,6 +72,7 @@ class Job:
     in_doubt: bool = False
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     tops: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    measured: Regime | None = None
     number: int = 0
 
     @property

@@ -18,6 +18,10 @@ from ..kernels.section import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
 _SLOW_WINDOW, _SHRINKS = 100, 0.98
+#: A departure is small where changes are, relative to the largest displacement and velocity.
+_SMALL = 0.1
+#: Growth per period that no departure from an orbit keeps up for as long as a motion is given to settle.
+CLEAR_GROWTH = 0.05
 #: Strobes that it takes to see that.
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
@@ -26,28 +30,61 @@ SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 class Regime:
     """What the motion is and how one knows.
 
-    `multiplier` is the modulus of the leading multiplier of the n-period map as seen in the decay, `distance` the
-    bound on the relative distance to the orbit, `lyapunov` (exponent per period, its standard error) where it was
-    measured.
+    `decay` is by how much changes shrank per orbit where that was seen, `multiplier` the largest |μ| of the n-period
+    map where it was computed; `distance` is the bound on the relative distance to the orbit, `lyapunov` (exponent per
+    period, its standard error) there where it was measured. `followed`: the motion was still on its way, and the orbit
+    it goes to was found ahead of it. `approaches` is the period of an orbit that an unsettled motion goes to.
     """
 
     name: str
     period: int | None
-    multiplier: float | None
+    decay: float | None
     distance: float | None
     periods_run: int
     lyapunov: tuple[float, float] | None = None
+    multiplier: float | None = None
+    followed: bool = False
+    approaches: int | None = None
+
+    @property
+    def slowness(self) -> float:
+        """What is left per orbit of a distance from it: |μ|, else the decay seen, else a half."""
+        if self.multiplier is not None:
+            return min(1.0 - 1e-6, self.multiplier)
+        return min(0.999, self.decay or 0.5)
+
+    @property
+    def evidence(self) -> str:
+        """|μ| where it was computed, else the decay that was seen; empty where neither is known."""
+        if self.multiplier is not None:
+            return f"|μ| {modulus_words(self.multiplier)}"
+        if self.decay is None:
+            return ""
+        shown = self.period or self.approaches or 1
+        return f"decay {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
 
     @property
     def sentence(self) -> str:
         """The regime in words for the dashboard."""
+        evidence = f" ({self.evidence})" if self.evidence else ""
         if self.name == "periodic":
-            mu = f" (|μ| {self.multiplier:.2f})" if self.multiplier is not None else ""
-            return f"period {self.period}, settled after {self.periods_run} periods{mu}"
+            how = "approached for" if self.followed else "settled after"
+            return f"period {self.period}, {how} {self.periods_run} periods{evidence}"
         if self.name == "unsettled":
-            return f"not settled after {self.periods_run} periods"
+            towards = f", on its way to period {self.approaches}{evidence}" if self.approaches else ""
+            return f"not settled after {self.periods_run} periods{towards}"
         assert self.lyapunov is not None
         return f"{self.name}, Lyapunov exponent {self.lyapunov[0]:+.3f} ± {self.lyapunov[1]:.3f} per period"
+
+
+def modulus_words(modulus: float) -> str:
+    """A modulus with as many figures as tell it from 1 and from 0."""
+    if abs(modulus - 1.0) < 0.01:
+        return f"{modulus:.6f}" if abs(modulus - 1.0) < 1e-4 else f"{modulus:.4f}"
+    if modulus < 0.0095:
+        mantissa, exponent = f"{modulus:.0e}".split("e")
+        return f"{mantissa}e{int(exponent)}"
+    return f"{modulus:.2f}" if modulus >= 0.095 else f"{modulus:.3f}"
 
 
 @dataclass(frozen=True)
@@ -103,32 +140,66 @@ def irregular(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
 
     Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
-    errors, the section comes back near itself as it does on a closed curve, and it is not shrinking. Anything else is
-    on its way: neighbours come closer, however slowly.
+    errors, the section comes back near itself as it does on a closed curve, and the record is long enough to show that
+    it is neither shrinking nor growing. Anything else is on its way, however slowly.
     """
     mean = float(exponents.mean())
     error = float(exponents.std(ddof=1) / math.sqrt(len(exponents)))
     if mean > max(3.0 * error, 0.01):
         name = "chaotic"
-    elif abs(mean) <= max(3.0 * error, 5e-4) and not slowing(strobes) and returns_near(strobes):
+    elif abs(mean) <= max(3.0 * error, 5e-4) and stays(strobes) and returns_near(strobes):
         name = "quasi-periodic"
     else:
         name = "unsettled"
     return Regime(name, None, None, None, run, (mean, error))
 
 
-def slowing(strobes: np.ndarray) -> bool:
-    """Whether the motion is still on its way: changes over some period shrink through three windows in a row.
+def clearly_chaotic(exponents: np.ndarray) -> bool:
+    """Whether one measurement is enough: both halves of it show a growth with which no orbit is still being left.
 
-    On a closed curve or a strange attractor their largest value stays what it is.
+    After 400 periods a growth of 0.05 a period has multiplied a distance by 5e8.
     """
-    if len(strobes) < SLOW_RECORD:
+    halves = exponents[: len(exponents) // 2], exponents[len(exponents) // 2 :]
+    return all(half.mean() > max(3.0 * half.std(ddof=1) / math.sqrt(len(half)), CLEAR_GROWTH) for half in halves)
+
+
+def agree(one: Regime, other: Regime) -> bool:
+    """Whether two measurements of the Lyapunov exponent say the same and differ by no more than they may."""
+    if one.name != other.name or one.name == "unsettled" or one.lyapunov is None or other.lyapunov is None:
         return False
-    for n in range(1, LONGEST_PERIOD + 1):
-        first, second, third = changes(strobes, n, 3 * _SLOW_WINDOW).reshape(3, -1).max(axis=1)
-        if second < _SHRINKS * first and third < _SHRINKS * second:
-            return True
-    return False
+    (a, error_a), (b, error_b) = one.lyapunov, other.lyapunov
+    return abs(a - b) <= max(3.0 * math.hypot(error_a, error_b), 1e-3)
+
+
+def _windows(strobes: np.ndarray) -> list[np.ndarray]:
+    """For every period the largest changes over it in three windows in a row, (3,); empty for a short record."""
+    if len(strobes) < SLOW_RECORD:
+        return []
+    return [changes(strobes, n, 3 * _SLOW_WINDOW).reshape(3, -1).max(axis=1) for n in range(1, LONGEST_PERIOD + 1)]
+
+
+def slowing(strobes: np.ndarray) -> bool:
+    """Whether the motion is still on its way: changes over some period shrink through three windows and none grow.
+
+    On a closed curve or a strange attractor their largest value stays what it is, or some grow while others shrink.
+    """
+    seen = _windows(strobes)
+    return any(_shrinks(a, b, c) for a, b, c in seen) and not any(b < _SHRINKS * c for _, b, c in seen)
+
+
+def departing(strobes: np.ndarray) -> bool:
+    """Whether the motion leaves an orbit: changes over some period grow, small still, and none shrink."""
+    seen = _windows(strobes)
+    return any(_shrinks(c, b, a) and c < _SMALL for a, b, c in seen) and not any(c < _SHRINKS * b for _, b, c in seen)
+
+
+def _shrinks(first: float, second: float, third: float) -> bool:
+    return second < _SHRINKS * first and third < _SHRINKS * second
+
+
+def stays(strobes: np.ndarray) -> bool:
+    """Whether a record that is long enough shows a motion that neither slows down nor leaves an orbit."""
+    return len(strobes) >= SLOW_RECORD and not slowing(strobes) and not departing(strobes)
 
 
 def returns_near(strobes: np.ndarray) -> bool:

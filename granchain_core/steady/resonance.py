@@ -7,6 +7,7 @@ largest transmitted force; an anti-resonance is a local valley with one weak pul
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import gcd
 
 import numpy as np
@@ -17,10 +18,29 @@ from ..result import Run
 STRONG = 0.7
 #: A push ends where the force falls below this part of the largest push.
 ENDED = 0.05
-#: A frequency belongs to a peak (valley) if its force is less than this part of the way from it to the next valley.
-_NEAR = 0.35
-#: A peak or valley of the curve stands out if it differs from both neighbouring extrema by this part of the larger.
-_STANDS_OUT = 0.1
+#: A peak or valley counts if it differs from both neighbouring extrema by this part of the larger: a valley is at least
+#: 20 % below both peaks beside it.
+STANDS_OUT = 0.2
+#: A state is on a peak, or at the bottom of a valley, if its force is no more than this part of the height between the
+#: two away from it; what lies between is a flank.
+_ON_TOP, _AT_BOTTOM = 0.2, 0.1
+#: A state whose force differs by this part from the curve's at its frequency is not on the curve.
+_OFF = 0.1
+#: Less than this part of the input force at the wall: nothing travels through the chain.
+STOPS = 0.15
+
+
+@dataclass(frozen=True)
+class Place:
+    """What the curve from rest has where a state lies on it.
+
+    `kind` is "peak", "valley", "flank", "stop band" or "" (neither, or the state is not on the curve); of a peak and of
+    a flank the peak's frequency [Hz] and its period in drive periods, None where it is not periodic.
+    """
+
+    kind: str
+    peak: float = 0.0
+    period: int | None = None
 
 
 def pushes(run: Run) -> tuple[int, int] | None:
@@ -43,26 +63,38 @@ def pushes(run: Run) -> tuple[int, int] | None:
     return strong // common, periods // common
 
 
-def nature(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | np.ndarray, at: float) -> str:
-    """"resonance", "anti-resonance" or "" for the frequency `at` on a curve of largest output force, ascending."""
+def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | np.ndarray,
+             periods: Sequence[int | None], at: float, output: float, transmission: float) -> Place:
+    """Where a state of largest output force `output` lies at the frequency `at` on a curve, ascending.
+
+    `periods` are those of the curve's points, None where not periodic; `transmission` is the state's largest output
+    force over its largest input force.
+    """
     f, F = np.asarray(frequency, dtype=float), np.asarray(force, dtype=float)
     if len(f) < 5 or not f[0] <= at <= f[-1]:
-        return ""
-    turns = extrema(F)
+        return Place("")
     here = float(np.interp(at, f, F))
-    before = [i for i in turns if f[i] <= at]
-    after = [i for i in turns if f[i] > at]
-    if not before or not after:
-        return ""
-    left, right = F[before[-1]], F[after[0]]
-    if right == left:
-        return ""
-    way = (here - min(left, right)) / abs(right - left)  # 0 in the valley, 1 on the peak
-    peak, valley = (before[-1], after[0]) if left > right else (after[0], before[-1])
-    ends = (0, len(f) - 1)  # a curve's end is no extremum: nobody knows how it goes on
-    if way > 1.0 - _NEAR:
-        return "resonance" if peak not in ends else ""
-    return "anti-resonance" if way < _NEAR and valley not in ends else ""
+    if abs(here - output) > _OFF * max(here, output):
+        return Place("")
+    turns, ends = extrema(F), (0, len(f) - 1)
+    peaks = [i for i in turns if i not in ends and _is_peak(F, turns, i)]
+    if transmission < STOPS:
+        return Place("stop band" if not any(f[i] >= at for i in peaks) and peaks else "")
+    before, after = [i for i in turns if f[i] <= at], [i for i in turns if f[i] > at]
+    if not before or not after or F[before[-1]] == F[after[0]]:
+        return Place("")
+    low, high = sorted((before[-1], after[0]), key=lambda i: F[i])
+    way = (output - F[low]) / (F[high] - F[low])
+    if high in peaks and way > 1.0 - _ON_TOP:
+        return Place("peak", float(f[high]), periods[high])
+    if low not in ends and way < _AT_BOTTOM:
+        return Place("valley")
+    return Place("flank", float(f[high]), periods[high]) if high in peaks else Place("")
+
+
+def _is_peak(force: np.ndarray, turns: list[int], i: int) -> bool:
+    place = turns.index(i)
+    return bool(force[i] > force[turns[place - 1]])
 
 
 def extrema(force: np.ndarray) -> list[int]:
@@ -72,6 +104,27 @@ def extrema(force: np.ndarray) -> list[int]:
         rising = force[i] > force[turns[-1]]
         if len(turns) > 1 and rising == (force[turns[-1]] > force[turns[-2]]):
             turns[-1] = i
-        elif abs(force[i] - force[turns[-1]]) >= _STANDS_OUT * max(force[i], force[turns[-1]]):
+        elif abs(force[i] - force[turns[-1]]) >= STANDS_OUT * max(force[i], force[turns[-1]]):
             turns.append(i)
     return turns
+
+
+def place_words(pushed: tuple[int, int] | None, place: Place | None) -> str:
+    """A periodic motion in the paper's words: strong pushes in how many periods, and what the curve has there.
+
+    `place` is None while there is no whole curve. Peak and valley have the paper's names where the pushes are those it
+    gives them: one strong push in n periods on a peak, one in every period in a valley.
+    """
+    if pushed is None:
+        return ""
+    ratio = f"{pushed[0]}:{pushed[1]}"
+    if place is None:
+        return f"{ratio} motion (the curve is on its way)"
+    if place.kind == "peak":
+        return f"{ratio} resonance" if pushed[0] == 1 else f"{ratio} motion, on a peak"
+    if place.kind == "valley":
+        return f"{ratio} anti-resonance" if pushed == (1, 1) else f"{ratio} motion, in a valley"
+    if place.kind == "flank":
+        peak = f"the 1:{place.period} peak" if place.period else "the peak"
+        return f"{ratio} motion, flank of {peak} at {place.peak:.0f} Hz"
+    return f"{ratio} motion, stop band" if place.kind == "stop band" else f"{ratio} motion"

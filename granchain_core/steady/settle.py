@@ -1,8 +1,8 @@
 """Bringing a chain to its steady state, and deciding whether it is there.
 
-The live method runs from the start until the distance bound is small (regime.py); a periodic orbit is then handed
-to the certified method, which relaxes onto its own orbit and records it. What is not periodic within the budget
-is told apart by its Lyapunov exponent and recorded as it is, without a claim on its error.
+The live method runs from the start until the distance bound is small (regime.py) or until it is decided in another way
+what the motion is (decide.py); a periodic orbit is then handed to the certified method, which relaxes onto its own
+orbit and records it. What is not periodic is recorded as it is, without a claim on its error.
 """
 
 from __future__ import annotations
@@ -17,16 +17,10 @@ from ..integrate import Engine, Setting, State, method_for
 from ..integrate.engine import rest
 from ..result import Cost, Run, relative_changes, run_from
 from ..scene import Scene
+from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
-from .lyapunov import exponents
-from .regime import Regime, changes, find_period, irregular, slowing
+from .regime import Regime, changes, find_period
 
-#: Periods after which a chain that has not settled is called that.
-MOST_PERIODS = 400
-#: As many are allowed to a chain that clearly still approaches its orbit, which is asked every so many periods.
-SLOW_PERIODS, _SLOW_CHECK = 4000, 400
-#: Strobes looked at when the regime is decided.
-_REMEMBERED = 420
 #: Steps of the live method after which settling is given up in any case: about half a minute.
 MOST_STEPS = 100_000_000
 #: Samples a period of a picture.
@@ -35,8 +29,6 @@ PICTURE_SAMPLES = 96
 _SHOWN = 4
 #: Seconds after which a first picture is shown though nothing is decided yet.
 _PREVIEW_AFTER = 0.012
-#: Blocks and periods a block for the Lyapunov exponent.
-_BLOCKS, _BLOCK = 10, 20
 #: Rounds of relaxation onto the certified orbit at most, each of as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 
@@ -58,7 +50,7 @@ class Settled:
 
 
 class Settling:
-    """The live method on its way to the steady state, chunk by chunk."""
+    """The live method on its way to the steady state, chunk by chunk, until it is decided what that is."""
 
     def __init__(self, scene: Scene, start: State | None, stop: np.ndarray | None) -> None:
         self.scene = scene
@@ -66,64 +58,83 @@ class Settling:
         self.stop = self.engine.stop
         self.engine.start(start if start is not None else rest(scene))
         self._steps = self.engine.grid
-        first = self.engine.state
-        scales = self.engine.lowered.scales
-        self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
         self.tops = np.zeros((0, 3))
-        self.regime = Regime("unsettled", None, None, None, 0)
+        self._begin(0)
+        self.decisions = Decisions(self.scene, start is not None)
+        self.decided = False
+
+    def _begin(self, run: int) -> None:
+        """A new record of strobes from where the engine is, after `run` periods."""
+        first, scales = self.engine.state, self.engine.lowered.scales
+        self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
+        self._run, self._stop_at = run, MOST_PERIODS
+        self.regime = Regime("unsettled", None, None, None, run)
+
+    @property
+    def _here(self) -> int:
+        """Periods of the present record."""
+        return len(self.strobes) - 1
 
     def go_on(self, seconds: float) -> None:
-        """Run until the regime is found, the budget is spent, or about `seconds` have passed."""
-        end, per_period = time.perf_counter() + seconds, 0.0
-        while not self.finished:
+        """Run until it is decided what the motion is, the budget is spent, or about `seconds` have passed."""
+        end = time.perf_counter() + seconds
+        while not self.decided and self._run_until(end):
+            self._decide()
+            if time.perf_counter() > end:
+                return
+
+    def _run_until(self, end: float) -> bool:
+        """Run until something is to be decided, or until that time; whether it is."""
+        per_period = 0.0
+        while not self._finished:
             left = end - time.perf_counter()
             if per_period and left < per_period:
-                return
+                return False
             chunk = 2 if per_period == 0.0 else max(1, int(min(self._until_next_look(), left / per_period)))
-            chunk = min(chunk, self._next_stop() - self.regime.periods_run, max(1, self._steps_left() // self._steps))
+            chunk = min(chunk, self._stop_at - self._here, max(1, self._steps_left() // self._steps))
             began = time.perf_counter()
             strobes, tops = self.engine.periods(chunk)
             per_period = (time.perf_counter() - began) / chunk
-            self.strobes = np.concatenate([self.strobes, strobes[1:]])
             self.tops = np.concatenate([self.tops, tops])
-            self.regime = find_period(self.strobes[-_REMEMBERED:])
-            self.regime = replace(self.regime, periods_run=len(self.strobes) - 1)
+            self._note(strobes[1:])
+        return True
+
+    def _note(self, strobes: np.ndarray) -> None:
+        """Add strobes to the record and look for a period."""
+        self.strobes = np.concatenate([self.strobes, strobes])
+        self.regime = replace(find_period(self.strobes[-REMEMBERED:]), periods_run=self._run + self._here)
 
     def _steps_left(self) -> int:
         return MOST_STEPS - self.engine.counts.steps
 
     def _until_next_look(self) -> float:
         """Periods until the regime is looked for again: an eighth of those run, so that looking costs little."""
-        return max(8.0, self.regime.periods_run / 8)
-
-    def _next_stop(self) -> int:
-        """Periods after which it is decided whether a slow chain may go on."""
-        run = self.regime.periods_run
-        return MOST_PERIODS if run < MOST_PERIODS else (run // _SLOW_CHECK + 1) * _SLOW_CHECK
+        return max(8.0, self._here / 8)
 
     @property
-    def finished(self) -> bool:
-        """Whether the regime is known or running on would not help."""
-        run = self.regime.periods_run
-        if self.regime.name == "periodic" or run >= SLOW_PERIODS or self._steps_left() <= 0:
-            return True
-        return run >= MOST_PERIODS and run % _SLOW_CHECK == 0 and not slowing(self.strobes)
+    def _finished(self) -> bool:
+        """Whether it is time for a decision."""
+        return self.regime.name == "periodic" or self._steps_left() <= 0 or self._here >= self._stop_at
 
-    def decide_irregular(self) -> None:
-        """Tell chaotic from quasi-periodic from not settled; the engine goes on meanwhile.
+    def _decide(self) -> None:
+        """Take the next decision: a regime, a state further on from which the motion goes on, or just more periods.
 
-        Where the budget of steps is spent the chain stays unsettled: a Lyapunov exponent would cost as much again.
+        Where the budget of steps is spent the chain stays unsettled: more evidence would cost as much again.
         """
-        if self._steps_left() <= 0:
+        if self._steps_left() <= 0 and self.regime.name != "periodic":
+            self.decided = True
             return
-        found, strobes = exponents(self.engine, _BLOCKS, _BLOCK)
-        self.strobes = np.concatenate([self.strobes, strobes])
-        self.regime = find_period(self.strobes[-_REMEMBERED:])
-        run = len(self.strobes) - 1
-        if self.regime.name == "periodic":
-            self.regime = replace(self.regime, periods_run=run)
+        found = self.decisions.next(self.engine, self.strobes[-REMEMBERED:], self.regime)
+        if found.state is not None:
+            self.engine.start_scaled(found.state)
+        if found.regime is not None:
+            self.regime, self.decided = found.regime, True
+        elif found.state is not None:
+            self._begin(self._run + self._here)
         else:
-            self.regime = irregular(found, self.strobes[-_REMEMBERED:], run)
+            if found.strobes is not None:
+                self._note(found.strobes)
+            self._stop_at = self._here + MOST_PERIODS
 
 
 def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
@@ -136,15 +147,12 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     began = time.perf_counter()
     way = Settling(scene, start, stop)
     way.go_on(_PREVIEW_AFTER)
-    while way.regime.name != "periodic":
+    while not way.decided:
         yield live_picture(way, samples, began, origin, final=False)
-        if way.finished:
-            way.decide_irregular()
-            if way.regime.name != "periodic":
-                yield live_picture(way, samples, began, origin, final=True)
-                return
-            break
         way.go_on(0.1)
+    if way.regime.name != "periodic":
+        yield live_picture(way, samples, began, origin, final=True)
+        return
     yield live_picture(way, samples, began, origin, final=False)
     yield certified_picture(way, samples, began, origin)
 
@@ -152,9 +160,9 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
 def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
             stop: np.ndarray | None = None) -> Settled:
     """The steady state reached from rest or from `start`, certified where it is periodic."""
+    began = time.perf_counter()
     way = settle(scene, start, stop)
     origin = "rest" if start is None else "previous state"
-    began = time.perf_counter()
     if way.regime.name == "periodic":
         return certified_picture(way, samples, began, origin)
     return live_picture(way, samples, began, origin, final=True)
@@ -164,8 +172,6 @@ def settle(scene: Scene, start: State | None, stop: np.ndarray | None) -> Settli
     """Run to the end of the budget or to the steady state, without pictures."""
     way = Settling(scene, start, stop)
     way.go_on(np.inf)
-    if way.regime.name != "periodic":
-        way.decide_irregular()
     return way
 
 
@@ -204,15 +210,15 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     regime = replace(way.regime, distance=distance)
     # an error e of the n-period map moves its fixed point by e/(1 − |μ|), and the forces with it
     still = 1.0 / (1.0 - slowness(way.regime))
-    forces = relative_changes(fine.tops, coarse.tops) + 1.5 * still * integration
+    forces = still * relative_changes(fine.tops, coarse.tops)
     integration *= still
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces + 1.5 * distance)
     return Settled(run, regime, start, origin, False, True)
 
 
 def slowness(regime: Regime) -> float:
-    """The decay per orbit that bounds rest on: the multiplier seen, a half where none was."""
-    return min(0.999, regime.multiplier or 0.5)
+    """What is left per orbit of a distance from it, on which bounds rest."""
+    return regime.slowness
 
 
 def certified_setting(scene: Scene, accuracy: float, rate: float) -> Setting:

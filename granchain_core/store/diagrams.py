@@ -2,7 +2,7 @@
 
 /map    one dimension scale per knob, named as the knob; max_input_force, max_output_force, max_output_force_elastic,
         their relative errors error_estimate_input, error_estimate (of the output force), error_estimate_elastic,
-        multiplier, lyapunov, lyapunov_error, regime, period, periods_run (y, x)
+        decay, multiplier, lyapunov, lyapunov_error, regime, period, periods_run (y, x)
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ _COLUMNS = {  # name: (unit, meaning)
     "regime": ("", "what the motion is"),
     "period": ("1", "period in drive periods, 0 where not periodic"),
     "periods_run": ("1", "drive periods run until that was decided"),
-    "multiplier": ("1", "modulus of the leading multiplier seen in the decay"),
+    "decay": ("1", "what changes shrank to per orbit, NaN where not seen"),
+    "multiplier": ("1", "modulus of the leading multiplier, NaN where not computed"),
     "lyapunov": ("1", "largest Lyapunov exponent per drive period, NaN where not measured"),
     "lyapunov_error": ("1", "standard error of the Lyapunov exponent"),
 }
@@ -70,8 +71,10 @@ def load_diagram(path: str | Path) -> Diagram:
                         Axis.of(y, file["map"][y][()]))
             cells = empty_cells(grid)
             for name in CELL.names or ():
-                if name != "number" and name in file["map"]:  # earlier versions kept one error only
+                if name != "number" and name in file["map"]:  # earlier versions kept fewer columns
                     cells[name] = file["map"][name][()].reshape(-1)
+            if "decay" not in file["map"]:  # files written before the two were told apart
+                cells["decay"], cells["multiplier"] = cells["multiplier"].copy(), np.nan
             return Diagram(grid, cells, float(file.attrs["wall_s"]))
     except BadInput:
         raise

@@ -131,6 +131,8 @@ def _read(path: str | Path) -> Run:
         attrs, jumps = dict(file.attrs), _read_jumps(group)
     regime = json.loads(attrs["regime"])
     regime["lyapunov"] = tuple(regime["lyapunov"]) if regime["lyapunov"] else None
+    if "decay" not in regime:  # files written before decay and |μ| were told apart
+        regime["decay"] = regime.pop("multiplier")
     scene = Scene.from_json(json.loads(attrs["scene"]))
     rows = len(arrays["time"])
     for name, width in (("displacement", (scene.N,)), ("velocity", (scene.N,)), ("force", (scene.N + 1,)),

@@ -19,7 +19,6 @@ from app.stability_work import Analysis, Target, analyse, search, section_of, tr
 from app.views.stability import (
     described_multipliers,
     evidence,
-    modulus_words,
     multiplier_words,
     no_multipliers,
     section_message,
@@ -106,7 +105,7 @@ def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:
     assert names == ["regime", "distance to the orbit", "|μ| largest", "Newton's residual", "settled state", "Liouville",
                      "disturbance carried", "multipliers by", "settled by"]
     rows = {row["name"]: row["value"] for row in evidence(picture(), analysis(), None)}
-    assert rows["|μ| largest"].startswith("0.3610; seen in the decay 0.")
+    assert rows["|μ| largest"].startswith("0.36; decay 0.4")
     assert " → " in rows["Newton's residual"] and float(rows["Liouville"]) < 1e-6
     chaotic = replace(picture(), regime=Regime("chaotic", None, None, None, 620, (0.265, 0.023)))
     assert [row["name"] for row in evidence(chaotic, None, None)] == ["regime", "Lyapunov exponent", "settled by"]

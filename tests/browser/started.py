@@ -33,18 +33,41 @@ def free_port() -> int:
 @contextmanager
 def dashboard(log: Path, **environment: str) -> Iterator[str]:
     """The address of a dashboard that runs until the block ends."""
-    port = free_port()
-    code = f"from app.server import serve; serve(port={port})"
-    with log.open("wb") as output:
-        process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output,
-                                   env={**os.environ, **environment})
+    server = Server(log, **environment)
+    server.start()
+    try:
+        yield server.address
+    finally:
+        server.process.terminate()
+        server.process.wait(timeout=20)
+
+
+class Server:
+    """A dashboard on a port of its own that can be ended, and started again on the same port."""
+
+    process: subprocess.Popen[bytes]
+
+    def __init__(self, log: Path, **environment: str) -> None:
+        self._log, self._environment = log, environment
+        self._port = free_port()
+        self.address = f"http://127.0.0.1:{self._port}/"
+
+    def start(self) -> None:
+        """Start it and wait until it answers."""
+        code = f"from app.server import serve; serve(port={self._port})"
+        with self._log.open("ab") as output:
+            self.process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output,
+                                            env={**os.environ, **self._environment})
         try:
-            address = f"http://127.0.0.1:{port}/"
-            _wait_until_alive(process, address, log)
-            yield address
-        finally:
-            process.terminate()
-            process.wait(timeout=20)
+            _wait_until_alive(self.process, self.address, self._log)
+        except BaseException:
+            self.kill()
+            raise
+
+    def kill(self) -> None:
+        """End it at once, stopped or not."""
+        self.process.kill()
+        self.process.wait(timeout=20)
 
 
 def _wait_until_alive(process: subprocess.Popen[bytes], address: str, log: Path) -> None:

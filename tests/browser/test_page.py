@@ -156,6 +156,15 @@ def test_k_shows_kappa_and_the_foundation_frequency(visit: Visit) -> None:
     expect(page.locator("#knobs .aside")).to_contain_text("none")
 
 
+def test_an_amplitude_moved_alone_is_said_beside_kappa(visit: Visit) -> None:
+    page = visit("?v=1&scene=rig")
+    expect(page.locator("#knobs .kept")).to_be_empty()
+    type_into(page, "A0", "6")
+    expect(page.locator("#knobs .kept")).to_have_text("A₀ moved, k did not: κ was 0.001")
+    type_into(page, "kappa", "0.001")
+    expect(page.locator("#knobs .kept")).to_be_empty()
+
+
 def test_live_frames_advance(visit: Visit) -> None:
     page = visit()
     page.get_by_role("button", name="The run goes on").click()

@@ -53,6 +53,8 @@ def lines(changes: dict[int, str]) -> str:
     (lines({12: "9e-5,0.1"}), "Line 12: time 9e-05 s does not come after"), (lines({12: "1e-4"}), "Line 12 has 1 columns"),
     (lines({12: ""}), "Line 13: 2e-05 s after the sample before, where 1e-05 s is usual: a gap"),
     (csv(pulse(), header="time_s,pressure"), "column 'pressure'"), ("time_s,force_N\n0,1\n1e-5,1", "at least 8"),
+    ("0;0\n0.125;1,5", "Line 2: '0.125' is 0.125 s if the point .* and 125 s if the comma is"),
+    ("time_ms;force_mN\n0;1,500\n0.1;1", "Line 2: '1,500' is 1500 mN if the point .* and 1.5 mN if the comma is"),
     (csv(0.0 * pulse()), "zero at every sample"), ("", "empty"),
     (csv(pulse(), step=1e-3), r"Line 18: a pulse of 0.5 N may be as short as .* nearest valid spacing"),
 ])
@@ -64,6 +66,11 @@ def test_what_cannot_be_is_refused_with_its_line(text: str, sentence: str) -> No
 def test_units_that_contradict_the_header_are_refused() -> None:
     with pytest.raises(BadInput, match="header says the force is in mN, and N was asked for"):
         read_force_csv(csv(pulse(), header="time_s,force_mN"), force_unit="N")
+
+
+def test_the_readings_of_an_ambiguous_number_are_in_the_unit_asked_for() -> None:
+    with pytest.raises(BadInput, match=r"'1\.100' is 1\.1 ms if the point is the decimal mark and 1100 ms if the comma is"):
+        read_force_csv("0;0,5\n1.100;1", time_unit="ms")
 
 
 @pytest.mark.parametrize(("time", "force", "sentence"), [

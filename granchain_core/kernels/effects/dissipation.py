@@ -36,6 +36,8 @@ class KuwabaraKono(NamedTuple):
 
 
 LAWS = (LinearDashpot, Tsuji, KuwabaraKono)
+#: Those with g(0) = 0, whose force does not jump when a contact closes.
+SMOOTH_LAWS = (Tsuji, KuwabaraKono)
 
 
 @term

@@ -1,0 +1,153 @@
+"""What a motion is that has come to look periodic, or has not for a long time: one decision after the other.
+
+A motion that seems settled is confirmed by the multipliers of its orbit. One that is still moving is asked whether it
+goes to an orbit beside it, or leaves one: the first is followed to its orbit, the second is taken to where its
+departure is no longer small. Only what does neither is told apart by its Lyapunov exponent, measured twice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..integrate import Engine
+from ..scene import Scene
+from .lyapunov import exponents
+from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside
+from .regime import Regime, agree, clearly_chaotic, departing, irregular, slowing
+
+#: Periods after which a motion that has not settled is looked at in another way, and most that are run in all.
+MOST_PERIODS, SLOW_PERIODS = 400, 4000
+#: Blocks and periods a block of one measurement of the Lyapunov exponent.
+BLOCKS, BLOCK = 10, 20
+#: Strobes looked at when something is decided.
+REMEMBERED = 420
+#: Measurements of the Lyapunov exponent for a motion that is not followed any further.
+_MEASUREMENTS = 3
+#: Beads up to which every claim of `settled` is confirmed by multipliers; of longer chains those in doubt.
+_ALWAYS = 30
+#: A claim is in doubt if changes shrink by less than this a drive period: an orbit that grows slowly may look like it.
+CLEAR_DECAY = 0.9
+#: A motion beside an unstable orbit is given so many times the periods: it leaves as slowly as others come.
+_PATIENCE = 4
+#: How often a motion that leaves an orbit is taken along its departure.
+_MOST_DEPARTURES = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Decision:
+    """A regime, a scaled state (2N,) to go on from, strobes of periods that were run meanwhile, or nothing yet."""
+
+    regime: Regime | None = None
+    state: np.ndarray | None = None
+    strobes: np.ndarray | None = None
+
+
+class Decisions:
+    """The decisions on one motion; `carried` if it began on a state that another setting left behind."""
+
+    def __init__(self, scene: Scene, carried: bool) -> None:
+        self.scene, self._carried = scene, carried
+        self._departures, self._leaves = 0, False
+        self._measured: Regime | None = None
+
+    def next(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
+        """What follows from the last strobes (P, 2, N) of `engine` and from the regime that they show."""
+        if regime.name == "periodic":
+            return self._confirmed(engine, regime)
+        if self.scene.N <= MOST_BEADS:
+            for orbit in orbits_beside(self.scene, strobes, scaled(engine), engine.stop):
+                found = self._beside(orbit, regime)
+                if found is not None:
+                    return found
+        if regime.periods_run >= SLOW_PERIODS * (_PATIENCE if self._leaves else 1):
+            return Decision(regime)
+        if slowing(strobes) or departing(strobes):
+            return Decision()
+        return self._measure(engine, strobes, regime)
+
+    def _confirmed(self, engine: Engine, regime: Regime) -> Decision:
+        """A motion that seems settled: on an orbit that is stable, or beside one that it will leave."""
+        assert regime.period is not None
+        doubtful = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
+        if (MOST_BEADS if doubtful else _ALWAYS) < self.scene.N:
+            return Decision(regime)
+        orbit = orbit_of(self.scene, regime.period, scaled(engine), engine.stop)
+        if orbit is None:
+            return Decision(replace(regime, name="unsettled", period=None, distance=None) if doubtful else regime)
+        if orbit.stable:
+            found = replace(regime, period=orbit.period, multiplier=orbit.modulus)
+            return Decision(found, orbit.point.x if doubtful else None)
+        return self._beside(orbit, regime) or Decision(
+            replace(regime, name="unsettled", period=None, distance=None, decay=None, approaches=orbit.period,
+                    multiplier=orbit.modulus))
+
+    def _beside(self, orbit: NearbyOrbit, regime: Regime) -> Decision | None:
+        """What an orbit beside the motion decides, if anything."""
+        if orbit.approached():
+            return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus, decay=None,
+                                    distance=orbit.distance, followed=True, approaches=None), orbit.point.x)
+        self._leaves = self._leaves or orbit.unstable
+        if not orbit.unstable or self._departures >= _MOST_DEPARTURES:
+            return None
+        further = orbit.drawn_out()
+        if further is None:
+            return None
+        self._departures += 1
+        self._measured = None
+        return Decision(state=further)
+
+    def _measure(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
+        """The Lyapunov exponent of the next periods; one that is small counts if a second measurement agrees."""
+        found, passed = exponents(engine, BLOCKS, BLOCK)
+        record = np.concatenate([strobes, passed])
+        run = regime.periods_run + len(passed)
+        now, before = irregular(found, record[-len(strobes):], run), self._measured
+        if clearly_chaotic(found):
+            return Decision(now)
+        if before is not None and agree(now, before):
+            return Decision(now)
+        self._measured = now
+        return Decision(strobes=passed)
+
+
+def as_it_stands(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
+    """The regime of a motion that is not followed to where it goes: nothing is claimed that it only approaches.
+
+    `engine` is a live one where the strobes (P, 2, N) end; it goes on where a Lyapunov exponent is measured.
+    """
+    scene, stop = engine.lowered.scene, engine.stop
+    if regime.period is not None:
+        if (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY or scene.N > MOST_BEADS:
+            return regime
+        orbit = orbit_of(scene, regime.period, scaled(engine), stop)
+        if orbit is None or not orbit.stable:
+            return Regime("unsettled", None, None, None, regime.periods_run)
+        return replace(regime, period=orbit.period, multiplier=orbit.modulus)
+    if scene.N <= MOST_BEADS:
+        for orbit in orbits_beside(scene, strobes, scaled(engine), stop):
+            if orbit.approached():
+                return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)
+            if orbit.unstable and orbit.drawn_out() is not None:
+                return regime
+    return _told_apart(engine, strobes, regime)
+
+
+def _told_apart(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
+    """Chaotic or quasi-periodic by one clear measurement of the Lyapunov exponent or by two that agree."""
+    record, before = strobes, None
+    for _ in range(_MEASUREMENTS):
+        found, passed = exponents(engine, BLOCKS, BLOCK)
+        record = np.concatenate([record, passed])
+        now = irregular(found, record[-REMEMBERED:], regime.periods_run + len(record) - len(strobes))
+        if clearly_chaotic(found) or (before is not None and agree(now, before)):
+            return now
+        before = now
+    return replace(now, name="unsettled")
+
+
+def scaled(engine: Engine) -> np.ndarray:
+    """The engine's state (2N,) of displacements, then w."""
+    row = engine.lowered.row
+    return np.concatenate([engine.y[1 : row - 1], engine.y[row + 1 : 2 * row - 1]])

@@ -1,0 +1,149 @@
+"""The periodic orbit beside a motion: is it one that the motion goes to, or one that it leaves?
+
+A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one; while it
+lasts both look alike. So the orbit itself is found, its multipliers say what becomes of a small disturbance, and the
+way from the motion to the orbit is tried: from the whole distance, half of it, a quarter, … the motion must come
+nearer about as fast as the multipliers say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import NumbersFailed
+from ..kernels.section import LONGEST_PERIOD
+from ..scene import Scene
+from .regime import changes
+from .strobe_map import FixedPoint, StrobeMap, fixed_point, sizes
+
+#: Beads up to which the derivative of the map is computed.
+MOST_BEADS = 100
+#: |μ| is not known better than this.
+UNSURE = 1e-5
+#: A motion that changes by more over n periods is not beside an orbit of n; nor is one so far from the orbit found.
+_BESIDE = 0.1
+#: A motion is looked at for the shortest period over which it changes by no more than so many times the least change.
+_AS_SMALL = 3.0
+#: Distances are halved until they are this small. Each is followed until the multipliers have taken this part of it
+#: away, for so many orbits at most, and this part of that must be gone: beside an orbit that has just become stable
+#: there may be a closed curve that the motion stays on, where distances go up and down by some per cent.
+_SMALLEST, _TAKEN, _MOST_ORBITS, _PART = 1e-5, 0.2, 3000, 0.3
+#: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
+_TURN = 16
+#: Directions whose |μ| is below this, or below this part of the largest, are gone after so many orbits.
+_SLOW = 0.3
+#: Length to which a departure is drawn out along the directions that grow.
+_DRAWN_OUT = 3e-3
+#: The orbit has a shorter period if it is back this near after a part of it.
+_BACK = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class NearbyOrbit:
+    """An orbit of `period` drive periods beside a motion at x (2N,), scaled; `modulus` is its largest |μ|."""
+
+    strobe: StrobeMap
+    point: FixedPoint
+    x: np.ndarray
+    modulus: float
+
+    @property
+    def period(self) -> int:
+        """Its period in drive periods."""
+        return self.strobe.periods
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers are inside the unit circle, by more than they may be wrong."""
+        return self.modulus < 1.0 - UNSURE
+
+    @property
+    def unstable(self) -> bool:
+        """Whether one is outside, by more than it may be wrong."""
+        return self.modulus > 1.0 + UNSURE
+
+    @property
+    def away(self) -> float:
+        """How far the motion is from the orbit, relative to the largest displacement and w."""
+        return float(np.abs((self.x - self.point.x) / sizes(self.point.x)).max())
+
+    @property
+    def distance(self) -> float:
+        """How far the orbit found may be from the map's own: what is left of the residual over 1 − |μ|."""
+        return self.point.residual / max(UNSURE, 1.0 - self.modulus)
+
+    def approached(self) -> bool:
+        """Whether the motion goes to this orbit: from where it is and from all shorter distances it comes nearer."""
+        if not self.stable or self.away > _BESIDE:
+            return False
+        rows = _slow_coordinates(self.point.derivative, max(_SLOW, _SLOW * self.modulus))
+        orbits = 2 * _TURN + min(_MOST_ORBITS, int(_TAKEN / (1.0 - self.modulus)))
+        left = 1.0 - _PART * (1.0 - self.modulus ** (orbits - _TURN))
+        offset = self.x - self.point.x
+        while True:
+            lengths = self._lengths(rows, offset, orbits)
+            if lengths is None or not lengths[-_TURN:].max() <= left * lengths[:_TURN].max():
+                return False
+            offset = offset / 2.0
+            if float(np.abs(offset / sizes(self.point.x)).max()) < _SMALLEST:
+                return True
+
+    def _lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> np.ndarray | None:
+        """The lengths of an offset from the orbit, orbit after orbit; None where it cannot be followed."""
+        try:
+            states = self.strobe.passed(self.point.x + offset, orbits)
+        except NumbersFailed:
+            return None
+        offsets = states - self.point.x
+        return np.linalg.norm(offsets @ rows.T if len(rows) else offsets, axis=1)
+
+    def drawn_out(self) -> np.ndarray | None:
+        """The state to which a motion that leaves this orbit comes later: its part along what grows, made larger.
+
+        None where it is that far already.
+        """
+        values, right = np.linalg.eig(self.point.derivative)
+        grows = np.abs(values) > 1.0
+        parts = np.linalg.solve(right, (self.x - self.point.x).astype(complex))[grows]
+        if not np.abs(parts).max() > 0.0:  # on the orbit itself: one way is as good as another
+            parts = np.ones(len(parts), dtype=complex)
+        leaving = np.real(right[:, grows] @ parts)
+        length = float(np.abs(leaving / sizes(self.point.x)).max())
+        return None if length >= _DRAWN_OUT else self.point.x + leaving * (_DRAWN_OUT / length)
+
+
+def _slow_coordinates(matrix: np.ndarray, slowest: float) -> np.ndarray:
+    """Left eigenvectors as rows: in these coordinates every slow direction shrinks by its own μ."""
+    values, vectors = np.linalg.eig(matrix.T)
+    return vectors[:, np.abs(values) >= slowest].T
+
+
+def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray) -> NearbyOrbit | None:
+    """The orbit of `period` drive periods, or of a part of them, that Newton's method leads to from x; if any."""
+    strobe = StrobeMap(scene, period, stop)
+    found = fixed_point(strobe, x)
+    if found is None:
+        return None
+    for shorter in (n for n in range(1, period) if period % n == 0):
+        part = StrobeMap(scene, shorter, stop)
+        if float(np.abs((part(found.x) - found.x) / sizes(found.x)).max()) < _BACK:
+            again = fixed_point(part, found.x)
+            if again is not None:
+                return NearbyOrbit(part, again, x, again.modulus)
+    return NearbyOrbit(strobe, found, x, found.modulus)
+
+
+def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: np.ndarray) -> Iterator[NearbyOrbit]:
+    """Orbits beside a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
+    moved = [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]
+    if not moved or min(moved) > _BESIDE:
+        return
+    tried = {next(n for n, change in enumerate(moved, 1) if change <= _AS_SMALL * min(moved)),
+             1 + int(np.argmin(moved))}
+    for n in sorted(tried):
+        found = orbit_of(scene, n, x, stop)
+        if found is not None and found.away <= _BESIDE:
+            yield found

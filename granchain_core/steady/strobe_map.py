@@ -1,0 +1,130 @@
+"""The n-period stroboscopic map by the method that draws pictures, its derivative by differences, its fixed points.
+
+Whether a claim near |μ| = 1 holds is asked here, in the middle of settling: with kernels that are compiled already, and
+for cut tensions too. The tangent flow (`granchain_core/orbits`) is for orbits that are asked for by name; both agree on
+|μ| to 1e-5 (tests/numerics/test_confirmed_orbits.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import NumbersFailed
+from ..integrate import Engine, Setting
+from ..scene import Scene
+
+#: Steps for one of the live method's: multipliers are then right to some 1e-6, next to a tangent flow's.
+_REFINE = 4.0
+#: Tolerance of the certified method, which scenes that cut tension need.
+_TOLERANCE = 1e-11
+#: Half the difference of two states over the largest displacement or w: the error is its square times the map's third
+#: derivative, and the method's noise, some 1e-10, over it.
+_DIFFERENCE = 1e-5
+#: Relative residual at which a fixed point is found, Newton's iterations at most, and how much one has to gain to be
+#: done with the derivative that is there.
+_FOUND, _MOST_ITERATIONS, _ENOUGH = 1e-9, 10, 0.1
+#: A step of Newton's method is halved so often at most.
+_HALVINGS = 5
+
+
+class StrobeMap:
+    """x → the state n drive periods later, for scaled x = (u, w) at phase 0, (2N,)."""
+
+    def __init__(self, scene: Scene, periods: int, stop: np.ndarray | None = None, refine: float = _REFINE) -> None:
+        setting = Setting("dop853", tolerance=_TOLERANCE) if scene.cuts_tension else Setting("rk4-split", refine=refine)
+        self.engine = Engine(scene, setting, 1, stop=stop)
+        self.periods = periods
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        """Where the map leads."""
+        self.engine.start_scaled(x)
+        self.engine.periods(self.periods, watch=False)
+        return self.inner(self.engine.y)
+
+    def passed(self, x: np.ndarray, times: int) -> np.ndarray:
+        """The states (times + 1, 2N) passed when the map is taken so many times."""
+        self.engine.start_scaled(x)
+        states = [x]
+        for _ in range(times):
+            self.engine.periods(self.periods, watch=False)
+            states.append(self.inner(self.engine.y))
+        return np.array(states)
+
+    def inner(self, y: np.ndarray) -> np.ndarray:
+        """The beads' part of a whole state array."""
+        row = self.engine.lowered.row
+        return np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
+
+    def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
+        """The derivative (2N, 2N) by differences; those to one side take half the time and are right to some 1e-4."""
+        matrix, width = np.zeros((len(x), len(x))), _DIFFERENCE * sizes(x)
+        middle = None if central else self(x)
+        for i in range(len(x)):
+            step = np.zeros(len(x))
+            step[i] = width[i]
+            if middle is None:
+                matrix[:, i] = (self(x + step) - self(x - step)) / (2.0 * width[i])
+            else:
+                matrix[:, i] = (self(x + step) - middle) / width[i]
+        return matrix
+
+
+@dataclass(frozen=True, eq=False)
+class FixedPoint:
+    """A fixed point of the n-period map with the map's derivative there and what is left of the residual."""
+
+    x: np.ndarray
+    derivative: np.ndarray
+    residual: float
+
+    @property
+    def modulus(self) -> float:
+        """The largest |μ|."""
+        return float(np.abs(np.linalg.eigvals(self.derivative)).max())
+
+
+def sizes(x: np.ndarray) -> np.ndarray:
+    """The largest displacement and the largest w, each for its own half of a state (2N,)."""
+    half = len(x) // 2
+    largest = [max(1e-300, float(np.abs(part).max())) for part in (x[:half], x[half:])]
+    return np.repeat(largest, half)
+
+
+def fixed_point(strobe: StrobeMap, x: np.ndarray) -> FixedPoint | None:
+    """The fixed point that Newton's method leads to from x; None where it leads nowhere.
+
+    The derivative is computed anew only where the one that is there does not gain enough.
+    """
+    try:
+        return _newton(strobe, x)
+    except (NumbersFailed, np.linalg.LinAlgError):  # thrown where nothing can be followed, or |μ| = 1
+        return None
+
+
+def _newton(strobe: StrobeMap, x: np.ndarray) -> FixedPoint | None:
+    scale = sizes(x)
+    change = strobe(x) - x
+    residual, matrix, here = float(np.abs(change / scale).max()), strobe.derivative(x), True
+    for _ in range(_MOST_ITERATIONS):
+        if residual <= _FOUND:
+            break
+        step = np.linalg.solve(matrix - np.eye(len(x)), -change)
+        for halving in range(_HALVINGS):
+            trial = x + step / 2**halving
+            after = strobe(trial) - trial
+            if float(np.abs(after / scale).max()) < residual:
+                break
+        else:
+            if here:
+                break
+            matrix, here = strobe.derivative(x), True
+            continue
+        gained = float(np.abs(after / scale).max()) / residual
+        x, change, residual, here = trial, after, gained * residual, False
+        if gained > _ENOUGH and residual > _FOUND:
+            matrix, here = strobe.derivative(x), True
+    if residual > 100.0 * _FOUND:
+        return None
+    return FixedPoint(x, matrix if here else strobe.derivative(x), residual)

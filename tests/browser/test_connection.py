@@ -1,0 +1,138 @@
+"""A page that has lost its server says so at once, lets no knob move, and builds itself again from its knobs."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, expect
+from started import Server
+
+#: How long the page may look alive after its socket is closed [ms]; a silent server is noticed after 1.6 s, and later
+#: by as much as the page itself is held up, since a delay of its own does not count as silence.
+SOON, SILENT = 2_000, 4_000
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Server]:
+    """A dashboard of this test's own."""
+    one = Server(tmp_path / "log")
+    one.start()
+    yield one
+    one.kill()
+
+
+@pytest.fixture
+def page(chromium: Browser, server: Server) -> Iterator[Page]:
+    """Its page, paused at 1130 Hz with another damping, its pictures drawn."""
+    context = chromium.new_context(viewport={"width": 1280, "height": 800})
+    page = context.new_page()
+    page.goto(f"{server.address}?v=1&scene=sec2&f=1130&D=90&start=previous")
+    expect(page.locator("#lost")).to_be_hidden()
+    page.wait_for_function(BELONGS, arg=1130, timeout=60_000)
+    yield page
+    context.close()
+
+
+# Whether the pictures show whole drive periods of a frequency [Hz]; the time axis of all of them is one, in ms.
+BELONGS = """(frequency) => {
+  for (const document of window.Bokeh?.documents ?? []) for (const model of document.all_models ?? document._all_models.values()) {
+    if (model.type !== "Figure" || model.y_range?.start === 1 || !(model.y_range?.start > model.y_range?.end)) continue;
+    const periods = model.y_range.start * 1e-3 * frequency;
+    return periods > 0.5 && Math.abs(periods - Math.round(periods)) < 1e-3;
+  }
+  return false;
+}"""
+
+
+def value(page: Page, name: str = "f") -> str:
+    return page.locator(f'[data-knob="{name}"] input[type="text"]').input_value()
+
+
+def turn(page: Page, name: str, text: str) -> None:
+    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
+    field.fill(text)
+    field.press("Enter")
+
+
+def looks_lost(page: Page, within: int = SOON) -> None:
+    """A sentence, grey pictures, and no knob or button that takes anything."""
+    page.wait_for_selector("#page.lost", timeout=within)
+    expect(page.get_by_role("alert").filter(has_text="Connection lost – trying again")).to_be_visible()
+    for part in ("stage", "curves"):
+        assert "grayscale(1)" in page.evaluate(f"getComputedStyle(document.getElementById('{part}')).filter")
+    assert page.locator("[data-knob] input:enabled, [data-knob] select:enabled").count() == 0
+    assert page.evaluate("['bar', 'side', 'stage', 'curves', 'foot'].every((id) => document.getElementById(id).inert)")
+
+
+def starts_again(server: Server, page: Page) -> None:
+    """The server is started on its old port; the page opens itself anew, nobody else does."""
+    page.evaluate("window.before = true")
+    server.start()
+    page.wait_for_function("window.granchain && !window.before", timeout=30_000)
+
+
+def drag_slider(page: Page) -> None:
+    """What a hand on the mouse does to the slider of f, whether it is disabled or not."""
+    box = page.locator('[data-knob="f"] input[type="range"]').bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.2 * box["width"], box["y"] + box["height"] / 2)
+    page.mouse.up()
+
+
+def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Server, page: Page) -> None:
+    turn(page, "f", "700")
+    page.wait_for_function(BELONGS, arg=700, timeout=30_000)
+    page.get_by_role("button", name="Play or pause").click()
+    page.locator("select.speed").select_option("5")
+    page.wait_for_function("granchain.kept.speed === 5 && granchain.kept.playing === false")
+
+    server.kill()
+    looks_lost(page)
+    drag_slider(page)
+    page.keyboard.press("ArrowRight")
+    assert value(page) == "700"
+
+    starts_again(server, page)
+    page.wait_for_function(BELONGS, arg=700, timeout=60_000)
+    assert (value(page), value(page, "D")) == ("700", "90")
+    expect(page.locator("select.start")).to_have_value("previous")
+    expect(page.locator("select.speed")).to_have_value("5")
+    expect(page.get_by_role("button", name="Play or pause")).to_contain_text("play")
+    expect(page.get_by_role("alert").filter(has_text="built again from its knobs")).to_be_visible()
+    expect(page.locator("#lost")).to_be_hidden(timeout=30_000)
+    turn(page, "f", "340")
+    page.wait_for_function(BELONGS, arg=340, timeout=30_000)
+
+
+def test_a_silent_server_is_seen_and_the_same_page_goes_on(server: Server, page: Page) -> None:
+    page.evaluate("window.same = true")
+    server.process.send_signal(signal.SIGSTOP)
+    looks_lost(page, SILENT)
+    drag_slider(page)
+    server.process.send_signal(signal.SIGCONT)
+    expect(page.locator("#lost")).to_be_hidden()
+    assert page.locator("[data-knob] input:disabled").count() == 0 and value(page) == "1130"
+    turn(page, "f", "700")
+    page.wait_for_function(BELONGS, arg=700, timeout=30_000)
+    assert page.evaluate("window.same")
+
+
+@pytest.mark.parametrize("knob", ["f", "kappa"])
+def test_what_the_server_never_heard_of_comes_back_too(server: Server, page: Page, knob: str) -> None:
+    """The knobs are what the visitor saw last, not what the server was told last."""
+    moved = {"f": "700", "kappa": "0.002"}[knob]
+    turn(page, "k", "100")
+    expect(page.locator("#knobs .aside")).to_contain_text("Hz")
+    server.process.send_signal(signal.SIGSTOP)
+    turn(page, knob, moved)
+    looks_lost(page, SILENT)
+    assert value(page, knob) == moved
+    server.kill()
+    starts_again(server, page)
+    expect(page.locator(f'[data-knob="{knob}"] input[type="text"]')).to_have_value(moved, timeout=30_000)
+    page.wait_for_function(BELONGS, arg=float(value(page)), timeout=60_000)

@@ -1,0 +1,130 @@
+"""Program: is what a sweep calls a motion true? Past the special points of section 2's period-1 branch, both ways.
+
+    python -m tests.numerics.label_honesty [--places 255.8 832.5] [--width 2] [--step 0.25] [--starts up down rest]
+
+Every point is run once more from the state in which the sweep began it, through 5,000 periods of a quarter of the live
+method's step, and longer where that does not decide. It is periodic with the shortest n over which its strobes repeat
+to 1e-9 while changes over shorter n stay what they are; of other motions the Lyapunov exponent is measured twice over 2,000 periods: chaotic if both are well above zero,
+quasi-periodic if both are zero. What that rule cannot decide is not judged.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from granchain_core import CurvePoint, Scene, State, iter_curve, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.engine import rest
+from granchain_core.steady.lyapunov import exponents
+
+#: Frequencies [Hz] at which the period-1 branch of section 2 changes its stability (`granchain branch sec2`).
+PLACES = (146.42, 233.52, 255.80, 511.94, 832.5, 889.0, 1235.6, 1304.9)
+#: Periods run at a time, most in all, the shortest step's divisor, and what counts as repeated.
+PERIODS, PATIENCE, REFINE, REPEATS = 5000, 60_000, 4, 1e-9
+#: Longest period looked for.
+LONGEST = 16
+#: An exponent per period that is no chaos and no approach: errors of means over 2,000 periods of a torus are smaller.
+ZERO = 2e-3
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A point of a sweep with what it is called and what it is; "undecided" where the rule does not tell."""
+
+    direction: str
+    point: CurvePoint
+    true: str
+
+    @property
+    def called(self) -> str:
+        """Its label."""
+        regime = self.point.regime
+        return f"period {regime.period}" if regime.period else regime.name
+
+    @property
+    def false(self) -> bool:
+        """Whether the label claims what is not so."""
+        return "un" not in (self.called[:2], self.true[:2]) and self.called != self.true
+
+    @property
+    def missing(self) -> bool:
+        """Whether nothing is claimed."""
+        return self.called == "unsettled"
+
+
+def truth(chosen: Scene, start: State | None) -> str:
+    """What becomes of the motion from a state at phase 0, None for rest."""
+    engine = Engine(chosen, Setting("rk4-split", refine=REFINE), 1)
+    engine.start(rest(chosen) if start is None else start)
+    for _ in range(PATIENCE // PERIODS):
+        strobes, _ = engine.periods(PERIODS, watch=False)
+        repeats = [n for n in range(1, LONGEST + 1) if _moved(strobes, n)[1] <= REPEATS]
+        if repeats and not any(_changing(strobes, n) for n in range(1, repeats[0])):
+            return f"period {repeats[0]}"
+        if not _on_its_way(strobes):
+            break
+    means = [exponents(engine, 100, 20)[0] for _ in range(2)]
+    if all(m.mean() > max(0.01, 4.0 * m.std(ddof=1) / 10.0) for m in means):
+        return "chaotic"
+    return "quasi-periodic" if all(abs(m.mean()) < ZERO for m in means) and not _on_its_way(strobes) else "undecided"
+
+
+def _on_its_way(strobes: np.ndarray) -> bool:
+    """Whether changes over some period still become smaller or larger."""
+    return any(_changing(strobes, n) for n in range(1, LONGEST + 1))
+
+
+def _moved(strobes: np.ndarray, n: int) -> np.ndarray:
+    """Largest relative change over n periods in the last 2,000 periods and, second, in the last 1,000."""
+    change = np.abs(strobes[n:] - strobes[:-n]) / np.abs(strobes).max(axis=(0, 2))[:, None]
+    return np.asarray(change.max(axis=(1, 2))[-2000:].reshape(2, -1).max(axis=1))
+
+
+def _changing(strobes: np.ndarray, n: int) -> bool:
+    """Whether changes over n periods become smaller or larger still: a slow turn nearly comes back after some n."""
+    before, now = _moved(strobes, n)
+    return not 0.99 * before <= now <= 1.01 * before
+
+
+def judged(place: float, width: float, step: float, direction: str) -> Iterator[Judged]:
+    """The points of one sweep, judged."""
+    chain = scene("sec2")
+    count = round(2.0 * width / step) + 1
+    found = list(iter_curve(chain, np.linspace(place - width, place + width, count), direction))
+    for before, point in itertools.pairwise([None, *found]):
+        assert point is not None
+        carried = before is not None and direction != "rest" and not before.failure
+        start = before.state if before is not None and carried else None
+        yield Judged(direction, point, truth(chain.evolve(f=point.frequency), start))
+
+
+def main() -> None:
+    """Print every false and every missing label, and how many there are."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--places", type=float, nargs="+", default=PLACES)
+    parser.add_argument("--width", type=float, default=2.0)
+    parser.add_argument("--step", type=float, default=0.25)
+    parser.add_argument("--starts", nargs="+", default=["up", "down"], choices=["rest", "up", "down"])
+    words = parser.parse_args()
+    every: list[Judged] = []
+    for place, direction in itertools.product(words.places, words.starts):
+        found = list(judged(place, words.width, words.step, direction))
+        every += found
+        for one in found:
+            if one.false or one.missing or one.true == "undecided":
+                verdict = "FALSE" if one.false else "open"
+                print(f"  {verdict} {direction} {one.point.frequency:.2f} Hz: {one.point.regime.sentence}; is {one.true}",
+                      flush=True)
+        print(f"{place} Hz {direction}: {len(found)} points, {sum(o.false for o in found)} false, "
+              f"{sum(o.missing for o in found)} unsettled, {sum(o.true == 'undecided' for o in found)} not judged", flush=True)
+    print(f"{len(every)} points, {sum(o.false for o in every)} false, {sum(o.missing for o in every)} unsettled, "
+          f"{sum(o.true == 'undecided' for o in every)} not judged")
+
+
+if __name__ == "__main__":
+    main()
