@@ -17,22 +17,19 @@ from .budget import BUDGET, Stopwatch, check_budget
 from .errors import BadInput
 from .integrate import Engine, Setting, State, method_for
 from .integrate.engine import Counts, new_stop, rest
-from .integrate.methods import setting_of, typical_error
+from .integrate.methods import setting_of
 from .kernels.sampling import Samples
 from .result import Cost, Run, relative_changes, residual, run_from
 from .scene import Scene
 from .scene.validity import overlap_warnings
+from .stated import Computations
 from .steady.decide import as_it_stands
 from .steady.regime import Regime, find_period
 
 #: Most periods in all and most recorded rows of one run.
 MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
-#: A motion whose computations differ by more than this has no error estimate worth the name: then twice all of it is
-#: stated at least, since either may be wherever chaos leads, to the other side too.
-_LOST, _ALL = 0.3, 2.0
-#: What the difference of two computations is multiplied by for a method whose order is even across contact events, and
-#: for others.
-_CAUTION, _UNEVEN = 1.5, 3.0
+#: A motion whose error is stated larger than this may be chaotic: finer computations will not help then.
+_LOST = 0.3
 #: It is then computed until its energy account closes to so many times the accuracy, energies being quadratic.
 _CLOSES = 10.0
 #: Periods whose stroboscopic states are kept to decide the regime, however long a run is.
@@ -70,15 +67,16 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     begin = rest(scene) if start is None else start
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     check_budget(scene, setting, periods, record, samples, budget)
-    total, status = Counts(), "accuracy-not-reached"
+    total, status, shown = Counts(), "accuracy-not-reached", Computations(scene.cuts_tension)
+    shown.begin(setting)
     before = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
     while True:
         setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
         now = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
-        error = _stated(setting, scene, _difference(now, before))
-        forces = _force_errors(setting, scene, now, before)
+        shown.add(setting, now.engine.counts.steps, _differences(now, before))
+        error = float(shown.stated[0])
         lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
-        if error <= scene.accuracy or setting.finest or lost:
+        if error <= scene.accuracy or setting.finest or shown.rounded or lost:
             break
         if spent.seconds + _TWICE * lap.seconds > budget:
             status = "over-budget"
@@ -87,12 +85,10 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     regime = _regime(scene, now, periods + record, flag)
     if error <= scene.accuracy:
         status = "done"
-    elif error > _LOST:
-        error = max(error, _ALL)
-        forces = np.maximum(forces, _ALL)
+    error, *forces = shown.final(status == "done")
     cost = Cost.of(time.perf_counter() - began, total, setting.method)
     first = periods * samples + round(begin.phase * samples)
-    result = run_from(now.engine, now.samples, first, regime, error, cost, status, forces)
+    result = run_from(now.engine, now.samples, first, regime, float(error), cost, status, np.array(forces))
     return replace(result, start=_origin(scene, start))
 
 
@@ -152,24 +148,12 @@ def _difference(now: _Attempt, before: _Attempt) -> float:
     return float(np.abs(now.samples.displacement - before.samples.displacement).max()) / largest
 
 
-def _stated(setting: Setting, scene: Scene, difference: float) -> float:
-    """The error stated for the finer of two computations, from their difference.
-
-    Where the order is high the finer one's error is a small part of it; where it is near 1, or uneven as error control
-    makes it, it may be as large and more. Two that agree better than is typical of their steps may do so by chance: no
-    less than the typical error is stated.
-    """
-    even = setting.method == "rk4-split" and not scene.cuts_tension
-    return max((_CAUTION if even else _UNEVEN) * difference, typical_error(setting))
-
-
-def _force_errors(setting: Setting, scene: Scene, now: _Attempt, before: _Attempt) -> np.ndarray:
-    """Relative errors (3,) of the largest input, output and elastic output force, from their change.
+def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
+    """Relative differences (4,) of the displacements and of the largest input, output and elastic output force.
 
     F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
     """
-    changes = relative_changes(now.engine.tops, before.engine.tops)
-    return np.array([_stated(setting, scene, 1.5 * change) for change in changes])
+    return np.array([_difference(now, before), *(1.5 * relative_changes(now.engine.tops, before.engine.tops))])
 
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> Regime:

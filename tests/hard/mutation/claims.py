@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _SECTION, _REGIME, _SETTLE = "kernels/section.py", "steady/regime.py", "steady/settle.py"
-_RUN, _METHODS, _FAIL = "run.py", "integrate/methods.py", "integrate/failures.py"
+_RUN, _STATED, _METHODS, _FAIL = "run.py", "stated.py", "integrate/methods.py", "integrate/failures.py"
 
 STEADY = (
     Mutant("change-taken-for-distance", _SECTION, "distance = recent * rate / (1.0 - rate)", "distance = recent",
@@ -35,13 +35,13 @@ STEADY = (
 )
 
 STATED = (
-    Mutant("error-factor", _RUN, "_CAUTION, _UNEVEN = 1.5, 3.0", "_CAUTION, _UNEVEN = 0.015, 0.03",
+    Mutant("error-factor", _STATED, "_CAUTION, _UNEVEN = 1.5, 3.0", "_CAUTION, _UNEVEN = 0.015, 0.03",
            "the stated error is a hundredth of what was seen", k.HONESTY),
     Mutant("same-steps-compared", _METHODS,
            "while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):",
            "while finer.steps_per_period(lowered, samples) < self.steps_per_period(lowered, samples):",
            "two computations by the same steps are compared", k.SAME_STEPS),
-    Mutant("error-without-floor", _RUN, "* difference, typical_error(setting))", "* difference, 0.0)",
+    Mutant("error-without-floor", _STATED, "max(typical_error(setting), self.rounding))", "self.rounding)",
            "an error of exactly nothing is stated", k.SAME_STEPS),
     Mutant("error-of-last-sample", _RUN, "np.abs(now.samples.displacement - before.samples.displacement).max()) / largest",
            "np.abs(now.samples.displacement - before.samples.displacement)[0].max()) / largest",
