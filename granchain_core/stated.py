@@ -11,8 +11,8 @@ from .integrate.methods import METHODS, Setting, typical_error
 #: What the difference of two computations is multiplied by for a method whose order is even across contact events,
 #: and for others.
 _CAUTION, _UNEVEN = 1.5, 3.0
-#: Rounding enters as so many times what the roundings of all steps come to as a random walk; the growth it is multiplied
-#: by is that over errors few scenes exceed, eight times those that are usual.
+#: Rounding enters as so many times what the roundings of all steps come to as a random walk, times the growth of
+#: errors; that is counted from what few scenes exceed, eight times what is usual.
 _ROUNDINGS = 32.0
 #: Where the typical error of the steps is above this, rounding is no part of the difference.
 _SMOOTH = 1e-10
