@@ -61,6 +61,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--few", action="store_true", help="only the structures of the test suite")
     parser.add_argument("--only", type=int, help="this draw alone")
+    parser.add_argument("--minutes", type=float, default=600.0, help="no draw is begun later")
     words = parser.parse_args()
     began, found, others = time.perf_counter(), [], Counter[str]()
     first, count = (0, words.count) if words.only is None else (words.only, 1)
@@ -72,7 +73,9 @@ def main() -> None:
         faults = verdict.judged & ~np.isnan(verdict.stated) & (~verdict.bounded | verdict.silent)
         if faults.any() or words.only is not None:
             print(describe(verdict), flush=True)
-    print(f"{words.kind}, seed {words.seed}, draws {first} to {first + count - 1}: {len(found)} judged in {time.perf_counter() - began:.0f} s; "
+        if time.perf_counter() > began + 60.0 * words.minutes:
+            break
+    print(f"{words.kind}, seed {words.seed}, draws {first} to at most {first + count - 1}: {len(found)} scenes in {time.perf_counter() - began:.0f} s; "
           + "; ".join(f"{count} {name}" for name, count in others.items()))
     print(table(found))
 
