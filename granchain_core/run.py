@@ -17,7 +17,7 @@ from .budget import BUDGET, check_budget
 from .errors import BadInput
 from .integrate import Engine, Setting, State, method_for
 from .integrate.engine import Counts, new_stop, rest
-from .integrate.methods import setting_of, typical_error
+from .integrate.methods import jump_errors, setting_of, typical_error
 from .kernels.sampling import Samples
 from .result import Cost, Run, relative_changes, residual, run_from
 from .scene import Scene
@@ -167,8 +167,10 @@ def _force_errors(setting: Setting, scene: Scene, now: _Attempt, before: _Attemp
 
     F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
     """
-    changes = relative_changes(now.engine.tops, before.engine.tops)
-    return np.array([_stated(setting, scene, 1.5 * change) for change in changes])
+    engine = now.engine
+    changes = relative_changes(engine.tops, before.engine.tops)
+    stated = np.array([_stated(setting, scene, 1.5 * change) for change in changes])
+    return np.maximum(stated, jump_errors(setting, engine.lowered, engine.samples, engine.jumps, engine.tops))
 
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> Regime:

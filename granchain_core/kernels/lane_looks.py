@@ -16,7 +16,7 @@ import numpy as np
 from .approach import ORBITS, reduced_rank
 from .jit import kernel, part
 from .motion import copy
-from .peaks import ROWS
+from .peaks import MEMORY, ROWS
 from .section import (
     LONGEST_PERIOD,
     ROUNDING,
@@ -223,9 +223,14 @@ def end_period(state, lane):
     state.periods[lane] += 1
     periods = state.periods[lane]
     finite = keep_lane_strobe(state, lane)
+    tops = state.tops[lane, periods % REMEMBERED]
     for q in range(3):
-        state.tops[lane, periods % REMEMBERED, q] = state.peaks[ROWS * q, lane]
+        tops[q] = state.peaks[ROWS * q, lane]
         state.peaks[ROWS * q, lane] = 0.0
+    for q in range(2):
+        tops[3 + q] = state.peaks[MEMORY + q, lane]
+        tops[q] = max(tops[q], tops[3 + q])
+        state.peaks[MEMORY + q, lane] = 0.0
     state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0
     state.left[lane] = state.steps[lane]
     if not finite:
