@@ -32,7 +32,7 @@
       if (name === "k") query.delete("kappa");
       if (name === "kappa") query.delete("k");
     }
-    query.set("look", page.look());
+    if (url.searchParams.has("look")) query.set("look", page.look()); // else the browser remembers it
     url.search = query;
     return url;
   };
@@ -92,7 +92,7 @@
   const tick = () => {
     const now = performance.now(), passed = Math.min(now - last, 4 * TICK);
     last = now;
-    if (leaving || !ping || document.hidden) return;
+    if (leaving || !ping || (document.hidden && !closed)) return;
     if (!closed && waited === null && (rested += passed) >= REST) {
       waited = 0;
       ping();

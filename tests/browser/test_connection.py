@@ -134,6 +134,16 @@ def test_a_silent_server_is_seen_and_the_same_page_goes_on(server: Server, page:
     assert page.evaluate("window.same")
 
 
+def test_a_socket_that_stays_silent_while_the_server_answers_is_given_up(page: Page) -> None:
+    """As behind a proxy that forgot it: neither side learns that it is closed."""
+    page.evaluate("window.before = true")
+    page.evaluate("granchain.heard = () => {}")
+    looks_lost(page, SILENT)
+    page.wait_for_function("window.granchain && !window.before", timeout=30_000)
+    page.wait_for_function(BELONGS, arg=1130, timeout=60_000)
+    assert (value(page), value(page, "D")) == ("1130", "90")
+
+
 @pytest.mark.parametrize("knob", ["f", "kappa"])
 def test_what_the_server_never_heard_of_comes_back_too(server: Server, page: Page, knob: str) -> None:
     """The knobs are what the visitor saw last, not what the server was told last."""
