@@ -78,14 +78,14 @@ class Settling:
     def go_on(self, seconds: float) -> None:
         """Run until it is decided what the motion is, the budget is spent, or about `seconds` have passed."""
         end = time.perf_counter() + seconds
-        while not self.decided and self._run_until(end):
+        while not self.decided and self.run(end - time.perf_counter()):
             self._decide()
             if time.perf_counter() > end:
                 return
 
-    def _run_until(self, end: float) -> bool:
-        """Run until something is to be decided, or until that time; whether it is."""
-        per_period = 0.0
+    def run(self, seconds: float) -> bool:
+        """Run until something is to be decided, which may need other kernels, or for that time; whether it is."""
+        end, per_period = time.perf_counter() + seconds, 0.0
         while not self._finished:
             left = end - time.perf_counter()
             if per_period and left < per_period:
@@ -146,15 +146,14 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     origin = "rest" if start is None else "previous state"
     began = time.perf_counter()
     way = Settling(scene, start, stop)
-    way.go_on(_PREVIEW_AFTER)
+    way.run(_PREVIEW_AFTER)
     while not way.decided:
         yield live_picture(way, samples, began, origin, final=False)
         way.go_on(0.1)
-    if way.regime.name != "periodic":
+    if way.regime.name == "periodic":
+        yield certified_picture(way, samples, began, origin)
+    else:
         yield live_picture(way, samples, began, origin, final=True)
-        return
-    yield live_picture(way, samples, began, origin, final=False)
-    yield certified_picture(way, samples, began, origin)
 
 
 def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
