@@ -122,10 +122,10 @@ class Job:
 def draft_result(job: Job, block: LaneBlock, lane: int) -> LaneResult:
     """What the coarse run alone has come to."""
     run = int(block.state.periods[lane])
-    period, rate, distance = block.state.seen[lane]
+    period = block.state.seen[lane, 0]
     if period <= 0:
         return unsettled(job, block, lane, run)
-    regime = Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run)
+    regime = _periodic(block, lane, run)
     tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
     return LaneResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]), number=job.number)
 
@@ -134,9 +134,9 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
     """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
     here = int(block.state.periods[lane])
     run = job.run + here
-    period, rate, distance = block.state.seen[lane]
+    period = block.state.seen[lane, 0]
     if period > 0:
-        regime = Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run)
+        regime = _periodic(block, lane, run)
         settled = (regime, block.settled_tops(lane, int(period)))
         return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, settled, number=job.number)
     if run >= job.affordable_periods:
@@ -147,6 +147,13 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
     block.state.look[lane] = min(here + max(MOST_PERIODS // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)
     return None
+
+
+def _periodic(block: LaneBlock, lane: int, run: int) -> Regime:
+    """The periodic regime that a coarse lane has come to; followed where extrapolations brought it there."""
+    period, rate, distance = block.state.seen[lane]
+    return Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run,
+                  followed=bool(block.state.slowest[lane] > 0.0))
 
 
 def _in_doubt(job: Job, block: LaneBlock, lane: int, run: int, record: np.ndarray) -> Job:
