@@ -19,7 +19,7 @@ def beside_kappa(current: Scene) -> str:
     preset = scene(current.name)
     if current.A0 == preset.A0 or current.k != preset.k or current.k == 0.0:
         return ""
-    return f"A₀ moved, k did not: κ was {preset.kappa:.4g}"
+    return f"κ was {preset.kappa:.4g}; A₀ moved, not k"
 
 
 def kept_spring(before: Scene, after: Scene, named: Collection[str]) -> str:

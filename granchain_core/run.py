@@ -17,7 +17,7 @@ from .budget import BUDGET, Stopwatch, check_budget
 from .errors import BadInput
 from .integrate import Engine, Setting, State, method_for
 from .integrate.engine import Counts, new_stop, rest
-from .integrate.methods import setting_of
+from .integrate.methods import jump_errors, setting_of, typical_error
 from .kernels.sampling import Samples
 from .result import Cost, Run, relative_changes, residual, run_from
 from .scene import Scene
@@ -73,7 +73,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     while True:
         setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
         now = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
-        shown.add(setting, now.engine.counts.steps, _differences(now, before))
+        shown.add(setting, now.engine.counts.steps, _differences(now, before), _least(now, setting))
         error = float(shown.stated[0])
         lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
         if error <= scene.accuracy or setting.finest or shown.rounded or lost:
@@ -151,11 +151,16 @@ def _difference(now: _Attempt, before: _Attempt) -> float:
 def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
     """Relative differences (4,) of the displacements and of the largest input, output and elastic output force.
 
-    F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force. A jump is seen as far behind its
-    event as the step happened to end: its error is uneven, and twice the change is taken for it.
+    F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
     """
-    factor = 3.0 if now.engine.lowered.scene.forces_jump else 1.5
-    return np.array([_difference(now, before), *(factor * relative_changes(now.engine.tops, before.engine.tops))])
+    return np.array([_difference(now, before), *(1.5 * relative_changes(now.engine.tops, before.engine.tops))])
+
+
+def _least(now: _Attempt, setting: Setting) -> np.ndarray:
+    """What the errors of the same are at least, whatever the differences."""
+    engine = now.engine
+    jumps = jump_errors(setting, engine.lowered, engine.samples, engine.jumps, engine.tops)
+    return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])
 
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> Regime:

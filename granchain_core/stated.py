@@ -45,8 +45,8 @@ class Computations:
         """The first computation."""
         self.settings.append(setting)
 
-    def add(self, setting: Setting, steps: int, differences: np.ndarray) -> None:
-        """A finer one in so many steps, with its relative differences from the one before."""
+    def add(self, setting: Setting, steps: int, differences: np.ndarray, least: np.ndarray) -> None:
+        """A finer one in so many steps: relative differences from the one before, and what errors are at least."""
         coarser = self.settings[-1]
         self._see_growth(coarser, float(differences[0]))
         self.rounding = _ROUNDINGS * self._growth * np.finfo(float).eps * float(np.sqrt(steps))
@@ -54,7 +54,7 @@ class Computations:
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
         even = setting.method == "rk4-split" and not self.cuts_tension
-        self.stated = np.maximum((_CAUTION if even else _UNEVEN) * seen, max(typical_error(setting), self.rounding))
+        self.stated = np.maximum((_CAUTION if even else _UNEVEN) * seen, np.maximum(least, self.rounding))
         self._before = differences
         self.settings.append(setting)
 

@@ -61,7 +61,9 @@ def warm(shown: Scene, pieces: Iterable[str] = PIECES) -> None:
 
 
 def _warm_curve(short: Scene) -> None:
-    """The kernels of a curve: the shadow that tells irregular motions apart, and lanes where the scene can use them."""
+    """The kernels of a curve: the shadow for irregular motions, lanes where the scene can use them, located jumps."""
+    if short.forces_jump:
+        Engine(short, Setting("rk4-split"), 1).record(1)
     exponents(Engine(short, Setting("rk4-split"), 1), 1, 1)
     if can_share_lanes(short):
         block = LaneBlock(short, new_stop())

@@ -6,7 +6,7 @@
   // below 2 s), between tries to reach a lost server, and how long its socket may stay silent once it can be reached.
   const TICK = 100, REST = 300, PATIENCE = 1300, TRY = 400, GRACE = 3000;
   const LOST = "Connection lost – trying again … These are the last pictures.";
-  const BACK = "Connected again – the page is being built from its knobs …";
+  const BACK = "Connected again – building the page from its knobs …";
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "cover", "foot"];
 
@@ -32,7 +32,7 @@
       if (name === "k") query.delete("kappa");
       if (name === "kappa") query.delete("k");
     }
-    query.set("look", page.look());
+    if (url.searchParams.has("look")) query.set("look", page.look()); // else the browser remembers it
     url.search = query;
     return url;
   };
@@ -53,9 +53,22 @@
   let ping = null, closed = false, leaving = false;
   let waited = null, rested = 0, tried = TRY, reached = 0;
 
+  // The last pictures as one image: they stay, grey, until the page built again has its own.
+  const canvases = (node) => [...node.querySelectorAll("*")].flatMap((element) => [
+    ...(element.tagName === "CANVAS" ? [element] : []), ...(element.shadowRoot ? canvases(element.shadowRoot) : [])]);
+  const photo = () => {
+    const film = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
+    if (!page.covered) for (const one of ["stage", "curve"].flatMap((id) => canvases(document.getElementById(id)))) {
+      const { x, y, width, height } = one.getBoundingClientRect();
+      if (width && height && one.width && one.height) film.getContext("2d").drawImage(one, x, y, width, height);
+    }
+    return film.toDataURL("image/webp", 0.7);
+  };
   const rebuild = () => {
     leaving = true;
-    try { sessionStorage.setItem(AGAIN, JSON.stringify(page.kept ?? {})); } catch { /* then its sentence is missing */ }
+    try {
+      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, photo: photo() }));
+    } catch { /* without room for it, its sentence and its pictures are missing for a moment */ }
     location.replace(address());
   };
   const reach = async () => {
@@ -79,7 +92,7 @@
   const tick = () => {
     const now = performance.now(), passed = Math.min(now - last, 4 * TICK);
     last = now;
-    if (leaving || !ping || document.hidden) return;
+    if (leaving || !ping || (document.hidden && !closed)) return;
     if (!closed && waited === null && (rested += passed) >= REST) {
       waited = 0;
       ping();
@@ -105,8 +118,15 @@
   let again = null;
   try { again = JSON.parse(sessionStorage.getItem(AGAIN)); sessionStorage.removeItem(AGAIN); } catch { /* nothing kept */ }
   if (again) {
-    document.addEventListener("DOMContentLoaded", () => say(BACK));
-    page.on("painted", () => { if (!page.lost) say(""); });
+    const before = Object.assign(new Image(), { id: "last-pictures", alt: "", src: again.photo ?? "" });
+    document.addEventListener("DOMContentLoaded", () => {
+      say(BACK);
+      document.body.append(before);
+    });
+    page.on("painted", () => {
+      before.remove();
+      if (!page.lost) say("");
+    });
   }
   Object.assign(page, { lost: false, kept: {}, again, asks, told, heard, connect, address });
 })();

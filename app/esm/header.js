@@ -97,7 +97,7 @@ export function render({ model }) {
   page.on("look", (value) => send({ do: "look", value }));
   document.addEventListener("keydown", (event) => {
     const inField = event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
-    if (event.key === " " && !inField) { event.preventDefault(); setPlaying(!playing); }
+    if (event.key === " " && !inField && !page.lost) { event.preventDefault(); setPlaying(!playing); }
     if (event.key === "Escape") { toggle(helpBox, false); page.drawer(false); }
   });
   document.addEventListener("pointerdown", (event) => {

@@ -23,7 +23,7 @@ const rounded = (value) => Number(value.toPrecision(4));
 
 const written = (value, factor) => {
   const shown = Number((value / factor).toPrecision(10));
-  if (shown !== 0 && (Math.abs(shown) < 1e-3 || Math.abs(shown) >= 1e6)) return shown.toExponential().replace("e+", "e");
+  if (shown !== 0 && (Math.abs(shown) < 1e-3 || Math.abs(shown) >= 1e6)) return Number(shown.toPrecision(6)).toExponential().replace("e+", "e");
   return String(Number(shown.toPrecision(6)));
 };
 

@@ -17,7 +17,7 @@ from ..kernels.fixed_step import Rk4, Rk4Split, Stages
 from ..kernels.largest_forces import new_log
 from ..kernels.motion import place
 from ..kernels.naive import Rk4Naive, VerletNaive, naive_motion
-from ..kernels.peaks import ROWS, forget, next_period
+from ..kernels.peaks import MEMORY, ROWS, forget, next_period
 from ..kernels.simd import LANES, aligned
 from ..kernels.wide import BLOCK, KEPT, WIDTHS, Wide
 from ..lower import Lowered, lower
@@ -214,7 +214,12 @@ class Engine:
     @property
     def tops(self) -> np.ndarray:
         """The largest input, output and elastic output force since then, in scaled units."""
-        return self.log.peaks[::ROWS].copy()
+        return self.log.peaks[:MEMORY:ROWS].copy()
+
+    @property
+    def jumps(self) -> np.ndarray:
+        """The largest jumps of input and output force since then (2,), in scaled units."""
+        return self.log.peaks[MEMORY:].copy()
 
     @property
     def closings(self) -> np.ndarray:
@@ -225,6 +230,12 @@ class Engine:
     def closings_missing(self) -> int:
         """How many jumps there were behind these, for which there was no place."""
         return max(0, int(self.log.met[0]) - len(self.log.closings))
+
+    def largest_forces(self, periods: int) -> np.ndarray:
+        """Advance by whole periods: the largest input, output and elastic output force on the way (3,), scaled."""
+        self.forget_peaks()
+        self.record(periods * self.samples)
+        return self.tops
 
     @flushed
     def periods(self, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:

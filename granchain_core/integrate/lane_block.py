@@ -14,7 +14,7 @@ from ..kernels.effects.unequal import Unequal
 from ..kernels.lane_looks import FINE, FORCES, FORGET, REMEMBERED
 from ..kernels.lanes import LANES
 from ..kernels.motion import place
-from ..kernels.peaks import ROWS
+from ..kernels.peaks import PEAKS
 from ..kernels.sampling import CANCELLED
 from ..kernels.section import LONGEST_PERIOD
 from ..kernels.simd import aligned
@@ -58,12 +58,12 @@ class LaneBlock:
         whole = [np.zeros(LANES, dtype=np.int64) for _ in range(9)]
         parts = [np.zeros(LANES) for _ in range(2)]
         self.state = kernels.LaneState(
-            y=aligned(rows), gaps=aligned(n + 1), ends=aligned(4), phase=aligned(2), peaks=aligned(3 * ROWS),
+            y=aligned(rows), gaps=aligned(n + 1), ends=aligned(4), phase=aligned(2), peaks=aligned(PEAKS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
             wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], jumped=parts[1],
             before=np.zeros((LANES, 2, n + 2)),
             fine=np.zeros((LANES, FINE)), strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
-            tops=np.zeros((LANES, REMEMBERED, 3)), seen=np.zeros((LANES, 3)), scale=np.zeros(2),
+            tops=np.zeros((LANES, REMEMBERED, 5)), seen=np.zeros((LANES, 3)), scale=np.zeros(2),
             change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
             triangle=np.zeros((ORBITS, ORBITS)),
         )
@@ -135,6 +135,13 @@ class LaneBlock:
 
     def tops(self, lane: int, periods: int) -> np.ndarray:
         """Largest input, output and elastic output force of the last `periods` periods, in scaled units."""
+        return self._last(lane, periods)[:3]
+
+    def jumps(self, lane: int, periods: int) -> np.ndarray:
+        """Largest jumps of input and output force in the same periods."""
+        return self._last(lane, periods)[3:]
+
+    def _last(self, lane: int, periods: int) -> np.ndarray:
         run = int(self.state.periods[lane])
         places = np.arange(max(1, run - min(periods, REMEMBERED) + 1), run + 1) % REMEMBERED
         return self.state.tops[lane, places].max(axis=0)

@@ -16,7 +16,7 @@ import numpy as np
 from .approach import ORBITS, reduced_rank
 from .jit import kernel, part
 from .motion import copy
-from .peaks import ROWS
+from .peaks import MEMORY, ROWS
 from .section import (
     LONGEST_PERIOD,
     ROUNDING,
@@ -156,18 +156,19 @@ def decayed(state, lane):
     state.testing[lane] = 0
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
-        there = 0.0
+        there, whole = 0.0, 0.0
         for q in range(2):
             for i in range(m):
-                there = max(there, abs(state.strobes[lane, k * n, q, i] - state.before[lane, q, i]) / state.scale[q])
+                offset = (state.strobes[lane, k * n, q, i] - state.before[lane, q, i]) / state.scale[q]
+                there, whole = max(there, abs(offset)), whole + offset**2
         quarter = 4 * k // (_TEST_ORBITS + 1)
         first = max(first, there) if quarter == 0 else first
-        middle = max(middle, there) if quarter == 1 else middle
-        late = max(late, there) if quarter == 3 else late
+        middle += whole if quarter == 1 else 0.0
+        late += whole if quarter == 3 else 0.0
         last = there
     if last <= _LEFT * first:
         place_lane(state, lane, state.before[lane])
-        rate = (late / middle) ** (2.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # quarters half of the orbits apart
+        rate = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
         state.seen[lane, 1] = max(state.seen[lane, 1], min(rate, _NEARLY_ONE))
         return True
     state.slowest[lane], state.jumped[lane] = 0.0, 0.0
@@ -223,9 +224,14 @@ def end_period(state, lane):
     state.periods[lane] += 1
     periods = state.periods[lane]
     finite = keep_lane_strobe(state, lane)
+    tops = state.tops[lane, periods % REMEMBERED]
     for q in range(3):
-        state.tops[lane, periods % REMEMBERED, q] = state.peaks[ROWS * q, lane]
+        tops[q] = state.peaks[ROWS * q, lane]
         state.peaks[ROWS * q, lane] = 0.0
+    for q in range(2):
+        tops[3 + q] = state.peaks[MEMORY + q, lane]
+        tops[q] = max(tops[q], tops[3 + q])
+        state.peaks[MEMORY + q, lane] = 0.0
     state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0
     state.left[lane] = state.steps[lane]
     if not finite:

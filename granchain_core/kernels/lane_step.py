@@ -11,7 +11,7 @@ from .effects.preload import lane_overlap
 from .effects.unequal import over_mass, times_stiffness
 from .jit import inlined, term
 from .largest_forces import brief_touch, closing_rate
-from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch_lanes
+from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_lanes
 from .simd import blank, load, positive_mask, store
 from .simd_math import above_zero, clip, gate, larger, root, root_by_series
 
@@ -168,8 +168,8 @@ def watch_jumps(law, values, h, gap_first, rate_first, gap_last, rate_last, befo
 @watch_jumps.of(LinearDashpot)
 def _(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks):
     first, last = over_mass(values.unequal, 1, law.coefficient), over_mass(values.unequal, values.last, law.coefficient)
-    watch_jump(law.coefficient, first, h, gap_first, rate_first, before, 0, peaks, INPUT)
-    watch_jump(law.coefficient, last, h, gap_last, rate_last, before, 2, peaks, OUTPUT)
+    watch_jump(law.coefficient, first, h, gap_first, rate_first, before, 0, peaks, INPUT_JUMP)
+    watch_jump(law.coefficient, last, h, gap_last, rate_last, before, 2, peaks, OUTPUT_JUMP)
 
 
 watch_jumps.absent_for(*SMOOTH_LAWS)

@@ -45,14 +45,14 @@ class Lanes(NamedTuple):
 
 class LaneState(NamedTuple):
     """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), overlap and rate of the first and of
-    the last contact a step ago (4, 8), sin and cos of the phase (2, 8), peaks (15, 8).
+    the last contact a step ago (4, 8), sin and cos of the phase (2, 8), peaks (17, 8).
 
     Per lane: steps in a period and steps left, periods run, the period to stop at in any case and the next at which the
     strobes are looked at; the period from which an approach may be followed and how long it is waited after a vain one,
     the slowest decay known, the change before an extrapolation that has not proved itself and the state `before` it
     (8, 2, N+2), the period of an orbit that is disturbed; what is known of a fine lane (8, 7); strobes (8, 2R, 2, N+2)
-    of which `kept` are there, largest forces (8, R, 3) as a ring, and what was seen last (8, 3): period, rate,
-    distance. The rest are workspaces of lane_looks.
+    of which `kept` are there, largest forces and jumps (8, R, 5) as a ring, and what was seen last (8, 3): period,
+    rate, distance. The rest are workspaces of lane_looks.
     """
 
     y: np.ndarray

@@ -24,7 +24,7 @@ from .effects.tension import cut_at_zero
 from .events import GAP, RATE, TINY, hermite_turn
 from .jit import inlined, kernel, term
 from .motion import contact_force
-from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS
+from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 from .simd_math import clip, root
 
 #: A force below this part of the largest so far is watched without its slope.
@@ -37,9 +37,9 @@ _STEEPEST = 3.0
 class ForceLog(NamedTuple):
     """What is known of the forces: the largest so far, the last ones watched, and the jumps.
 
-    `peaks` (15,) holds input, output and elastic output force (peaks.py), `last` (3, 2) value and slope of each at the
-    last state watched. Rows of `closings` (C, 4) are the number of the last sample before a contact closed, the drive
-    phase θ, the contact and the force behind the jump; `met` (1,) is how many there were, places or not.
+    `peaks` (17,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value and
+    slope of each force at the last state watched. Rows of `closings` (C, 4) are the number of the last sample before a
+    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (1,) is how many there were.
     """
 
     peaks: np.ndarray
@@ -50,7 +50,7 @@ class ForceLog(NamedTuple):
 
 def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
     """A log with places for so many closings; the forces go on from the log before."""
-    peaks, last = (np.zeros(3 * ROWS), np.zeros((3, 2))) if before is None else (before.peaks, before.last)
+    peaks, last = (np.zeros(PEAKS), np.zeros((3, 2))) if before is None else (before.peaks, before.last)
     return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(1, dtype=np.int64))
 
 
@@ -169,8 +169,10 @@ def _(law, rate, c, last, theta, log):
         force = law.coefficient * rate
         if c == 0:
             reach(log.peaks, INPUT, force)
+            reach(log.peaks, INPUT_JUMP, force)
         if c == last:
             reach(log.peaks, OUTPUT, force)
+            reach(log.peaks, OUTPUT_JUMP, force)
         place = log.met[0]
         log.met[0] = place + 1
         if place < log.closings.shape[0]:

@@ -28,7 +28,7 @@ class OrbitRecord(NamedTuple):
 
     Turning points are rows of `turns` (T, 4): contact, +1 for a largest and −1 for a smallest overlap, scaled time
     since the orbit's phase 0, overlap.
-    `peaks` (15,) are the largest input, output and elastic output force (peaks.py).
+    `peaks` (17,) hold the largest input, output and elastic output force (peaks.py).
     """
 
     turns: np.ndarray

@@ -14,8 +14,10 @@ ROWS = 5
 #: The top of the quartic is at most so many times the largest of its values: its neighbours are near (choose_peak).
 HIGHEST = 1.25
 
-#: Where the memories of the three forces start in an array of peaks.
-INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
+#: Where the memories of the three forces start in an array of peaks, and how many values they take.
+INPUT, OUTPUT, OUTPUT_ELASTIC, MEMORY = 0, ROWS, 2 * ROWS, 3 * ROWS
+#: Behind them the largest jumps of input and output force, and the size of the whole.
+INPUT_JUMP, OUTPUT_JUMP, PEAKS = MEMORY, MEMORY + 1, MEMORY + 2
 
 
 @kernel
@@ -47,15 +49,17 @@ def watch(peaks, row, value):
 @kernel
 def forget(peaks):
     """Start watching afresh."""
-    for i in range(peaks.size):
+    for i in range(MEMORY):
         peaks[i] = -np.inf if i % ROWS == 0 else 0.0
+    peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
 
 
 @kernel
 def next_period(peaks):
     """Begin a new largest value but keep the last values: a maximum may lie across the end of a period."""
-    for row in range(0, peaks.size, ROWS):
+    for row in range(0, MEMORY, ROWS):
         peaks[row] = -np.inf
+    peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
 
 
 @inlined

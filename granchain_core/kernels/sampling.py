@@ -14,7 +14,7 @@ from .fixed_step import PATIENCE, drive_displacement, drive_velocity, step
 from .jit import kernel, term
 from .largest_forces import stamp, watch_state
 from .motion import contact_force, copy, motion, stored_energy
-from .peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
+from .peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
 from .wide import Wide
 from .wide_run import wide_steps
 
@@ -146,7 +146,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, log, tops, counts, 
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p
         keep_strobe(y, stages.k[0], strobes[p + 1])
-        copy(log.peaks[::ROWS], tops[p])
+        copy(log.peaks[:MEMORY:ROWS], tops[p])
     return DONE, tops.shape[0]
 
 

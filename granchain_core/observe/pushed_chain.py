@@ -16,7 +16,7 @@ from ..kernels.fixed_step import Rk4Split, Stages
 from ..kernels.largest_forces import new_log
 from ..kernels.motion import place
 from ..kernels.observed import run_observed
-from ..kernels.peaks import ROWS, forget
+from ..kernels.peaks import MEMORY, ROWS, forget
 from ..lower import lower
 from ..scene import Scene
 from .record import ForceRecord
@@ -45,7 +45,7 @@ class PushedChain:
     @property
     def tops(self) -> np.ndarray:
         """Largest input, output and elastic output force of the last run, in scaled units."""
-        return self._log.peaks[::ROWS].copy()
+        return self._log.peaks[:MEMORY:ROWS].copy()
 
     def run(self, start: State, halvings: int) -> sampling.Samples:
         """The motion from `start` in steps halved so many times; one row a sample, in scaled units."""

@@ -10,7 +10,7 @@ from ..errors import NumbersFailed
 from ..integrate import Engine, Setting, State
 from ..integrate.lane_block import state_of
 from ..kernels.orbit_record import FULL, OrbitRecord, record_orbit
-from ..kernels.peaks import ROWS
+from ..kernels.peaks import MEMORY, PEAKS, ROWS
 from ..scene import Scene
 from .branch_equations import BranchEquations, Solved
 from .orbit import sorted_multipliers
@@ -80,7 +80,7 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
     x, value = equations.state(solved.z), equations.value(solved.z)
     multipliers = sorted_multipliers(solved.flow.derivative)
     engine, record = record_along(equations, x, value)
-    tops = record.peaks[::ROWS] * engine.lowered.scales.force
+    tops = record.peaks[:MEMORY:ROWS] * engine.lowered.scales.force
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
         max_input_force=float(tops[0]), max_output_force=float(tops[1]), max_output_force_elastic=float(tops[2]),
@@ -104,7 +104,7 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tup
     lo, room = engine.lowered, _ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)
-        record = OrbitRecord(np.zeros((room, 4)), np.zeros(3 * ROWS))
+        record = OrbitRecord(np.zeros((room, 4)), np.zeros(PEAKS))
         status, done, found = record_orbit(engine.method, lo.slots, lo.beta, lo.period, equations.period, engine.y,
                                            engine.work, engine.clock, record, engine.counts.array, engine.stop)
         if status != FULL:

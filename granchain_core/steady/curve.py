@@ -14,6 +14,7 @@ from ..errors import BadInput, NumbersFailed, unknown_name
 from ..integrate import Engine, State
 from ..integrate.engine import new_stop
 from ..integrate.lane_block import can_share_lanes
+from ..integrate.methods import jump_errors
 from ..result import ForceErrors, relative_changes
 from ..scene import Scene
 from .lane_curve import lane_results
@@ -95,13 +96,13 @@ def _certified_point(way: Settling) -> CurvePoint:
     engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
     n = way.regime.period
     assert n is not None
-    _, first = engine.periods(n)
+    before = engine.largest_forces(n)
     finer = Engine(way.scene, engine.setting.finer(), 1, stop=way.stop)
     finer.start(engine.state)
-    _, second = finer.periods(n)
-    tops, before = second.max(axis=0), first.max(axis=0)
+    tops = finer.largest_forces(n)
     # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
     errors = relative_changes(tops, before) + 1.5 * distance
+    errors += jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
     return _point(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer)
 
 

@@ -32,9 +32,9 @@ from .strobe_map import StrobeMap
 _FINER = 3
 #: Periods after which a draft gives up.
 _DRAFT = 300
-#: Decay per drive period above which a periodic result needs its multipliers, and largest |μ|, as seen by coarse
-#: differences, that settles it.
-_SLOW, _SURE = 0.99, 0.995
+#: Decay per orbit above which an orbit that was extrapolated to needs its multipliers, and largest |μ|, as seen by
+#: coarse differences, that settles it.
+_SLOW, _SURE = 0.995, 0.995
 #: Scenes whose exponents are found at once.
 _PAIRS = LANES // 2
 
@@ -163,9 +163,9 @@ def lane_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) 
 
 
 def confirmed(result: LaneResult, stop: np.ndarray) -> LaneResult:
-    """The result; one that is periodic with a slow decay is in doubt unless its multipliers are clearly below 1."""
+    """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
-    if regime.period is None or (regime.decay or 0.0) ** (1.0 / regime.period) <= _SLOW or scene.N > MOST_BEADS:
+    if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:
         return result
     strobe = StrobeMap(scene, regime.period, stop, refine=1.0)
     x = strobe.inner(scaled_state(strobe.engine.lowered, result.state))

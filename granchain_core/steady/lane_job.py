@@ -9,6 +9,7 @@ import numpy as np
 from ..integrate import Engine, Setting, State
 from ..integrate.engine import rest
 from ..integrate.lane_block import LaneBlock, state_of
+from ..integrate.methods import AT_A_JUMP, jump_errors
 from ..lower import Lowered
 from ..result import relative_changes
 from ..scene import Scene
@@ -19,7 +20,7 @@ from .settle import MOST_STEPS
 #: The method's order is uneven at contact events, so its error is not taken for less than this times the change.
 _CAUTION = 2.0
 #: How the largest forces on an orbit are found where they jump: finer than the lanes that found the orbit.
-_LOCATED = Setting("rk4-split", refine=4)
+_LOCATED = Setting("rk4-split", refine=8)
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
 
@@ -91,32 +92,40 @@ class Job:
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
         y, distance = block.state.y[:, lane], float(block.state.seen[lane, 2])
+        tops, jumps = block.tops(lane, regime.period), block.jumps(lane, regime.period)
+        errors = _CAUTION * relative_changes(tops, before)
+        at_jump = np.append(jumps > AT_A_JUMP * tops[:2], False)
+        if at_jump.any():
+            located, moved = self._located_tops(y, regime)
+            tops, errors = np.where(at_jump, located, tops), np.where(at_jump, moved, errors)
         # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
-        tops = block.tops(lane, regime.period)
-        errors = _CAUTION * relative_changes(tops, before) + 1.5 * max(distance, regime.distance)
-        if self.scene.forces_jump:
-            tops = self._located_tops(y, regime.period)
+        errors += 1.5 * max(distance, regime.distance)
         tops = tops * self.lowered.scales.force
         return LaneResult(self.scene, tops, replace(regime, distance=distance), errors, state_of(self.lowered, y),
                           number=self.number)
 
-    def _located_tops(self, y: np.ndarray, period: int) -> np.ndarray:
-        """Largest forces (3,) on the orbit through the scaled state y, with the steps split at contact events.
+    def _located_tops(self, y: np.ndarray, regime: Regime) -> tuple[np.ndarray, np.ndarray]:
+        """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
-        Lanes take their steps across events: what they see of a jump is off by an order of the step.
+        Lanes take their steps across events: what they see of a jump is off by an order of the step. A second orbit
+        shows by how much the forces still change on the way from the lanes' orbit to this method's.
         """
+        assert regime.period is not None
         engine, row = Engine(self.scene, _LOCATED, 1, lowered=self.lowered), self.lowered.row
         engine.start_scaled(np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]]))
-        return engine.periods(period)[1].max(axis=0)
+        first = engine.largest_forces(regime.period)
+        tops = engine.largest_forces(regime.period)
+        moved = relative_changes(tops, first) / (1.0 - regime.slowness)
+        return tops, moved + jump_errors(_LOCATED, self.lowered, 1, engine.jumps, tops)
 
 
 def draft_result(job: Job, block: LaneBlock, lane: int) -> LaneResult:
     """What the coarse run alone has come to."""
     run = int(block.state.periods[lane])
-    period, rate, distance = block.state.seen[lane]
+    period = block.state.seen[lane, 0]
     if period <= 0:
         return unsettled(job, block, lane, run)
-    regime = Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run)
+    regime = _periodic(block, lane, run)
     tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
     return LaneResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]), number=job.number)
 
@@ -125,9 +134,9 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
     """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
     here = int(block.state.periods[lane])
     run = job.run + here
-    period, rate, distance = block.state.seen[lane]
+    period = block.state.seen[lane, 0]
     if period > 0:
-        regime = Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run)
+        regime = _periodic(block, lane, run)
         settled = (regime, block.settled_tops(lane, int(period)))
         return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, settled, number=job.number)
     if run >= job.affordable_periods:
@@ -138,6 +147,13 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
     block.state.look[lane] = min(here + max(MOST_PERIODS // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)
     return None
+
+
+def _periodic(block: LaneBlock, lane: int, run: int) -> Regime:
+    """The periodic regime that a coarse lane has come to; followed where extrapolations brought it there."""
+    period, rate, distance = block.state.seen[lane]
+    return Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run,
+                  followed=bool(block.state.slowest[lane] > 0.0))
 
 
 def _in_doubt(job: Job, block: LaneBlock, lane: int, run: int, record: np.ndarray) -> Job:

@@ -2,8 +2,8 @@
 
 A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one; while it
 lasts both look alike. So the orbit itself is found, its multipliers say what becomes of a small disturbance, and the
-way from the motion to the orbit is tried: from the whole distance, half of it, a quarter, … the motion must come
-nearer about as fast as the multipliers say.
+way from the motion to the orbit is tried: from the whole distance and from shorter and shorter ones the motion must
+come nearer about as fast as the multipliers say.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ UNSURE = 1e-5
 _BESIDE = 0.1
 #: A motion is looked at for the shortest period over which it changes by no more than so many times the least change.
 _AS_SMALL = 3.0
-#: Distances are halved until they are this small. Each is followed until the multipliers have taken this part of it
-#: away, for so many orbits at most, and this part of that must be gone: beside an orbit that has just become stable
-#: there may be a closed curve that the motion stays on, where distances go up and down by some per cent.
-_SMALLEST, _TAKEN, _MOST_ORBITS, _PART = 1e-5, 0.2, 3000, 0.3
+#: Distances are shortened by this factor until they are this small. Each is followed until the multipliers have taken
+#: this part of it away, for so many orbits at most, and this part of that must be gone: beside an orbit that has just
+#: become stable there may be a closed curve that the motion stays on, where distances go up and down by some per cent.
+_CLOSER, _SMALLEST, _TAKEN, _MOST_ORBITS, _PART = 0.4, 1e-5, 0.2, 3000, 0.3
 #: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
 _TURN = 16
 #: Directions whose |μ| is below this, or below this part of the largest, are gone after so many orbits.
@@ -80,25 +80,25 @@ class NearbyOrbit:
         if not self.stable or self.away > _BESIDE:
             return False
         rows = _slow_coordinates(self.point.derivative, max(_SLOW, _SLOW * self.modulus))
-        orbits = 2 * _TURN + min(_MOST_ORBITS, int(_TAKEN / (1.0 - self.modulus)))
-        left = 1.0 - _PART * (1.0 - self.modulus ** (orbits - _TURN))
+        orbits = min(_MOST_ORBITS, int(_TAKEN / (1.0 - self.modulus)))
+        left = 1.0 - _PART * (1.0 - self.modulus ** (orbits + _TURN))
         offset = self.x - self.point.x
         while True:
-            lengths = self._lengths(rows, offset, orbits)
-            if lengths is None or not lengths[-_TURN:].max() <= left * lengths[:_TURN].max():
+            before, after = self._lengths(rows, offset, orbits)
+            if not after <= left * before:
                 return False
-            offset = offset / 2.0
+            offset = offset * _CLOSER
             if float(np.abs(offset / sizes(self.point.x)).max()) < _SMALLEST:
                 return True
 
-    def _lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> np.ndarray | None:
-        """The lengths of an offset from the orbit, orbit after orbit; None where it cannot be followed."""
+    def _lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
+        """The largest lengths of an offset from the orbit, now and so many orbits later; infinite if it gets lost."""
         try:
-            states = self.strobe.passed(self.point.x + offset, orbits)
+            passed = self.strobe.passed(self.point.x + offset, _TURN, orbits)
         except NumbersFailed:
-            return None
-        offsets = states - self.point.x
-        return np.linalg.norm(offsets @ rows.T if len(rows) else offsets, axis=1)
+            return 0.0, np.inf
+        now, later = (float(_lengths(rows, states - self.point.x).max()) for states in passed)
+        return now, later
 
     def drawn_out(self) -> np.ndarray | None:
         """The state to which a motion that leaves this orbit comes later: its part along what grows, made larger.
@@ -119,6 +119,10 @@ def _slow_coordinates(matrix: np.ndarray, slowest: float) -> np.ndarray:
     """Left eigenvectors as rows: in these coordinates every slow direction shrinks by its own μ."""
     values, vectors = np.linalg.eig(matrix.T)
     return vectors[:, np.abs(values) >= slowest].T
+
+
+def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
+    return np.asarray(np.linalg.norm(offsets @ rows.T if len(rows) else offsets, axis=1))
 
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray) -> NearbyOrbit | None:

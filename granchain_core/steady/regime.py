@@ -183,13 +183,19 @@ def slowing(strobes: np.ndarray) -> bool:
 
     On a closed curve or a strange attractor their largest value stays what it is, or some grow while others shrink.
     """
-    seen = _windows(strobes)
-    return any(_shrinks(a, b, c) for a, b, c in seen) and not any(b < _SHRINKS * c for _, b, c in seen)
+    return _slowing(_windows(strobes))
 
 
 def departing(strobes: np.ndarray) -> bool:
     """Whether the motion leaves an orbit: changes over some period grow, small still, and none shrink."""
-    seen = _windows(strobes)
+    return _departing(_windows(strobes))
+
+
+def _slowing(seen: list[np.ndarray]) -> bool:
+    return any(_shrinks(a, b, c) for a, b, c in seen) and not any(b < _SHRINKS * c for _, b, c in seen)
+
+
+def _departing(seen: list[np.ndarray]) -> bool:
     return any(_shrinks(c, b, a) and c < _SMALL for a, b, c in seen) and not any(c < _SHRINKS * b for _, b, c in seen)
 
 
@@ -199,7 +205,8 @@ def _shrinks(first: float, second: float, third: float) -> bool:
 
 def stays(strobes: np.ndarray) -> bool:
     """Whether a record that is long enough shows a motion that neither slows down nor leaves an orbit."""
-    return len(strobes) >= SLOW_RECORD and not slowing(strobes) and not departing(strobes)
+    seen = _windows(strobes)
+    return bool(seen) and not _slowing(seen) and not _departing(seen)
 
 
 def returns_near(strobes: np.ndarray) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..integrate import Engine, Setting, State, method_for
 from ..integrate.engine import rest
+from ..integrate.methods import jump_errors
 from ..result import Cost, Run, relative_changes, run_from
 from ..scene import Scene
 from .decide import MOST_PERIODS, REMEMBERED, Decisions
@@ -78,14 +79,14 @@ class Settling:
     def go_on(self, seconds: float) -> None:
         """Run until it is decided what the motion is, the budget is spent, or about `seconds` have passed."""
         end = time.perf_counter() + seconds
-        while not self.decided and self._run_until(end):
+        while not self.decided and self.run(end - time.perf_counter()):
             self._decide()
             if time.perf_counter() > end:
                 return
 
-    def _run_until(self, end: float) -> bool:
-        """Run until something is to be decided, or until that time; whether it is."""
-        per_period = 0.0
+    def run(self, seconds: float) -> bool:
+        """Run until something is to be decided, which may need other kernels, or for that time; whether it is."""
+        end, per_period = time.perf_counter() + seconds, 0.0
         while not self._finished:
             left = end - time.perf_counter()
             if per_period and left < per_period:
@@ -146,15 +147,14 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     origin = "rest" if start is None else "previous state"
     began = time.perf_counter()
     way = Settling(scene, start, stop)
-    way.go_on(_PREVIEW_AFTER)
+    way.run(_PREVIEW_AFTER)
     while not way.decided:
         yield live_picture(way, samples, began, origin, final=False)
         way.go_on(0.1)
-    if way.regime.name != "periodic":
+    if way.regime.name == "periodic":
+        yield certified_picture(way, samples, began, origin)
+    else:
         yield live_picture(way, samples, began, origin, final=True)
-        return
-    yield live_picture(way, samples, began, origin, final=False)
-    yield certified_picture(way, samples, began, origin)
 
 
 def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
@@ -211,6 +211,7 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     # an error e of the n-period map moves its fixed point by e/(1 − |μ|), and the forces with it
     still = 1.0 / (1.0 - slowness(way.regime))
     forces = still * relative_changes(fine.tops, coarse.tops)
+    forces += jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
     integration *= still
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces + 1.5 * distance)
     return Settled(run, regime, start, origin, False, True)
@@ -230,7 +231,8 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
     """The certified method on its own orbit, and the bound on what is left to go.
 
     The orbit of the live method differs from the true one by its error; a few more periods take that away, and the
-    change from one n-period map to the next over 1 − |μ| says how much is left.
+    change from one n-period map to the next over 1 − |μ| says how much is left. What is left behind an extrapolation is
+    known from the changes behind it, and one behind which they are not smaller is taken back.
     """
     scene, n = way.scene, way.regime.period
     assert n is not None
@@ -238,24 +240,30 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
     setting = certified_setting(scene, accuracy, rate)
     engine = Engine(scene, setting, samples, stop=way.stop)
     engine.start(way.engine.state)
-    bound = np.inf
-    for _ in range(_MOST_ROUNDS):
+    bound, unproved = np.inf, None
+    for rounds in range(_MOST_ROUNDS):
         before = bound
         states = engine.periods(0)[0]
         for _ in range(ORDER):
             moved, _ = engine.periods(n, watch=False)
             states = np.concatenate([states, moved[-1:]])
             change = float(changes(states, 1, 1)[0])
-            bound = change * rate / (1.0 - rate)
+            if unproved is not None and change >= unproved[1]:
+                break
+            unproved, bound = None, change * rate / (1.0 - rate)
             if bound <= 0.3 * accuracy:
                 return engine, bound
-        if bound > 0.3 * before and not setting.finest:
+        if unproved is not None:  # the jump did not lead nearer: back to where it began
+            engine.start(unproved[0])
+            unproved, bound = None, np.inf
+        elif bound > 0.3 * before and not setting.finest:
             # the changes are the method's own: it has to be finer before it can come nearer
             setting, state = setting.finer(), engine.state
             engine = Engine(scene, setting, samples, stop=way.stop)
             engine.start(state)
-        else:
-            jump(engine, states, change, rate)
+        elif rounds < _MOST_ROUNDS - 1:  # behind the last jump there must be a change that proves it
+            here = engine.state
+            unproved = (here, change) if jump(engine, states, change, rate) else None
     return engine, bound
 
 

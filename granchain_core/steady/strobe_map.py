@@ -43,13 +43,18 @@ class StrobeMap:
         self.engine.periods(self.periods, watch=False)
         return self.inner(self.engine.y)
 
-    def passed(self, x: np.ndarray, times: int) -> np.ndarray:
-        """The states (times + 1, 2N) passed when the map is taken so many times."""
+    def passed(self, x: np.ndarray, first: int, between: int) -> tuple[np.ndarray, np.ndarray]:
+        """The first so many states (first, 2N) on the way from x, and as many after `between` more."""
         self.engine.start_scaled(x)
-        states = [x]
-        for _ in range(times):
-            self.engine.periods(self.periods, watch=False)
+        early = self._next(first)
+        self.engine.periods(self.periods * between, watch=False)
+        return early, self._next(first)
+
+    def _next(self, count: int) -> np.ndarray:
+        states = []
+        for _ in range(count):
             states.append(self.inner(self.engine.y))
+            self.engine.periods(self.periods, watch=False)
         return np.array(states)
 
     def inner(self, y: np.ndarray) -> np.ndarray:

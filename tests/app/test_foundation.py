@@ -47,7 +47,7 @@ def test_a_branch_or_map_in_the_amplitude_is_said() -> None:
 
 
 def test_the_page_says_beside_kappa_what_it_was() -> None:
-    assert beside_kappa(RIG.evolve(A0=6e-6)) == "A₀ moved, k did not: κ was 0.001"
+    assert beside_kappa(RIG.evolve(A0=6e-6)) == "κ was 0.001; A₀ moved, not k"
     assert beside_kappa(RIG) == beside_kappa(RIG.evolve(A0=6e-6, kappa=0.001)) == ""
 
 

@@ -26,7 +26,7 @@ from app.views.stability import (
 )
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
 from granchain_core.integrate.engine import new_stop
-from granchain_core.steady.regime import Regime
+from granchain_core.steady.regime import Regime, modulus_words
 
 
 @cache

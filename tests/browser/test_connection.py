@@ -29,11 +29,20 @@ def page(chromium: Browser, server: Server) -> Iterator[Page]:
     """Its page, paused at 1130 Hz with another damping, its pictures drawn."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800})
     page = context.new_page()
+    page.add_init_script(FIRST)
     page.goto(f"{server.address}?v=1&scene=sec2&f=1130&D=90&start=previous")
     expect(page.locator("#lost")).to_be_hidden()
     page.wait_for_function(BELONGS, arg=1130, timeout=60_000)
     yield page
     context.close()
+
+
+# What stands on a page that was built again before it has pictures of its own.
+FIRST = """addEventListener("DOMContentLoaded", () => setTimeout(() => {
+  const image = document.getElementById("last-pictures");
+  const rest = image && [getComputedStyle(image).filter, document.getElementById("lost").textContent];
+  window.first = image && image.decode().then(() => [image.naturalWidth, ...rest]);
+}));"""
 
 
 # Whether the pictures show whole drive periods of a frequency [Hz]; the time axis of all of them is one, in ms.
@@ -98,7 +107,10 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
     assert value(page) == "700"
 
     starts_again(server, page)
+    width, look, sentence = page.evaluate("window.first")
+    assert (width, "grayscale(1)" in look, "building the page from its knobs" in sentence) == (1280, True, True)
     page.wait_for_function(BELONGS, arg=700, timeout=60_000)
+    expect(page.locator("#last-pictures")).to_have_count(0)
     assert (value(page), value(page, "D")) == ("700", "90")
     expect(page.locator("select.start")).to_have_value("previous")
     expect(page.locator("select.speed")).to_have_value("5")
@@ -120,6 +132,16 @@ def test_a_silent_server_is_seen_and_the_same_page_goes_on(server: Server, page:
     turn(page, "f", "700")
     page.wait_for_function(BELONGS, arg=700, timeout=30_000)
     assert page.evaluate("window.same")
+
+
+def test_a_socket_that_stays_silent_while_the_server_answers_is_given_up(page: Page) -> None:
+    """As behind a proxy that forgot it: neither side learns that it is closed."""
+    page.evaluate("window.before = true")
+    page.evaluate("granchain.heard = () => {}")
+    looks_lost(page, SILENT)
+    page.wait_for_function("window.granchain && !window.before", timeout=30_000)
+    page.wait_for_function(BELONGS, arg=1130, timeout=60_000)
+    assert (value(page), value(page, "D")) == ("1130", "90")
 
 
 @pytest.mark.parametrize("knob", ["f", "kappa"])

@@ -27,7 +27,8 @@ def shown(differences: list[float], refines: tuple[float, ...] = REFINES) -> Com
     found = Computations(False)
     found.begin(Setting("rk4-split", refines[0]))
     for refine, difference in zip(refines[1:], differences, strict=False):
-        found.add(Setting("rk4-split", refine), STEPS, np.array([difference]))
+        setting = Setting("rk4-split", refine)
+        found.add(setting, STEPS, np.array([difference]), np.array([typical_error(setting)]))
     return found
 
 

@@ -41,7 +41,7 @@ STATED = (
            "while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):",
            "while finer.steps_per_period(lowered, samples) < self.steps_per_period(lowered, samples):",
            "two computations by the same steps are compared", k.SAME_STEPS),
-    Mutant("error-without-floor", _STATED, "max(typical_error(setting), self.rounding))", "self.rounding)",
+    Mutant("error-without-floor", _STATED, "np.maximum(least, self.rounding))", "self.rounding)",
            "an error of exactly nothing is stated", k.SAME_STEPS),
     Mutant("error-of-last-sample", _RUN, "np.abs(now.samples.displacement - before.samples.displacement).max()) / largest",
            "np.abs(now.samples.displacement - before.samples.displacement)[0].max()) / largest",

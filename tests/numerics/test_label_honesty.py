@@ -1,0 +1,104 @@
+"""What a motion is called is what becomes of it: a slice of label_honesty.py, and the orbit beside a motion by itself."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import resonance_curve, run, scene, settled
+from granchain_core.integrate.engine import new_stop
+from granchain_core.integrate.lane_block import scaled_state
+from granchain_core.lower import lower
+from granchain_core.orbits import periodic_orbit
+from granchain_core.steady.nearby_orbit import NearbyOrbit, orbit_of
+from granchain_core.steady.settle import settle
+from granchain_core.steady.strobe_map import StrobeMap, fixed_point, sizes
+from tests.numerics.label_honesty import judged
+
+
+@pytest.mark.parametrize(("place", "width"), [(256.0, 0.75), (832.5, 0.25)])
+def test_labels_beside_a_period_doubling_are_what_becomes_of_the_motion(place: float, width: float) -> None:
+    """Down, in steps of 0.25 Hz: on the unstable orbit the chain lingers for hundreds of periods, and that is not chaos."""
+    found = list(judged(place, width, 0.25, "down"))
+    assert len(found) >= 3
+    assert [(one.point.frequency, one.called) for one in found if one.false or one.missing] == []
+    assert {one.called for one in found} == {"period 1", "period 2"}
+
+
+def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
+    """The orbit found from a state so far away from the exact one, relative."""
+    chain = scene("sec2").evolve(f=f, **knobs)
+    exact = periodic_orbit(chain, period)
+    x = StrobeMap(chain, period).inner(scaled_state(lower(chain), exact.state))
+    shape = np.random.default_rng(1).standard_normal(len(x))
+    found = orbit_of(chain, period, x + offset * sizes(x) * shape, new_stop())
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(("f", "period"), [(340.0, 1), (1130.0, 3), (1980.0, 1), (1330.0, 1)])
+def test_differences_give_the_multipliers_of_the_tangent_flow(f: float, period: int) -> None:
+    """Two routes to |μ|. At four times the live steps the map is right to some 1e-7, its differences to some 1e-5."""
+    exact = float(np.abs(periodic_orbit(scene("sec2").evolve(f=f), period).multipliers[0]))
+    assert beside(f, period, 1e-4).modulus == pytest.approx(exact, abs=2e-5)
+
+
+def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
+    """The fixed point of the map by steps of a quarter is the orbit to the map's error over 1 − |μ|."""
+    chain = scene("sec2").evolve(f=340.0)
+    strobe = StrobeMap(chain, 1)
+    exact = strobe.inner(scaled_state(lower(chain), periodic_orbit(chain, 1).state))
+    found = fixed_point(strobe, exact + 1e-3 * sizes(exact))
+    assert found is not None and found.residual <= 1e-9
+    assert np.abs((found.x - exact) / sizes(exact)).max() < 1e-6  # 7e-6 at the live step, /4⁴, over 1 − 0.36: 4e-8
+
+
+def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
+    """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period."""
+    chain = scene("sec2").evolve(f=340.0)
+    x = StrobeMap(chain, 4).inner(scaled_state(lower(chain), settled(chain).state))
+    found = orbit_of(chain, 4, x, new_stop())
+    assert found is not None and found.period == 1 and found.modulus == pytest.approx(0.361, abs=1e-3)
+
+
+def test_a_slow_orbit_is_approached_and_an_unstable_one_is_not() -> None:
+    """1980 Hz: |μ| = 0.99946. 1330 Hz: |μ| = 1.026, and a departure is drawn out along what grows only."""
+    slow, left = beside(1980.0, 1, 1e-4), beside(1330.0, 1, 1e-6)
+    assert slow.stable and not slow.unstable and slow.approached()
+    assert left.unstable and not left.stable and not left.approached()
+    further = left.drawn_out()
+    assert further is not None
+    assert np.abs((further - left.point.x) / sizes(left.point.x)).max() == pytest.approx(3e-3, rel=1e-9)
+    now, later = (np.linalg.norm((s - left.point.x) / sizes(left.point.x), axis=1).max()
+                  for s in left.strobe.passed(further, 16, 16))
+    assert later / now == pytest.approx(left.modulus**32, rel=0.1)  # in a turn of 16 orbits, and still nearly linear
+    assert NearbyOrbit(left.strobe, left.point, further, left.modulus).drawn_out() is None
+
+
+def test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit() -> None:
+    """146.42 Hz, swept up: |μ| = 0.9993, and yet the chain stays on a closed curve 0.008 away, to 16,000 periods."""
+    swept = resonance_curve(scene("sec2"), np.arange(144.42, 146.5, 0.25), "up")
+    assert swept.points[-1].regime.name == "quasi-periodic"
+
+
+@pytest.mark.parametrize("f", [1980.0, 1990.0])
+def test_one_motion_has_one_name_from_curve_and_page(f: float) -> None:
+    """|μ| = 0.9995 and 0.9987: the orbit is claimed by both, with its multiplier, and with the same force."""
+    chain = scene("sec2").evolve(f=f)
+    pictured, drawn = settled(chain), resonance_curve(chain, [f]).points[0]
+    assert (pictured.regime.name, pictured.regime.period) == (drawn.regime.name, drawn.regime.period) == ("periodic", 1)
+    assert pictured.regime.multiplier == pytest.approx(
+        float(np.abs(periodic_orbit(chain, 1, pictured.state).multipliers[0])), abs=2e-5)
+    assert drawn.error_estimate is not None and pictured.run.error_estimate is not None
+    bound = drawn.error_estimate + 1.5 * pictured.run.error_estimate  # F ∝ δ^{3/2}
+    assert drawn.max_output_force == pytest.approx(pictured.run.max_output_force, rel=bound + 1e-6)
+
+
+def test_slow_is_not_quasi_periodic() -> None:
+    """A0 = 0.3 µm at 1500 Hz: |μ| = 0.9995. 300 periods look like a closed curve; `run` claims nothing that it is not yet."""
+    chain = scene("sec2").evolve(A0=3e-7, f=1500.0)
+    assert run(chain, periods=300).regime.name == "unsettled"
+    way = settle(chain, None, None)
+    assert (way.regime.name, way.regime.period, way.regime.followed) == ("periodic", 1, True)
+    assert way.regime.multiplier is not None and 0.999 < way.regime.multiplier < 1.0
+    assert way.regime.sentence.endswith("(|μ| 0.9995)")

@@ -1,0 +1,54 @@
+"""Peaks, valleys, flanks and the stop band of a curve, and what a motion there is called."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core.steady.resonance import Place, extrema, place_of, place_words
+
+#: A curve as of section 2 [Hz, N]: peaks at 340 and 1130 Hz with a deep valley between, and little beyond.
+F = np.array([30.0, 340.0, 600.0, 870.0, 900.0, 950.0, 1000.0, 1130.0, 1300.0, 1320.0, 1500.0, 2000.0, 3000.0])
+FORCE = np.array([0.1, 0.62, 0.4, 0.23, 0.46, 0.5, 0.55, 1.12, 0.12, 0.13, 0.1, 0.08, 0.06])
+PERIODS = [1, 1, 1, 1, 3, 3, 3, 3, 1, 1, 1, 1, 1]
+
+
+def place(at: float, output: float | None = None, transmission: float = 0.5) -> Place:
+    """Where a state on the curve lies."""
+    force = float(np.interp(at, F, FORCE)) if output is None else output
+    return place_of(F, FORCE, PERIODS, at, force, transmission)
+
+
+def test_a_flank_is_a_flank() -> None:
+    """951.5 Hz, at half a newton on the way up to the 1:3 peak, is no valley."""
+    assert place(951.5) == Place("flank", 1130.0, 3)
+    assert place_words((2, 3), place(951.5)) == "2:3 motion, flank of the 1:3 peak at 1130 Hz"
+
+
+def test_peaks_and_valleys_have_the_papers_names_where_the_pushes_are_those() -> None:
+    assert place_words((1, 3), place(1130.0)) == "1:3 resonance"
+    assert place_words((1, 1), place(870.0)) == "1:1 anti-resonance"
+    assert place_words((2, 3), place(1130.0)) == "2:3 motion, on a peak"
+    assert place_words((2, 3), place(870.0)) == "2:3 motion, in a valley"
+
+
+@pytest.mark.parametrize(("depth", "is_one"), [(0.85, False), (0.75, True)])
+def test_a_valley_is_a_fifth_below_both_peaks(depth: float, is_one: bool) -> None:
+    """Between peaks of 1 N and 1.1 N a dip to 0.85 N is none."""
+    found = extrema(np.array([0.1, 1.0, depth, 1.1, 0.1]))
+    assert (2 in found) == is_one
+
+
+def test_nothing_is_claimed_while_there_is_no_curve_or_off_it() -> None:
+    """The curve on its way, another branch at the same frequency, a frequency beside the curve, and its ends."""
+    assert place_words((1, 1), None) == "1:1 motion (the curve is on its way)"
+    assert place(1130.0, output=0.2) == Place("")
+    assert place_of(F, FORCE, PERIODS, 4000.0, 0.05, 0.5) == Place("")
+    assert place(2900.0).kind != "valley", "a curve's end is no valley: nobody knows how it goes on"
+    assert place_words(None, place(1130.0)) == ""
+
+
+def test_beyond_the_last_peak_where_little_arrives_is_the_stop_band() -> None:
+    assert place_words((1, 1), place(2500.0, transmission=0.1)) == "1:1 motion, stop band"
+    assert place(2500.0, transmission=0.4).kind != "stop band"
+    assert place(900.0, transmission=0.1).kind != "stop band"
