@@ -151,9 +151,11 @@ def _difference(now: _Attempt, before: _Attempt) -> float:
 def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
     """Relative differences (4,) of the displacements and of the largest input, output and elastic output force.
 
-    F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
+    F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force. Where forces jump their error is
+    uneven from one step size to the next (`jump_errors`), and twice the change is taken for it.
     """
-    return np.array([_difference(now, before), *(1.5 * relative_changes(now.engine.tops, before.engine.tops))])
+    factor = 3.0 if now.engine.lowered.scene.forces_jump else 1.5
+    return np.array([_difference(now, before), *(factor * relative_changes(now.engine.tops, before.engine.tops))])
 
 
 def _least(now: _Attempt, setting: Setting) -> np.ndarray:
