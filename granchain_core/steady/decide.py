@@ -109,7 +109,7 @@ class Decisions:
         record = np.concatenate([strobes, passed])
         run = regime.periods_run + len(passed)
         now, before = irregular(found, record[-len(strobes):], run), self._measured
-        if clearly_chaotic(found) or now.name == "quasi-periodic":
+        if clearly_chaotic(found):
             return Decision(now)
         if before is not None and agree(now, before):
             return Decision(now)
@@ -140,13 +140,13 @@ def as_it_stands(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
 
 
 def _told_apart(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """Chaotic by one clear measurement of the Lyapunov exponent or by two that agree, or quasi-periodic by one."""
+    """Chaotic or quasi-periodic by one clear measurement of the Lyapunov exponent or by two that agree."""
     record, before = strobes, None
     for _ in range(_MEASUREMENTS):
         found, passed = exponents(engine, BLOCKS, BLOCK)
         record = np.concatenate([record, passed])
         now = irregular(found, record[-REMEMBERED:], regime.periods_run + len(record) - len(strobes))
-        if clearly_chaotic(found) or now.name == "quasi-periodic" or (before is not None and agree(now, before)):
+        if clearly_chaotic(found) or (before is not None and agree(now, before)):
             return now
         before = now
     return replace(now, name="unsettled")
