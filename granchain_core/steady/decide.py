@@ -14,7 +14,7 @@ import numpy as np
 from ..integrate import Engine
 from ..scene import Scene
 from .lyapunov import exponents
-from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside
+from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 from .regime import Regime, agree, clearly_chaotic, departing, irregular, slowing
 
 #: Periods after which a motion that has not settled is looked at in another way, and most that are run in all.
@@ -31,6 +31,8 @@ _ALWAYS = 30
 CLEAR_DECAY = 0.9
 #: A motion beside an unstable orbit is given so many times the periods: it leaves as slowly as others come.
 _PATIENCE = 4
+#: Largest |μ| of a settled motion, as differences at its own state have it, that needs no Newton's method.
+_CLEAR = 0.97
 #: How often a motion that leaves an orbit is taken along its departure.
 _MOST_DEPARTURES = 6
 
@@ -73,6 +75,9 @@ class Decisions:
         doubtful = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
         if (MOST_BEADS if doubtful else _ALWAYS) < self.scene.N:
             return Decision(regime)
+        seen = seen_modulus(self.scene, regime.period, scaled(engine), engine.stop, refine=4.0)
+        if seen <= _CLEAR:
+            return Decision(replace(regime, multiplier=seen))
         orbit = orbit_of(self.scene, regime.period, scaled(engine), engine.stop)
         if orbit is None:
             return Decision(replace(regime, name="unsettled", period=None, distance=None) if doubtful else regime)

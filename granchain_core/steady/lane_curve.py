@@ -23,9 +23,8 @@ from ..scene import Scene
 from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
 from .lane_job import Job, LaneResult, Start, draft_result, failed, look_coarse
 from .lyapunov import MOST_APART, exponents_in_pairs
-from .nearby_orbit import MOST_BEADS
+from .nearby_orbit import MOST_BEADS, seen_modulus
 from .regime import agree, clearly_chaotic, find_period, irregular
-from .strobe_map import StrobeMap
 
 #: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
 #: which is what is claimed.
@@ -120,7 +119,7 @@ class _Lanes:
                 self.waiting.append(job)
                 continue
             regime, before = irregular(growth, job.record, job.run), job.measured
-            if regime.name == "chaotic" and before is None and not clearly_chaotic(growth):
+            if before is None and growth.mean() > 0.01 and regime.name != "unsettled" and not clearly_chaotic(growth):
                 job.measured, job.in_doubt = regime, True
                 self.doubtful.append(job)
             elif regime.name == "unsettled" and growth.mean() < 0.0 and job.run < SLOW_PERIODS and job.affordable:
@@ -167,9 +166,8 @@ def confirmed(result: LaneResult, stop: np.ndarray) -> LaneResult:
     regime, scene = result.regime, result.scene
     if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:
         return result
-    strobe = StrobeMap(scene, regime.period, stop, refine=1.0)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, result.state))
-    largest = float(np.abs(np.linalg.eigvals(strobe.derivative(x, central=False))).max())
+    y = scaled_state(lower(scene), result.state).reshape(2, -1)
+    largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
     return result if largest < _SURE else replace(result, doubtful=True)
 
 

@@ -140,6 +140,12 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray) -> Near
     return NearbyOrbit(strobe, found, x, found.modulus)
 
 
+def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray, refine: float) -> float:
+    """The largest |μ| at a state that is on its orbit to what is called settled, in a hurry: right to some 1e-4."""
+    matrix = StrobeMap(scene, period, stop, refine).derivative(x, central=False)
+    return float(np.abs(np.linalg.eigvals(matrix)).max())
+
+
 def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: np.ndarray) -> Iterator[NearbyOrbit]:
     """Orbits beside a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
     moved = [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]

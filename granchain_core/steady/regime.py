@@ -7,7 +7,7 @@ the stroboscopic map its distance is change·|μ|/(1 − |μ|). Only that bound 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -171,11 +171,10 @@ def agree(one: Regime, other: Regime) -> bool:
     return abs(a - b) <= max(3.0 * math.hypot(error_a, error_b), 1e-3)
 
 
-def _windows(strobes: np.ndarray) -> list[np.ndarray]:
-    """For every period the largest changes over it in three windows in a row, (3,); empty for a short record."""
-    if len(strobes) < SLOW_RECORD:
-        return []
-    return [changes(strobes, n, 3 * _SLOW_WINDOW).reshape(3, -1).max(axis=1) for n in range(1, LONGEST_PERIOD + 1)]
+def _windows(strobes: np.ndarray) -> Iterator[np.ndarray]:
+    """For every period the largest changes over it in three windows in a row, (3,); none for a short record."""
+    for n in range(1, LONGEST_PERIOD + 1 if len(strobes) >= SLOW_RECORD else 0):
+        yield changes(strobes, n, 3 * _SLOW_WINDOW).reshape(3, -1).max(axis=1)
 
 
 def slowing(strobes: np.ndarray) -> bool:
@@ -191,12 +190,22 @@ def departing(strobes: np.ndarray) -> bool:
     return _departing(_windows(strobes))
 
 
-def _slowing(seen: list[np.ndarray]) -> bool:
-    return any(_shrinks(a, b, c) for a, b, c in seen) and not any(b < _SHRINKS * c for _, b, c in seen)
+def _slowing(seen: Iterable[np.ndarray]) -> bool:
+    some = False
+    for a, b, c in seen:
+        if b < _SHRINKS * c:
+            return False
+        some = some or _shrinks(a, b, c)
+    return some
 
 
-def _departing(seen: list[np.ndarray]) -> bool:
-    return any(_shrinks(c, b, a) and c < _SMALL for a, b, c in seen) and not any(c < _SHRINKS * b for _, b, c in seen)
+def _departing(seen: Iterable[np.ndarray]) -> bool:
+    some = False
+    for a, b, c in seen:
+        if c < _SHRINKS * b:
+            return False
+        some = some or (_shrinks(c, b, a) and c < _SMALL)
+    return some
 
 
 def _shrinks(first: float, second: float, third: float) -> bool:
@@ -205,7 +214,7 @@ def _shrinks(first: float, second: float, third: float) -> bool:
 
 def stays(strobes: np.ndarray) -> bool:
     """Whether a record that is long enough shows a motion that neither slows down nor leaves an orbit."""
-    seen = _windows(strobes)
+    seen = list(_windows(strobes))
     return bool(seen) and not _slowing(seen) and not _departing(seen)
 
 

@@ -22,6 +22,8 @@ _TOLERANCE = 1e-11
 #: Half the difference of two states over the largest displacement or w: the error is its square times the map's third
 #: derivative, and the method's noise, some 1e-10, over it.
 _DIFFERENCE = 1e-5
+#: The same for a difference to one side, whose error is the difference times the map's second derivative.
+_TO_ONE_SIDE = 1e-6
 #: Relative residual at which a fixed point is found, Newton's iterations at most, and how much one has to gain to be
 #: done with the derivative that is there.
 _FOUND, _MOST_ITERATIONS, _ENOUGH = 1e-9, 10, 0.1
@@ -64,7 +66,7 @@ class StrobeMap:
 
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by differences; those to one side take half the time and are right to some 1e-4."""
-        matrix, width = np.zeros((len(x), len(x))), _DIFFERENCE * sizes(x)
+        matrix, width = np.zeros((len(x), len(x))), (_DIFFERENCE if central else _TO_ONE_SIDE) * sizes(x)
         middle = None if central else self(x)
         for i in range(len(x)):
             step = np.zeros(len(x))
