@@ -16,9 +16,10 @@ import pytest
 from app.cli import main
 
 RUN_KEYS = {"scene", "knobs", "effects", "status", "regime", "period", "max_output_force", "max_output_force_elastic",
-            "max_input_force", "error_estimate", "energy_residual", "cost"}
+            "max_input_force", "error_estimate", "error_estimate_input", "error_estimate_output",
+            "error_estimate_elastic", "energy_residual", "cost"}
 CURVE_KEYS = {"frequency", "max_output_force", "max_output_force_elastic", "max_input_force", "regime", "period",
-              "error_estimate", "wall_s"}
+              "error_estimate", "error_estimate_input", "error_estimate_elastic", "wall_s"}
 SHORT = ["--periods", "2", "--record", "1", "--samples", "8"]
 
 

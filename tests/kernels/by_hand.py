@@ -84,30 +84,32 @@ def whole_step_by_hand(slots, drive, j, dtheta, h, y, stages):
 
 
 @fresh
-def step_by_hand(method, slots, drive, j, theta, dtheta, h, y, stages, counts):
-    """One RK4 step in place."""
+def step_by_hand(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
+    """One RK4 step in place; how far its end lies behind the last state at which forces were followed."""
     ub, vb = whole_step_by_hand(slots, drive, j, dtheta, h, y, stages)
+    k, end = stages.k, stages.end
+    motion_by_hand(slots, ub, vb, end, k[3], stages.forces)
     for i in range(y.size):
-        y[i] = stages.end[i]
-    motion_by_hand(slots, ub, vb, y, stages.k[0], stages.forces)
+        y[i], k[0, i] = end[i], k[3, i]
     counts[0] += 1
     counts[1] += 4
+    return h
 
 
 @fresh
-def steps_by_hand(method, slots, drive, h, y, stages, counts, count):
+def steps_by_hand(method, slots, drive, h, y, stages, log, counts, count):
     """`count` steps."""
     dtheta = 2.0 * np.pi / method.steps_per_period
     for j in range(count):
-        step_by_hand(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, counts)
+        step_by_hand(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, log, counts)
 
 
 @kernel
-def steps_of_product(method, slots, drive, h, y, stages, counts, count):
+def steps_of_product(method, slots, drive, h, y, stages, log, counts, count):
     """`count` RK4 steps of the product's own kernel."""
     dtheta = 2.0 * np.pi / method.steps_per_period
     for j in range(count):
-        step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, counts)
+        step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, log, counts)
 
 
 @fresh

@@ -98,7 +98,8 @@ def from_same_state(e: Engine, run):
 
 def steps(kernel, e: Engine):
     """RK4 steps of the chain by one of the two kernels, as a function of their number."""
-    return from_same_state(e, direct(kernel, e.method, e.lowered.slots, e.drive, e.h, e.y, e.work, e.counts.array))
+    return from_same_state(e, direct(kernel, e.method, e.lowered.slots, e.drive, e.h, e.y, e.work, e.log,
+                                    e.counts.array))
 
 
 def per_call(work) -> float:

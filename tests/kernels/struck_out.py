@@ -22,6 +22,7 @@ LEFT = {
                     "lane_values": "None", "note_path": None, "path_excess": "None", "give_back_path": None},
     "foundation": {"pull_back": "b", "lane_foundation": "None"},
     "preload": {"row_overlap": "b - c", "lane_overlap": "b - c", "row_values": "None"},
+    "jumps": {"watch_jumps": None},
     "unequal": {"over_mass": "c", "times_stiffness": "(b * e if c == d else e)"},
 }
 
