@@ -66,6 +66,10 @@ class ForceErrors:
         return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
 
 
+#: Methods are of uneven order at contact events: a force's error is not taken for less than so many times its change.
+CAUTION = 2.0
+
+
 def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
     """How much each of three largest forces changed from one computation to a finer one, over the finer one's value."""
     change = np.abs(now - before)

@@ -15,7 +15,7 @@ from ..integrate import Engine, State
 from ..integrate.engine import new_stop
 from ..integrate.lane_block import can_share_lanes
 from ..integrate.methods import jump_errors
-from ..result import ForceErrors, relative_changes
+from ..result import CAUTION, ForceErrors, relative_changes
 from ..scene import Scene
 from .lane_curve import lane_results
 from .lane_job import LaneResult
@@ -101,7 +101,7 @@ def _certified_point(way: Settling) -> CurvePoint:
     finer.start(engine.state)
     tops = finer.largest_forces(n)
     # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
-    errors = relative_changes(tops, before) + 1.5 * distance
+    errors = CAUTION * relative_changes(tops, before) + 1.5 * distance
     errors += jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
     return _point(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer)
 

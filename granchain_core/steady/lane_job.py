@@ -11,14 +11,12 @@ from ..integrate.engine import rest
 from ..integrate.lane_block import LaneBlock, state_of
 from ..integrate.methods import AT_A_JUMP, jump_errors
 from ..lower import Lowered
-from ..result import relative_changes
+from ..result import CAUTION, relative_changes
 from ..scene import Scene
 from .decide import MOST_PERIODS, SLOW_PERIODS
 from .regime import SLOW_RECORD, Regime, slowing
 from .settle import MOST_STEPS
 
-#: The method's order is uneven at contact events, so its error is not taken for less than this times the change.
-_CAUTION = 2.0
 #: How the largest forces on an orbit are found where they jump: finer than the lanes that found the orbit.
 _LOCATED = Setting("rk4-split", refine=8)
 #: Periods over which the largest force of an irregular motion is taken.
@@ -93,7 +91,7 @@ class Job:
         assert regime.period is not None and regime.distance is not None
         y, distance = block.state.y[:, lane], float(block.state.seen[lane, 2])
         tops, jumps = block.tops(lane, regime.period), block.jumps(lane, regime.period)
-        errors = _CAUTION * relative_changes(tops, before)
+        errors = CAUTION * relative_changes(tops, before)
         at_jump = np.append(jumps > AT_A_JUMP * tops[:2], False)
         if at_jump.any():
             located, moved = self._located_tops(y, regime)

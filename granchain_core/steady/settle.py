@@ -16,7 +16,7 @@ import numpy as np
 from ..integrate import Engine, Setting, State, method_for
 from ..integrate.engine import rest
 from ..integrate.methods import jump_errors
-from ..result import Cost, Run, relative_changes, run_from
+from ..result import CAUTION, Cost, Run, relative_changes, run_from
 from ..scene import Scene
 from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
@@ -210,7 +210,7 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     regime = replace(way.regime, distance=distance)
     # an error e of the n-period map moves its fixed point by e/(1 − |μ|), and the forces with it
     still = 1.0 / (1.0 - slowness(way.regime))
-    forces = still * relative_changes(fine.tops, coarse.tops)
+    forces = CAUTION * still * relative_changes(fine.tops, coarse.tops)
     forces += jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
     integration *= still
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces + 1.5 * distance)

@@ -111,7 +111,7 @@ def test_wrong_input_gets_one_sentence_and_status_2(words: list[str], sentence: 
 
 
 def test_numbers_that_fail_exit_with_3(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["orbit", "rig", "--set", "f=140"]) == 3
+    assert main(["orbit", "rig", "--set", "f=140", "--set", "k=0"]) == 3
     assert "residuals were" in capsys.readouterr().err
 
 

@@ -114,7 +114,7 @@ def test_moved_knobs_grey_the_branch_and_say_so(visit: Visit) -> None:
 
 
 def test_a_chain_without_such_an_orbit_is_told_in_a_sentence(visit: Visit) -> None:
-    page = visit("?v=1&scene=rig&f=140")
+    page = visit("?v=1&scene=rig&f=140&k=0")
     sheet = opened(page)
     sheet.get_by_label("period of the orbits").select_option("1")
     sheet.get_by_role("button", name="follow from here").click()

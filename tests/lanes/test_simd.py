@@ -30,7 +30,10 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
     a, b = fast.record(24), slow.record(24)
     assert np.abs(a.displacement - b.displacement).max() < ROUNDING
     assert np.abs(a.force - b.force).max() < ROUNDING
-    assert fast.tops == pytest.approx(slow.tops, rel=1e-11, abs=ROUNDING)
+    # the fast steps follow forces by a quartic through values 0.2 apart, across the kinks of neighbours' events too: off by
+    # some 0.07 h of a slope's change λ² v there, with λ = 0.22, h = 0.2 and λ v as large as the force: 7e-4
+    assert fast.tops == pytest.approx(slow.tops, rel=1e-3, abs=ROUNDING)
+    np.testing.assert_allclose(fast.closings, slow.closings, atol=1e-9)
     assert (fast.counts.array == slow.counts.array).all()
 
 
