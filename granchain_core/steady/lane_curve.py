@@ -33,7 +33,7 @@ _FINER = 3
 _DRAFT = 300
 #: Decay per orbit above which an orbit that was extrapolated to needs its multipliers, and largest |μ|, as seen by
 #: coarse differences, that settles it.
-_SLOW, _SURE = 0.995, 0.995
+_SLOW, _SURE = 0.998, 0.995
 #: Scenes whose exponents are found at once.
 _PAIRS = LANES // 2
 

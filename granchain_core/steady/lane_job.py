@@ -14,7 +14,7 @@ from ..lower import Lowered
 from ..result import CAUTION, relative_changes
 from ..scene import Scene
 from .decide import MOST_PERIODS, SLOW_PERIODS
-from .regime import SLOW_RECORD, Regime, slowing
+from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
 
 #: How the largest forces on an orbit are found where they jump: finer than the lanes that found the orbit.
@@ -140,7 +140,7 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
     if run >= job.affordable_periods:
         return unsettled(job, block, lane, run)
     record = block.strobes(lane)
-    if run >= SLOW_PERIODS or (len(record) >= SLOW_RECORD and not slowing(record)):
+    if run >= SLOW_PERIODS or (len(record) >= SLOW_RECORD and not shrinking(record)):
         return _in_doubt(job, block, lane, run, record.copy())
     block.state.look[lane] = min(here + max(MOST_PERIODS // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)

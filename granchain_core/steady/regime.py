@@ -185,6 +185,11 @@ def slowing(strobes: np.ndarray) -> bool:
     return _slowing(_windows(strobes))
 
 
+def shrinking(strobes: np.ndarray) -> bool:
+    """Whether changes over some period shrink through three windows: enough to give a motion more periods."""
+    return any(_shrinks(a, b, c) for a, b, c in _windows(strobes))
+
+
 def departing(strobes: np.ndarray) -> bool:
     """Whether the motion leaves an orbit: changes over some period grow, small still, and none shrink."""
     return _departing(_windows(strobes))
