@@ -208,11 +208,12 @@ def curve(arguments: argparse.Namespace) -> None:
             "error_estimate_input": [p.force_errors.input for p in swept.points], "wall_s": swept.wall_s,
         })
         return
-    print("frequency_Hz  max_output_force_N  elastic_N  max_input_force_N  regime")
+    print("frequency_Hz  max_output_force_N    error  elastic_N    error  max_input_force_N    error  regime")
     for p in swept.points:
         regime = f"period {p.regime.period}" if p.regime.period else p.regime.name
-        print(f"{p.frequency:12.6g}  {p.max_output_force:18.6g}  {p.max_output_force_elastic:9.6g}  "
-              f"{p.max_input_force:17.6g}  {regime}")
+        inward, outward, elastic = (f"{'–':>7}" if math.isnan(e) else f"{e:7.1e}" for e in p.force_errors.row)
+        print(f"{p.frequency:12.6g}  {p.max_output_force:18.6g}  {outward}  {p.max_output_force_elastic:9.6g}  "
+              f"{elastic}  {p.max_input_force:17.6g}  {inward}  {regime}")
     say(f"{len(swept.points)} points in {swept.wall_s:.2f} s")
 
 

@@ -18,7 +18,7 @@ from app.foundation import kept_along
 from granchain_core import BadInput, Cancelled
 from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
 from granchain_core.diagram.blocks import Blocks, folder_of
-from granchain_core.diagram.cells import REGIMES, cell_of
+from granchain_core.diagram.cells import ERRORS, REGIMES, cell_of
 from granchain_core.diagram.grid import MOST_CELLS
 from granchain_core.quantities import QUANTITIES
 
@@ -138,8 +138,7 @@ def _rows(grid: Grid, missing: list[int], client: Any, stop: Callable[[], bool])
 
 def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
     counts = {name: int((found.cells["regime"] == code).sum()) for code, name in enumerate(REGIMES)}
-    errors = found.cells["error_estimate"]
-    worst = float(np.nanmax(errors)) if np.isfinite(errors).any() else math.nan
+    inward, worst, elastic = (_largest(found.cells[name]) for name in ERRORS)
     if arguments.json:
         grid = found.grid
         print(json.dumps({
@@ -152,5 +151,10 @@ def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
         print(f"{quantity.label} {axis.knob}: {len(axis.values)} values, {axis.values[0]:g} to {axis.values[-1]:g} "
               f"{quantity.unit}")
     print(", ".join(f"{count} {name}" for name, count in counts.items() if count))
-    print(f"largest relative error of a periodic cell {worst:.1e}; {computed} cells computed in {found.wall_s:.1f} s; "
-          f"written to {arguments.out}")
+    print(f"largest relative errors of a periodic cell: output force {worst:.1e}, input force {inward:.1e}, elastic "
+          f"output force {elastic:.1e}; {computed} cells computed in {found.wall_s:.1f} s; written to {arguments.out}")
+
+
+def _largest(errors: np.ndarray) -> float:
+    """The largest error that is claimed; NaN where none is."""
+    return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.nan
