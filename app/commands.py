@@ -133,6 +133,9 @@ def run(arguments: argparse.Namespace) -> None:
     if result.status == "accuracy-not-reached":
         say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
              f"{result.error_estimate:.1e} of the largest displacement.")
+    if result.jumps.unresolved:
+        say(f"{result.jumps.unresolved} touches were shorter than a step of {result.cost.method} and are not resolved: "
+            "their jumps are read off the step's ends.")
     if arguments.out:
         save(result, arguments.out)
     if arguments.json:

@@ -32,13 +32,15 @@ class Cost:
 class Jumps:
     """Forces that jump from 0 because a contact with a linear dashpot closes in motion.
 
-    time (J,) [s], contact (J,) and force (J,) [N], the right limit; `missing` is how many more were not kept.
+    time (J,) [s], contact (J,) and force (J,) [N], the right limit; `missing` is how many more were not kept,
+    `unresolved` how many belong to touches shorter than a step, which methods without located events do not resolve.
     """
 
     time: np.ndarray = field(default_factory=lambda: np.zeros(0))
     contact: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     force: np.ndarray = field(default_factory=lambda: np.zeros(0))
     missing: int = 0
+    unresolved: int = 0
 
     def of(self, contact: int) -> tuple[np.ndarray, np.ndarray]:
         """Times and forces of the jumps of one contact."""
@@ -169,4 +171,4 @@ def _jumps(engine: Engine, first_sample: int) -> Jumps:
     rows, scene = engine.closings, engine.lowered.scene
     period = (first_sample + rows[:, 0].astype(np.int64)) // engine.samples
     return Jumps((period + rows[:, 1] / (2.0 * np.pi)) * scene.period, rows[:, 2].astype(np.int64),
-                 rows[:, 3] * engine.lowered.scales.force, engine.closings_missing)
+                 rows[:, 3] * engine.lowered.scales.force, engine.closings_missing, engine.unresolved)

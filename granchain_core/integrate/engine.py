@@ -227,6 +227,11 @@ class Engine:
         return self.log.closings[: self.log.met[0]]
 
     @property
+    def unresolved(self) -> int:
+        """How many of them were touches within a step, by a method that does not locate events."""
+        return int(self.log.met[1])
+
+    @property
     def closings_missing(self) -> int:
         """How many jumps there were behind these, for which there was no place."""
         return max(0, int(self.log.met[0]) - len(self.log.closings))

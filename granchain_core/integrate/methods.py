@@ -76,19 +76,21 @@ class Setting:
 METHODS: dict[str, Method] = {
     m.name: m
     for m in (
-        Method("rk4", "RK4 in w", 4.0, 2.0, False, False, False, "fixed step; order 2 at contact events",
+        Method("rk4", "RK4 in w", 4.0, 2.0, False, False, False, "fixed step; order 2 at contact events; a touch "
+               "shorter than a step is not resolved, its jump read off the step's ends",
                "Kutta 1901; w-variables: docs/model.md"),
         Method("rk4-split", "RK4 in w, steps split at contact events, what Simpson's rule misses there given back", 4.0,
                3.9, True, False, False, "fixed step; order 3.5 below errors of about 1e-9; with more than 30 beads two "
                "changes of one contact inside a step are not seen",
                "Kutta 1901; w-variables and events: docs/model.md"),
         Method("rk4-naive", "RK4 in (u, v), as one would write it first", 4.0, 1.0, False, False, False,
-               "no energy account; erratic where a dashpot contact opens or closes", "Kutta 1901", "uv"),
+               "no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
+               "Kutta 1901", "uv"),
         Method("verlet-naive", "velocity Verlet in (u, v), as one would write it first", 1.0, 1.0, False, False, True,
-               "no energy account; symplectic, and of order 2, without damping only",
+               "no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
                "Verlet 1967; Swope et al. 1982", "uv"),
         Method("dopri5", "Dormand–Prince 5 in w, error control without events", 5.4, 4.0, False, True, False,
-               "a contact that opens and closes within a step is not seen; largest forces at its steps only",
+               "a contact that opens and closes within a step is not resolved; its jump is read off the step's ends",
                "Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, section II.5"),
         Method("dop853", "Dormand–Prince 8 in w, contact events located", 8.5, 7.5, True, True, False,
                "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5", order_with_cut=7.5),

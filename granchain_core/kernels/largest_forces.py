@@ -39,7 +39,8 @@ class ForceLog(NamedTuple):
 
     `peaks` (17,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value and
     slope of each force at the last state watched. Rows of `closings` (C, 4) are the number of the last sample before a
-    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (1,) is how many there were.
+    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (2,) is how many there were, and
+    how many of them were touches within a step of a method that does not locate them.
     """
 
     peaks: np.ndarray
@@ -51,7 +52,7 @@ class ForceLog(NamedTuple):
 def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
     """A log with places for so many closings; the forces go on from the log before."""
     peaks, last = (np.zeros(PEAKS), np.zeros((3, 2))) if before is None else (before.peaks, before.last)
-    return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(1, dtype=np.int64))
+    return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(2, dtype=np.int64))
 
 
 @kernel
@@ -261,7 +262,9 @@ def _(law, slots, before, slope, y, dy, h, theta, dtheta, log):
             s, rate = closing_rate(d0, d1, s0, s1 + own * d1, own, h)
             note_closing(law, rate, c, last, theta + s * dtheta, log)
         elif s0 > 0.0 and s1 < 0.0:
-            note_closing(law, brief_touch(d0, d1, s0, s1, h), c, last, theta + 0.5 * dtheta, log)
+            rate = brief_touch(d0, d1, s0, s1, h)
+            note_closing(law, rate, c, last, theta + 0.5 * dtheta, log)
+            log.met[1] += rate > 0.0
 
 
 watch_crossings.absent_for(*SMOOTH_LAWS)

@@ -82,7 +82,7 @@ def _save_jumps(group: h5py.Group, jumps: Jumps) -> None:
     _variable(group, "jump_time", jumps.time, ("jump",), "s", "time at which a contact closes in motion")
     _variable(group, "jump_contact", jumps.contact, ("jump",), "1", "contact that closes")
     _variable(group, "jump_force", jumps.force, ("jump",), "N", "its force just after, where it was 0 before")
-    group["jump_time"].attrs["missing"] = jumps.missing
+    group["jump_time"].attrs["missing"], group["jump_time"].attrs["unresolved"] = jumps.missing, jumps.unresolved
 
 
 def save_curve(curve: Curve, path: str | Path) -> Path:
@@ -155,7 +155,7 @@ def _read_jumps(group: h5py.Group) -> Jumps:
     if "jump_time" not in group:
         return Jumps()
     return Jumps(group["jump_time"][()], group["jump_contact"][()], group["jump_force"][()],
-                 int(group["jump_time"].attrs["missing"]))
+                 *(int(group["jump_time"].attrs[name]) for name in ("missing", "unresolved")))
 
 
 def _or_nan(value: float | None) -> float:

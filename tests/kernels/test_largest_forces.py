@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import Run, resonance_curve, run, scene, settled
 from granchain_core.diagram import diagram
-from granchain_core.integrate import METHODS
+from granchain_core.integrate import METHODS, Engine, Setting, State
 from granchain_core.kernels.largest_forces import brief_touch, closing_rate, cubic_top
 
 OWN, PULL = 1.3, -0.7
@@ -139,3 +139,28 @@ def test_a_long_chain_sees_the_jumps_at_its_ends() -> None:
             (long.max_input_force, long.max_output_force, long.max_output_force_elastic), long.force_errors.row,
             (exact.max_input_force, exact.max_output_force, exact.max_output_force_elastic), strict=True):
         assert abs(force / true - 1.0) < stated < 1e-3
+
+
+#: How near the top of the driver's way a bead stands that it brushes.
+NEAR = 2e-3
+
+
+@pytest.mark.parametrize(("method", "resolves"), [("rk4", False), ("rk4-naive", False), ("verlet-naive", False),
+                                                  ("rk4-split", True), ("dop853", True)])
+def test_touches_shorter_than_a_step_are_found_or_said_not_to_be_resolved(method: str, resolves: bool) -> None:
+    """A drive so fast that its period has 17 steps: the touch lasts a third of one, between two of them.
+
+    The bead stands at A (1 − NEAR) against a soft wall; A sin θ crosses that at the rate A β √(1 − (1 − NEAR)²). The wall moves it
+    by a hundredth of NEAR until then. Where the touch is not resolved its overlap is that of two parabolas: 10 %.
+    """
+    chain = scene("sec2").evolve(N=1, f=20_000.0, wall=1e-3)
+    engine = Engine(chain, Setting(method, tolerance=1e-9), 17)
+    engine.start(State(np.array([chain.A0 * (1.0 - NEAR)]), np.zeros(1)))
+    engine.record(8)
+    touched = engine.closings[engine.closings[:, 2] == 0]
+    assert len(touched) == 1
+    assert (engine.unresolved == 0) is resolves
+    rate = engine.lowered.beta * np.sqrt(1.0 - (1.0 - NEAR) ** 2)
+    expected = engine.lowered.slots.dissipation.coefficient * rate
+    assert touched[0, 3] == pytest.approx(expected, rel=0.02 if resolves else 0.1)
+    assert engine.tops[0] >= touched[0, 3]
