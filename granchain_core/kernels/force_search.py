@@ -2,8 +2,8 @@
 
 A force is looked at where the step begins, in its middle and where it ends; the step begins just behind an event and
 ends just behind the next, so that these values are right limits and the jump of a closing contact is one of them. Where
-the three show a top inside that may exceed what was seen, it is searched by golden section: it is then as exact as the
-dense output, whatever the size of the step.
+it rises at the beginning and falls at the end, the top in between is searched by golden section if it may exceed what
+was seen: it is then as exact as the dense output, whatever the size of the step.
 """
 
 from __future__ import annotations
@@ -15,14 +15,16 @@ from .effects.dissipation import damping
 from .effects.preload import overlap
 from .effects.tension import cut_at_zero
 from .jit import kernel, part
+from .largest_forces import cubic_top, force_slope
 from .peaks import OUTPUT
+from .simd_math import root
 
 #: Golden sections around the top of a force; each shrinks the bracket to 0.618 and the top's error, as it is flat, to
 #: 0.382.
 _SECTIONS = 24
 #: A step whose ends are below this part of the largest force so far is not looked into.
 _FAINT = 0.3
-#: A top that the parabola through the three values puts below this part of it is not searched.
+#: A top that the cubic through values and slopes at both ends puts below this part of it is not searched.
 _WORTH = 0.98
 _RATIO = 0.6180339887498949
 
@@ -45,6 +47,16 @@ def forces_in_step(slots, beta, t, h, y, work, x):
         work.probe[i] = dense_value(work.dense, y[i], x, i)
     evaluate(slots, beta, t + x * h, work.probe, work.slope, work.forces)
     return forces_of(slots, work.probe, work.slope)
+
+
+@kernel
+def slopes_of(slots, beta, t, y, dy, work):
+    """Ḟ of the same at state y at local time t."""
+    last = slots.chain.stiffness.size - 1
+    evaluate(slots, beta, t, y, work.slope, work.forces)
+    e, d = work.forces.e, positive_part(overlap(slots.preload, y, last))
+    elastic = 1.5 * slots.chain.stiffness[last] * root(d) * (dy[last] - dy[last + 1])
+    return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
 
 
 @part
@@ -84,11 +96,12 @@ def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
         prepare_dense(slots, beta, t, h, y, work)
         counts[1] += 3
     middle = forces_in_step(slots, beta, t, h, y, work, 0.5)
-    counts[1] += 1
+    rises = slopes_of(slots, beta, t, y, work.k[0], work)
+    falls = slopes_of(slots, beta, t + h, work.end, work.k[STAGES], work)
+    counts[1] += 3
     for q in range(3):
-        f0, f, f1 = start[q], middle[q], end[q]
-        peaks[q * OUTPUT] = max(peaks[q * OUTPUT], f)
-        rise, fall = 4.0 * f - 3.0 * f0 - f1, 4.0 * f - f0 - 3.0 * f1  # the parabola's slopes at both ends
-        if rise > 0.0 and fall > 0.0 and f + 0.125 * (f1 - f0) ** 2 / (rise + fall) > _WORTH * peaks[q * OUTPUT]:
+        peaks[q * OUTPUT] = max(peaks[q * OUTPUT], middle[q])
+        guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], h))
+        if rises[q] > 0.0 and falls[q] < 0.0 and guess > _WORTH * peaks[q * OUTPUT]:
             peaks[q * OUTPUT] = max(peaks[q * OUTPUT], top_in_step(slots, beta, t, h, y, work, q, counts))
     return True

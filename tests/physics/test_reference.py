@@ -45,8 +45,9 @@ def test_asked_for_more_it_comes_nearer(name):
     result = run(reference_scene(name).evolve(accuracy=1e-11), 0, true["record"]["scene"]["periods"], 8)
     # Kuwabara–Kono has no dashpot at onset to calm what rounding does there: it ends near 3e-12 and says not reached
     assert worst(result.displacement, true["displacement"]) < 1.2e-11
-    # the difference of two such computations is near their rounding, and three times that is stated
-    assert result.status == "done" or result.error_estimate < 1e-10
+    # the difference of two such computations is near their rounding; what is stated is no less than the rounding of all
+    # steps as it may have grown (granchain_core/stated.py)
+    assert result.status == "done" or result.error_estimate < 1e-9
 
 
 def test_undamped_chain_is_as_near_as_its_instability_lets_it_be():
