@@ -154,8 +154,10 @@ def run(arguments: argparse.Namespace) -> None:
     print(f"largest output force {result.max_output_force:.6g} N (elastic {result.max_output_force_elastic:.6g} N), "
           f"input force {result.max_input_force:.6g} N")
     errors = result.force_errors
-    print(f"relative errors: displacement {result.error_estimate:.1e}, output force {errors.output:.1e} (elastic "
-          f"{errors.elastic:.1e}), input force {errors.input:.1e}; energy closes to {result.energy_residual:.1e}; "
+    inward, outward, elastic = ("none claimed" if e is None else f"{e:.1e}"
+                                for e in (errors.input, errors.output, errors.elastic))
+    print(f"relative errors: displacement {result.error_estimate:.1e}, output force {outward} (elastic {elastic}), "
+          f"input force {inward}; energy closes to {result.energy_residual:.1e}; "
           f"{result.cost.method}, {result.cost.steps} steps, {result.cost.events} contact events, "
           f"{1e3 * result.cost.wall_s:.1f} ms")
 

@@ -58,8 +58,8 @@ class ForceErrors:
 
     @classmethod
     def of(cls, errors: np.ndarray | None) -> ForceErrors:
-        """From an array (3,) in that order."""
-        return cls() if errors is None else cls(*(float(e) for e in errors))
+        """From an array (3,) in that order; of a force that is zero no relative error is claimed."""
+        return cls() if errors is None else cls(*(float(e) if np.isfinite(e) else None for e in errors))
 
     @property
     def row(self) -> tuple[float, float, float]:
@@ -73,7 +73,10 @@ CAUTION = 2.0
 
 
 def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """How much each of three largest forces changed from one computation to a finer one, over the finer one's value."""
+    """How much each of three largest forces changed from one computation to a finer one, over the finer one's value.
+
+    Infinite where the finer one is zero and the other is not.
+    """
     change = np.abs(now - before)
     return np.divide(change, now, out=np.where(change > 0.0, np.inf, 0.0), where=now > 0.0)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..result import ForceErrors
 from ..steady.lane_job import LaneResult
 from ..steady.regime import Regime
 from .grid import Grid
@@ -44,7 +45,7 @@ def cell_of(result: LaneResult) -> np.ndarray:
     name = "failed" if result.failure else regime.name
     mean, error = regime.lyapunov or (np.nan, np.nan)
     return np.array((result.number, REGIMES.index(name), regime.period or 0, regime.periods_run, *result.tops,
-                     *((np.nan,) * 3 if result.errors is None else result.errors), _or_nan(regime.decay),
+                     *ForceErrors.of(result.errors).row, _or_nan(regime.decay),
                      _or_nan(regime.multiplier), mean, error), dtype=CELL)
 
 
