@@ -32,6 +32,8 @@ class Cost:
 class Jumps:
     """Forces that jump from 0 because a contact with a linear dashpot closes in motion.
 
+    Methods that do not locate events keep those of the first and last contact only.
+
     time (J,) [s], contact (J,) and force (J,) [N], the right limit; `missing` is how many more were not kept,
     `unresolved` how many belong to touches shorter than a step, which methods without located events do not resolve.
     """

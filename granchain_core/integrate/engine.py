@@ -31,7 +31,7 @@ from .state import Counts, State, new_stop, rest
 _LEAST_STEPS = 16
 
 #: Places for closings of a contact in one period; one that bounces more often does so ever more gently.
-_CLOSINGS = 16
+_CLOSINGS = 4
 #: Steps in a period up to which the driver's motion is tabulated.
 _LARGEST_TABLE = 200_000
 

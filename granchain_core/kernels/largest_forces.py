@@ -27,8 +27,9 @@ from .motion import contact_force
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 from .simd_math import clip, root
 
-#: A force below this part of the largest so far is watched without its slope.
-_FAINT = 0.5
+#: A force below this part of the largest so far is watched without its slope: a top is higher than the ends of its step
+#: by h²/8 of its curvature, some per cent of it.
+_FAINT = 0.9
 #: A force does not rise or fall by more than so many times its value in one step: behind a closing, where g has an
 #: infinite slope, the cubic's slope is bounded by this.
 _STEEPEST = 3.0
@@ -126,8 +127,11 @@ def watch_beside(slots, y, dy, e, h, event, closed, log):
             slope = force_slope(slots, y, dy, e, c, event, closed)
         follow(log, q, value, slope, h)
     d = 0.0 if event == last else positive_part(overlap(slots.preload, y, last))
-    stiffness = slots.chain.stiffness[last]
-    follow(log, 2, elastic_force(stiffness, d), 1.5 * stiffness * root(d) * (dy[last] - dy[last + 1]), h)
+    stiffness, slope = slots.chain.stiffness[last], np.nan
+    value = elastic_force(stiffness, d)
+    if value > _FAINT * log.peaks[OUTPUT_ELASTIC]:
+        slope = 1.5 * stiffness * root(d) * (dy[last] - dy[last + 1])
+    follow(log, 2, value, slope, h)
 
 
 @kernel
@@ -246,13 +250,13 @@ def brief_touch(before, after, rate, rate_after, h):
 
 @term
 def watch_crossings(law, slots, before, slope, y, dy, h, theta, dtheta, log):
-    """Note the contacts that closed between two states a step apart, for a method that does not look for events."""
+    """Note which end contacts closed between two states a step apart, for methods that look for no events."""
 
 
 @watch_crossings.of(LinearDashpot)
 def _(law, slots, before, slope, y, dy, h, theta, dtheta, log):
     inverse_mass, last = slots.chain.inverse_mass, slots.chain.stiffness.size - 1
-    for c in range(last + 1):
+    for c in range(0, last + 1, last):
         d0, d1 = overlap(slots.preload, before, c), overlap(slots.preload, y, c)
         if d0 > 0.0:
             continue
