@@ -17,7 +17,7 @@ from .effects.preload import overlap
 from .effects.tension import NoTension
 from .force_search import follow_step
 from .jit import kernel, part, term
-from .largest_forces import note_closings, stamp
+from .largest_forces import note_closings
 from .motion import copy
 from .sampling import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep
 from .slackening import first_kink, leave_slack, note_slack
@@ -233,7 +233,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
     """
     m = slots.chain.inverse_mass.size
     spacing = period / grid
-    g, done, row, events, noted = first, 0, 1, 0, 0
+    g, done, row, events = first, 0, 1, 0
     t = g * spacing
     evaluate(slots, beta, t, y, work.k[0], work.forces)
     if every > 0:
@@ -253,8 +253,6 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
         ready, lost = False, slack_loss(slots.balance, slots, y, work.end)
         if every > 0:
             ready = follow_step(slots, beta, t, h, y, work, False, log.peaks, counts)
-            noted = log.met[0]
-            note_closings(slots.dissipation, slots, y, work.k[0], work.end, work.k[STAGES], beta * t, beta * h, log)
         while done < points and (g + 1) * spacing <= end + 1e-13 * period:
             g += 1
             done += 1
@@ -267,7 +265,8 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
                 keep(slots, row, work.probe, work.slope, work.forces.e, samples)
                 row += 1
         if every > 0:
-            stamp(log, noted, row - 1)
+            log.met[2] = row - 1
+            note_closings(slots.dissipation, slots, y, work.k[0], work.end, work.k[STAGES], beta * t, beta * h, log)
         copy(work.end, y)
         copy(work.k[STAGES], work.k[0])
         add_to_account(slots.balance, y, 0.0, lost)

@@ -14,7 +14,7 @@ import numpy as np
 
 from .dop853 import evaluate, new_scale
 from .jit import kernel, part
-from .largest_forces import stamp, watch_crossings, watch_state
+from .largest_forces import end_overlaps, watch_crossings, watch_state
 from .motion import copy
 from .sampling import CANCELLED, DONE, NOT_FINITE, STEP_TOO_SMALL, first_not_finite, keep
 
@@ -111,10 +111,10 @@ def run_without_events(method, slots, beta, period, y, work, clock, first, point
             status, h = step(method, slots, beta, t, limit, y, work, clock, counts)
             if status != DONE:
                 return status, row if every > 0 else done
-            theta, noted = beta * t, log.met[0]
+            theta, log.met[2] = beta * t, row - 1
             t = limit if limit - (t + h) < 1e-13 * period else t + h
-            watch_crossings(slots.dissipation, slots, y, work.k[0], work.end, work.k[_STAGES], h, theta, beta * h, log)
-            stamp(log, noted, row - 1)
+            before = end_overlaps(slots.dissipation, slots, y, work.k[0])
+            watch_crossings(slots.dissipation, slots, before, work.end, work.k[_STAGES], h, theta, beta * h, log)
             copy(work.end, y)
             copy(work.k[_STAGES], work.k[0])
             new_scale(y, work, m)

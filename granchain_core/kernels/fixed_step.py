@@ -25,8 +25,8 @@ from .events import (
     first_event,
     note_event,
 )
-from .jit import kernel, part, term
-from .largest_forces import watch_crossings, watch_event
+from .jit import inlined_term, kernel, part, term
+from .largest_forces import end_overlaps, watch_crossings, watch_event
 from .motion import copy, motion
 
 
@@ -133,7 +133,7 @@ def _(balance, excess, y):
     y[y.size - 2] -= excess
 
 
-@term
+@inlined_term
 def step(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     """Advance y by one step from half-step index 2j of the drive table; slope in stages.k[0] before and after.
 
@@ -154,12 +154,11 @@ def whole_step(slots, drive, j, dtheta, h, y, stages):
 
 @step.of(Rk4)
 def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
+    before = end_overlaps(slots.dissipation, slots, y, stages.k[0])
     ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
-    k, end = stages.k, stages.end
-    motion(slots, ub, vb, end, k[3], stages.forces)
-    watch_crossings(slots.dissipation, slots, y, k[0], end, k[3], h, theta, dtheta, log)
-    for i in range(y.size):
-        y[i], k[0, i] = end[i], k[3, i]
+    copy(stages.end, y)
+    motion(slots, ub, vb, y, stages.k[0], stages.forces)
+    watch_crossings(slots.dissipation, slots, before, y, stages.k[0], h, theta, dtheta, log)
     counts[0] += 1
     counts[1] += 4
     return h

@@ -50,10 +50,21 @@ def forces_in_step(slots, beta, t, h, y, work, x):
 
 
 @kernel
-def slopes_of(slots, beta, t, y, dy, work):
-    """Ḟ of the same at state y at local time t."""
+def keep_end_forces(slots, y, dy, e):
+    """The elastic forces, those of a cut included, of the two outer contacts at either end."""
     last = slots.chain.stiffness.size - 1
-    evaluate(slots, beta, t, y, work.slope, work.forces)
+    for q in range(4):
+        c = min(q, last) if q < 2 else max(last + q - 3, 0)
+        d = positive_part(overlap(slots.preload, y, c))
+        damped = damping(slots.dissipation, d) * (dy[c] - dy[c + 1])
+        e[c] = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped) - damped
+
+
+@kernel
+def slopes_of(slots, y, dy, work):
+    """Ḟ of the same at state y."""
+    last = slots.chain.stiffness.size - 1
+    keep_end_forces(slots, y, dy, work.forces.e)
     e, d = work.forces.e, positive_part(overlap(slots.preload, y, last))
     elastic = 1.5 * slots.chain.stiffness[last] * root(d) * (dy[last] - dy[last + 1])
     return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
@@ -96,9 +107,9 @@ def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
         prepare_dense(slots, beta, t, h, y, work)
         counts[1] += 3
     middle = forces_in_step(slots, beta, t, h, y, work, 0.5)
-    rises = slopes_of(slots, beta, t, y, work.k[0], work)
-    falls = slopes_of(slots, beta, t + h, work.end, work.k[STAGES], work)
-    counts[1] += 3
+    rises = slopes_of(slots, y, work.k[0], work)
+    falls = slopes_of(slots, work.end, work.k[STAGES], work)
+    counts[1] += 1
     for q in range(3):
         peaks[q * OUTPUT] = max(peaks[q * OUTPUT], middle[q])
         guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], h))

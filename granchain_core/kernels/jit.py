@@ -75,7 +75,7 @@ def part(function):
     return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
 
 
-def term(absent):
+def term(absent, forceinline=False):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 
     The decorated function is the code for an absent effect (slot None). `function.of(Slot)` registers the code
@@ -89,7 +89,7 @@ def term(absent):
     generic.__name__ = generic.__qualname__ = absent.__name__
     generic.__doc__ = absent.__doc__
 
-    @overload(generic, strict=False, jit_options=_OPTIONS)
+    @overload(generic, strict=False, jit_options=_OPTIONS | {"forceinline": forceinline})
     def _typed(*args):
         slot = args[0]
         found = slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)
@@ -108,3 +108,8 @@ def term(absent):
 
     generic.of, generic.absent_for = of, absent_for
     return generic
+
+
+def inlined_term(absent):
+    """A term that becomes part of its caller's code: for one that takes many arguments and is called at each step."""
+    return term(absent, forceinline=True)

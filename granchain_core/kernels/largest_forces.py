@@ -22,7 +22,7 @@ from .effects.foundation import pull_back
 from .effects.preload import overlap
 from .effects.tension import cut_at_zero
 from .events import GAP, RATE, TINY, hermite_turn
-from .jit import inlined, kernel, term
+from .jit import inlined, kernel, part, term
 from .motion import contact_force
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 from .simd_math import clip, root
@@ -40,8 +40,8 @@ class ForceLog(NamedTuple):
 
     `peaks` (17,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value and
     slope of each force at the last state watched. Rows of `closings` (C, 4) are the number of the last sample before a
-    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (2,) is how many there were, and
-    how many of them were touches within a step of a method that does not locate them.
+    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (3,) is how many there were, how
+    many of them were touches within a step of a method that does not locate them, and the number of the last sample.
     """
 
     peaks: np.ndarray
@@ -53,7 +53,7 @@ class ForceLog(NamedTuple):
 def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
     """A log with places for so many closings; the forces go on from the log before."""
     peaks, last = (np.zeros(PEAKS), np.zeros((3, 2))) if before is None else (before.peaks, before.last)
-    return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(2, dtype=np.int64))
+    return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(3, dtype=np.int64))
 
 
 @kernel
@@ -134,10 +134,18 @@ def watch_beside(slots, y, dy, e, h, event, closed, log):
     follow(log, 2, value, slope, h)
 
 
-@kernel
+@part
 def watch_state(slots, y, dy, e, h, log):
-    """The same where no contact changes."""
-    watch_beside(slots, y, dy, e, h, -1, False, log)
+    """The same where no contact changes; three values where none of them can be part of a top."""
+    last, peaks = e.size - 1, log.peaks
+    pushed, passed = contact_force(slots, y, dy, e, 0), contact_force(slots, y, dy, e, last)
+    elastic = elastic_force(slots.chain.stiffness[last], positive_part(overlap(slots.preload, y, last)))
+    if (pushed > _FAINT * peaks[INPUT] or passed > _FAINT * peaks[OUTPUT]
+            or elastic > _FAINT * peaks[OUTPUT_ELASTIC]):
+        watch_beside(slots, y, dy, e, h, -1, False, log)
+    else:
+        log.last[0, 0], log.last[1, 0], log.last[2, 0] = pushed, passed, elastic
+        log.last[0, 1] = log.last[1, 1] = log.last[2, 1] = np.nan
 
 
 @kernel
@@ -149,7 +157,7 @@ def watch_event(slots, y, dy, e, h, c, theta, log):
     note_closing(slots.dissipation, rate, c, e.size - 1, theta, log)
 
 
-@kernel
+@part
 def watch_ends(slots, ends, c, theta, log):
     """Forces at the event of contact c, overlaps and rates in `ends` (events.py), where they are not followed."""
     last = slots.chain.stiffness.size - 1
@@ -181,7 +189,8 @@ def _(law, rate, c, last, theta, log):
         place = log.met[0]
         log.met[0] = place + 1
         if place < log.closings.shape[0]:
-            log.closings[place, 1], log.closings[place, 2], log.closings[place, 3] = theta, c, force
+            row = log.closings[place]
+            row[0], row[1], row[2], row[3] = log.met[2], theta, c, force
 
 
 @term
@@ -206,13 +215,6 @@ def _(law, slots, y, dy, end, end_slope, theta, dtheta, log):
 
 note_closing.absent_for(*SMOOTH_LAWS)
 note_closings.absent_for(*SMOOTH_LAWS)
-
-
-@kernel
-def stamp(log, first, row):
-    """Write the number of the last sample to the closings from number `first` on."""
-    for place in range(first, min(log.met[0], log.closings.shape[0])):
-        log.closings[place, 0] = row
 
 
 @inlined
@@ -249,26 +251,48 @@ def brief_touch(before, after, rate, rate_after, h):
 
 
 @term
-def watch_crossings(law, slots, before, slope, y, dy, h, theta, dtheta, log):
-    """Note which end contacts closed between two states a step apart, for methods that look for no events."""
+def end_overlaps(law, slots, y, dy):
+    """Overlap and rate of the first and the last contact at the start of a step. Absent: no force jumps there."""
+    return 0.0
+
+
+@end_overlaps.of(LinearDashpot)
+def _(law, slots, y, dy):
+    last = slots.chain.stiffness.size - 1
+    return (overlap(slots.preload, y, 0), dy[0] - dy[1], overlap(slots.preload, y, last), dy[last] - dy[last + 1])
+
+
+@term
+def watch_crossings(law, slots, before, y, dy, h, theta, dtheta, log):
+    """Note which end contacts closed between two states a step apart, for methods that look for no events.
+
+    `before` are the overlaps and rates of `end_overlaps` at the first of them.
+    """
 
 
 @watch_crossings.of(LinearDashpot)
-def _(law, slots, before, slope, y, dy, h, theta, dtheta, log):
-    inverse_mass, last = slots.chain.inverse_mass, slots.chain.stiffness.size - 1
-    for c in range(0, last + 1, last):
-        d0, d1 = overlap(slots.preload, before, c), overlap(slots.preload, y, c)
-        if d0 > 0.0:
-            continue
-        s0, s1 = slope[c] - slope[c + 1], dy[c] - dy[c + 1]
-        if d1 > 0.0:
-            own = law.coefficient * (inverse_mass[c] + inverse_mass[c + 1])
-            s, rate = closing_rate(d0, d1, s0, s1 + own * d1, own, h)
-            note_closing(law, rate, c, last, theta + s * dtheta, log)
-        elif s0 > 0.0 and s1 < 0.0:
-            rate = brief_touch(d0, d1, s0, s1, h)
-            note_closing(law, rate, c, last, theta + 0.5 * dtheta, log)
-            log.met[1] += rate > 0.0
+def _(law, slots, before, y, dy, h, theta, dtheta, log):
+    last = slots.chain.stiffness.size - 1
+    first_before, first_rate, last_before, last_rate = before
+    if first_before <= 0.0:
+        watch_crossing(law, slots, 0, first_before, first_rate, y, dy, h, theta, dtheta, log)
+    if last_before <= 0.0:
+        watch_crossing(law, slots, last, last_before, last_rate, y, dy, h, theta, dtheta, log)
 
 
+@part
+def watch_crossing(law, slots, c, before, rate, y, dy, h, theta, dtheta, log):
+    """Note whether contact c, open at the start of the step, closed in it or touched."""
+    after, rate_after = overlap(slots.preload, y, c), dy[c] - dy[c + 1]
+    if after > 0.0:
+        own = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])
+        s, jump = closing_rate(before, after, rate, rate_after + own * after, own, h)
+        note_closing(law, jump, c, slots.chain.stiffness.size - 1, theta + s * dtheta, log)
+    elif rate > 0.0 and rate_after < 0.0:
+        jump = brief_touch(before, after, rate, rate_after, h)
+        note_closing(law, jump, c, slots.chain.stiffness.size - 1, theta + 0.5 * dtheta, log)
+        log.met[1] += jump > 0.0
+
+
+end_overlaps.absent_for(*SMOOTH_LAWS)
 watch_crossings.absent_for(*SMOOTH_LAWS)

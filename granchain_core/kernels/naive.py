@@ -16,8 +16,7 @@ from .effects.preload import overlap
 from .effects.tension import cut_at_zero
 from .fixed_step import drive_displacement, drive_velocity, step
 from .jit import kernel
-from .largest_forces import watch_crossings
-from .motion import copy
+from .largest_forces import end_overlaps, watch_crossings
 
 
 class Rk4Naive(NamedTuple):
@@ -54,6 +53,7 @@ def naive_motion(slots, u0, v0, y, dy, forces):
 @step.of(Rk4Naive)
 def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     k, stage, forces = stages.k, stages.stage, stages.forces
+    before = end_overlaps(slots.dissipation, slots, y, k[0])
     ua, va = drive_displacement(slots, drive, 2 * j + 1, dtheta), drive_velocity(slots, drive, 2 * j + 1, dtheta)
     ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
     for i in range(y.size):
@@ -65,12 +65,10 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     for i in range(y.size):
         stage[i] = y[i] + h * k[2, i]
     naive_motion(slots, ub, vb, stage, k[3], forces)
-    copy(y, stages.end)
     for i in range(y.size):
         y[i] += h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
-    naive_motion(slots, ub, vb, y, k[3], forces)
-    watch_crossings(slots.dissipation, slots, stages.end, k[0], y, k[3], h, theta, dtheta, log)
-    copy(k[3], k[0])
+    naive_motion(slots, ub, vb, y, k[0], forces)
+    watch_crossings(slots.dissipation, slots, before, y, k[0], h, theta, dtheta, log)
     counts[0] += 1
     counts[1] += 4
     return h
@@ -79,8 +77,7 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
 @step.of(VerletNaive)
 def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     m, k = slots.chain.inverse_mass.size, stages.k
-    copy(y, stages.end)
-    copy(k[0], k[1])
+    before = end_overlaps(slots.dissipation, slots, y, k[0])
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         y[i] += h * y[m + i]
@@ -89,7 +86,7 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         k[0, i] = y[m + i]
-    watch_crossings(slots.dissipation, slots, stages.end, k[1], y, k[0], h, theta, dtheta, log)
+    watch_crossings(slots.dissipation, slots, before, y, k[0], h, theta, dtheta, log)
     counts[0] += 1
     counts[1] += 1
     return h

@@ -11,8 +11,8 @@ from .effects.balance import Balance, account_ends
 from .effects.contact import elastic_force, positive_part
 from .effects.preload import overlap
 from .fixed_step import PATIENCE, drive_displacement, drive_velocity, step
-from .jit import kernel, term
-from .largest_forces import stamp, watch_state
+from .jit import inlined_term, kernel, term
+from .largest_forces import watch_state
 from .motion import contact_force, copy, motion, stored_energy
 from .peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
 from .wide import Wide
@@ -76,7 +76,7 @@ def keep_strobe(y, dy, strobe):
         strobe[1, i] = dy[i]
 
 
-@term
+@inlined_term
 def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
 
@@ -165,9 +165,8 @@ def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples,
     for row in range(1, samples.displacement.shape[0]):
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, row - 1
-        noted = log.met[0]
+        log.met[2] = row - 1
         advance(stages.along, method, slots, drive, j, stride, dtheta, h, y, stages, log, counts, stop)
-        stamp(log, noted, row - 1)
         j = 0 if j + stride == n else j + stride
         if stop[0] != 0:
             return CANCELLED, row

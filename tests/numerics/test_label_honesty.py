@@ -72,7 +72,8 @@ def test_a_slow_orbit_is_approached_and_an_unstable_one_is_not() -> None:
     now, later = (np.linalg.norm((s - left.point.x) / sizes(left.point.x), axis=1).max()
                   for s in left.strobe.passed(further, 16, 16))
     assert later / now == pytest.approx(left.modulus**32, rel=0.1)  # in a turn of 16 orbits, and still nearly linear
-    assert NearbyOrbit(left.strobe, left.point, further, left.modulus).drawn_out() is None
+    beyond = left.point.x + 1.5 * (further - left.point.x)
+    assert NearbyOrbit(left.strobe, left.point, beyond, left.modulus).drawn_out() is None
 
 
 def test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit() -> None:
