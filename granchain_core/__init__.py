@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from .errors import BadInput, Cancelled, NumbersFailed
 from .integrate import State
-from .live import LiveChain
 from .observe import observe
 from .result import Cost, Run
-from .run import run
+from .run.live import LiveChain
+from .run.run import run
 from .scene import Scene, scene, scene_names
 from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
 from .steady.regime import Regime

@@ -21,7 +21,7 @@ from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import no_tension
-from .kernels.motion import Forces, Slots
+from .kernels.equations.motion import Forces, Slots
 from .scene import Scene
 
 #: Step of the live method in scaled time where overlaps are about one drive amplitude; RK4 in w is then good to

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .integrate.engine import Counts, Engine
-from .kernels.sampling import Samples
+from .kernels.samples import Samples
 from .scene import Scene
 from .steady.regime import Regime
 

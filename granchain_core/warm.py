@@ -10,10 +10,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from .integrate import Engine, Setting
+from .integrate.batch import LaneBlock, alike, can_share_lanes, scaled_state
 from .integrate.engine import new_stop, rest
-from .integrate.lane_block import LaneBlock, alike, can_share_lanes, scaled_state
 from .kernels.jit import CACHE_FOLDER
-from .kernels.wide import WIDTHS
+from .kernels.rk4.short_chain import WIDTHS
 from .lower import lower
 from .scene import Scene
 from .steady.lyapunov import exponents, exponents_in_pairs

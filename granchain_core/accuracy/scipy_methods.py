@@ -10,9 +10,9 @@ from scipy.integrate import DOP853, LSODA, RK45
 from scipy.optimize import brentq
 
 from ..errors import Cancelled, NumbersFailed
+from ..integrate.batch import scaled_state
 from ..integrate.engine import Counts, new_stop, rest
-from ..integrate.lane_block import scaled_state
-from ..kernels.dop853 import evaluate
+from ..kernels.dop853.step import evaluate
 from ..lower import Lowered, lower
 from ..scene import Scene
 

@@ -18,7 +18,7 @@ from ..integrate.engine import rest
 from ..orbits import Orbit
 from ..result import ForceErrors
 from ..scene import Scene
-from ..steady.lane_job import LaneResult, Start
+from ..steady.batch_job import LaneResult, Start
 from ..steady.regime import Regime
 from .compute import settle_on_all_cores
 from .sameness import LIVE, Found, found, merged

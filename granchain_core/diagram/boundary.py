@@ -23,7 +23,7 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
 from ..integrate import State
-from ..integrate.lane_block import scaled_state
+from ..integrate.batch import scaled_state
 from ..orbits.flow import StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene

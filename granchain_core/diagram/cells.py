@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..result import ForceErrors
-from ..steady.lane_job import LaneResult
+from ..steady.batch_job import LaneResult
 from ..steady.regime import Regime
 from .grid import Grid
 

@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
+from ..integrate.batch import can_share_lanes
 from ..integrate.engine import new_stop
-from ..integrate.lane_block import can_share_lanes
 from ..scene import Scene
+from ..steady.batch_job import LaneResult, Start
+from ..steady.batch_settle import lane_states
 from ..steady.curve import CurvePoint, safe_point, second_look
-from ..steady.lane_curve import lane_states
-from ..steady.lane_job import LaneResult, Start
 from ..steady.threads import on_all_cores
 from .cells import Diagram, cell_of, empty_cells
 from .grid import Axis, Grid

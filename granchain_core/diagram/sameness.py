@@ -16,11 +16,11 @@ from scipy.spatial.distance import cdist
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting, State
-from ..integrate.lane_block import scaled_state
+from ..integrate.batch import scaled_state
 from ..lower import lower
 from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
-from ..steady.lane_job import LaneResult
+from ..steady.batch_job import LaneResult
 
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are one; coarser ones where it failed.
 _SAME = 1e-7

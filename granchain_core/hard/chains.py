@@ -14,7 +14,7 @@ from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.preload import Preload
 from ..kernels.effects.tension import no_tension
-from ..kernels.sampling import Samples
+from ..kernels.samples import Samples
 from ..scene import Scene, scene
 
 #: Speed of two colliding beads in scaled units, m* = 1/2: contact time 3.2180655 (m*/K)^{2/5} v^{-1/5}.

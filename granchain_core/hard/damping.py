@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import NumbersFailed
 from ..integrate import Engine, Setting
 from ..kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
-from ..run import run
+from ..run.run import run
 from ..scene import Scene, scene
 from .case import Figure, Picture, Trace
 from .chains import Bench, contact_time

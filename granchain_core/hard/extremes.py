@@ -9,7 +9,7 @@ import numpy as np
 from ..integrate import Engine, Setting, State
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
-from ..run import run
+from ..run.run import run
 from ..scene import Scene, scene
 from .case import Figure, Picture, Trace
 from .drafts import plain_slope, rk4

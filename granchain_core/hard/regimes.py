@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..drift import observer_drift
 from ..integrate import Engine, Setting
-from ..integrate.lane_block import scaled_state
+from ..integrate.batch import scaled_state
+from ..observe.drift import observer_drift
 from ..orbits import periodic_orbit
 from ..orbits.flow import StroboscopicMap
-from ..run import run
+from ..run.run import run
 from ..scene import scene
 from ..steady.curve import CurvePoint, iter_curve
 from ..steady.regime import find_period

@@ -6,20 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from ..kernels import sampling
-from ..kernels.along import Along
-from ..kernels.certified import run_certified
-from ..kernels.dop853 import ALL_STAGES, Dop853, Work
-from ..kernels.dopri5 import Dopri5, run_without_events
+from ..kernels.dop853.located import run_certified
+from ..kernels.dop853.step import ALL_STAGES, Dop853, Work
 from ..kernels.effects.driver import Harmonic
-from ..kernels.events import ENDS
-from ..kernels.fixed_step import Rk4, Rk4Split, Stages
-from ..kernels.largest_forces import new_log
-from ..kernels.motion import place
-from ..kernels.naive import Rk4Naive, VerletNaive, naive_motion
-from ..kernels.peaks import MEMORY, ROWS, forget, next_period
-from ..kernels.simd import LANES, aligned
-from ..kernels.wide import BLOCK, KEPT, WIDTHS, Wide
+from ..kernels.equations.motion import place
+from ..kernels.equations.velocity_form import Rk4Naive, VerletNaive, naive_motion
+from ..kernels.forces.largest import new_log
+from ..kernels.forces.peaks import MEMORY, ROWS, forget, next_period
+from ..kernels.rk4.contact_events import ENDS
+from ..kernels.rk4.long_chain import Along
+from ..kernels.rk4.run import run_periods, run_samples
+from ..kernels.rk4.short_chain import BLOCK, KEPT, WIDTHS, Wide
+from ..kernels.rk4.step import Rk4, Rk4Split, Stages
+from ..kernels.samples import Samples
+from ..kernels.simd.vector import LANES, aligned
 from ..lower import Lowered, lower
 from ..scene import Scene
 from .failures import check_start, raise_for
@@ -37,7 +37,6 @@ _LARGEST_TABLE = 200_000
 
 _FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split, "rk4-naive": Rk4Naive, "verlet-naive": VerletNaive}
 #: Adaptive methods with the kernel that runs them.
-_ADAPTIVE: dict[str, Any] = {"dop853": (Dop853, run_certified), "dopri5": (Dopri5, run_without_events)}
 
 
 class Engine:
@@ -120,8 +119,7 @@ class Engine:
 
     def _prepare_adaptive(self) -> None:
         lo = self.lowered
-        kind, self._run = _ADAPTIVE[self.setting.method]
-        self.method = kind(self.setting.tolerance, lo.period / _LEAST_STEPS)
+        self.method = Dop853(self.setting.tolerance, lo.period / _LEAST_STEPS)
         size = lo.size
         self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
                          slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2), forces=lo.forces())
@@ -177,14 +175,14 @@ class Engine:
 
     # --- motion --------------------------------------------------------------------------------------------
 
-    def empty_samples(self, rows: int) -> sampling.Samples:
+    def empty_samples(self, rows: int) -> Samples:
         """Arrays for `rows` samples in scaled units."""
         n = self.lowered.beads
         energy = np.zeros((rows, 3)) if self.lowered.slots.balance is not None else None
-        return sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)
+        return Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)
 
     @flushed
-    def record(self, count: int) -> sampling.Samples:
+    def record(self, count: int) -> Samples:
         """Advance by `count` samples and keep them, the present one first: count + 1 rows.
 
         Raises `NumbersFailed`, `Cancelled`.
@@ -195,11 +193,11 @@ class Engine:
         every = self.grid // self.samples
         lo, work = self.lowered, self.work
         if self._adaptive:
-            status, rows = self._run(self.method, lo.slots, lo.beta, lo.period, self.y, work, self.clock,
-                                     self.grid_index, count * every, self.grid, every, samples, self.log,
-                                     self.counts.array, self.stop)
+            status, rows = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, work, self.clock,
+                                         self.grid_index, count * every, self.grid, every, samples, self.log,
+                                         self.counts.array, self.stop)
         else:
-            status, rows = sampling.run_samples(self.method, lo.slots, self.drive, self.h, self.y, work,
+            status, rows = run_samples(self.method, lo.slots, self.drive, self.h, self.y, work,
                                                 self.grid_index, every, samples, self.log, self.counts.array,
                                                 self.stop)
         self.grid_index = (self.grid_index + count * every) % self.grid
@@ -256,7 +254,7 @@ class Engine:
         if self._adaptive:
             self._certified_periods(strobes, tops, watch)
         else:
-            status, done = sampling.run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
+            status, done = run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
                                                 strobes, self.log, tops, self.counts.array, self.stop)
             raise_for(self, status, done, self._before)
         self.elapsed += count
@@ -267,7 +265,7 @@ class Engine:
         strobes[0] = self.y[:row], self.work.k[0, :row]
         for p in range(len(tops)):
             next_period(self.log.peaks)
-            status, _ = self._run(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
+            status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
                                   self.grid, self.grid, self.grid if watch else 0, keep, self.log,
                                   self.counts.array, self.stop)
             self.raise_for(status, p)

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import Cancelled, NumbersFailed
-from ..kernels import sampling
-from ..kernels.largest_forces import new_log
+from ..kernels import status as outcome
+from ..kernels.forces.largest import new_log
+from ..kernels.rk4.run import run_samples
 from .methods import METHODS
 
 if TYPE_CHECKING:
@@ -43,17 +44,17 @@ def raise_for(engine: Engine, status: int, done: float, before: Before | None) -
 
     `done` is how many drive periods of the call are certain, `before` where it started, None where nobody kept that.
     """
-    if status == sampling.DONE:
+    if status == outcome.DONE:
         return
-    if status == sampling.CANCELLED:
+    if status == outcome.CANCELLED:
         raise Cancelled
     periods = engine.elapsed + done
     when = _when(engine, periods)
-    if status == sampling.NOT_FINITE:
+    if status == outcome.NOT_FINITE:
         bead, step = _located(engine, done, before)
         raise _failed(engine, bead, periods, step)
     scene, method = engine.lowered.scene, engine.setting.method
-    if status == sampling.STEP_TOO_SMALL:
+    if status == outcome.STEP_TOO_SMALL:
         raise NumbersFailed(f"The step of {method} shrank to nothing {when}; ask for less accuracy than "
                             f"{scene.accuracy:g} or use method rk4-split.", "step-too-small",
                             time=periods * scene.period, cost=_cost(engine))
@@ -120,7 +121,7 @@ def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: i
     j = first
     while j < last:
         stride = min(last, (j // n + 1) * n) - j
-        sampling.run_samples(engine.method, engine.lowered.slots, engine.drive, engine.h, now, work, j % n, stride,
+        run_samples(engine.method, engine.lowered.slots, engine.drive, engine.h, now, work, j % n, stride,
                              kept, log, np.zeros(4, dtype=np.int64), np.zeros(1, dtype=np.uint8))
         j += stride
     return now, work.k

@@ -89,9 +89,6 @@ METHODS: dict[str, Method] = {
         Method("verlet-naive", "velocity Verlet in (u, v), as one would write it first", 1.0, 1.0, False, False, True,
                "no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
                "Verlet 1967; Swope et al. 1982", "uv"),
-        Method("dopri5", "Dormand–Prince 5 in w, error control without events", 5.4, 4.0, False, True, False,
-               "a contact that opens and closes within a step is not resolved; its jump is read off the step's ends",
-               "Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, section II.5"),
         Method("dop853", "Dormand–Prince 8 in w, contact events located", 8.5, 7.5, True, True, False,
                "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5", order_with_cut=7.5),
     )

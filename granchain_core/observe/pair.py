@@ -14,9 +14,9 @@ import numpy as np
 from ..integrate import Engine, Setting, State
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import FAR
+from ..kernels.effects.given_force import Echo
 from ..kernels.effects.preload import Preload
-from ..kernels.effects.pushed import Echo
-from ..kernels.sampling import Samples
+from ..kernels.samples import Samples
 from ..lower import Lowered, lower
 from ..scene import Scene
 

@@ -9,14 +9,14 @@ import numpy as np
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..integrate import State
 from ..integrate.engine import Counts
-from ..kernels import sampling
-from ..kernels.effects.pushed import Sampled
-from ..kernels.events import ENDS
-from ..kernels.fixed_step import Rk4Split, Stages
-from ..kernels.largest_forces import new_log
-from ..kernels.motion import place
-from ..kernels.observed import run_observed
-from ..kernels.peaks import MEMORY, ROWS, forget
+from ..kernels.effects.given_force import Sampled
+from ..kernels.equations.motion import place
+from ..kernels.forces.largest import new_log
+from ..kernels.forces.peaks import MEMORY, ROWS, forget
+from ..kernels.rk4 import run as sampling
+from ..kernels.rk4.contact_events import ENDS
+from ..kernels.rk4.observed import run_observed
+from ..kernels.rk4.step import Rk4Split, Stages
 from ..lower import lower
 from ..scene import Scene
 from .record import ForceRecord

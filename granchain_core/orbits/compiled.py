@@ -6,9 +6,9 @@ import numpy as np
 
 from ..scene import Scene
 from ..warm import mark_warm
-from .branch_axis import KnobAxis
-from .branch_equations import BranchEquations
-from .branch_point import record_along
+from .branch.axis import KnobAxis
+from .branch.equations import BranchEquations
+from .branch.point import record_along
 from .flow import StroboscopicMap
 
 #: Names of these pieces of a structure's kernels, beside those of `granchain_core.warm`.

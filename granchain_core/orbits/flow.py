@@ -8,13 +8,13 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import Engine, Setting
-from ..kernels.dop853_tableau import STAGES
+from ..kernels.dop853.event_step import Path
+from ..kernels.dop853.flow import run_flow
+from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.dissipation import LinearDashpot
-from ..kernels.flow import run_flow
-from ..kernels.flow_step import Path
+from ..kernels.equations.tangent import Tangent
 from ..kernels.saltation import VelocityTangent
-from ..kernels.simd import LANES, aligned
-from ..kernels.tangent import Tangent
+from ..kernels.simd.vector import LANES, aligned
 from ..lower import Lowered
 from ..scene import Scene
 

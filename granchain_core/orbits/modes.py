@@ -18,7 +18,7 @@ from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting
-from ..integrate.lane_block import scaled_state
+from ..integrate.batch import scaled_state
 from ..steady.poincare import Section
 from .flow import TOLERANCE, StroboscopicMap
 from .krylov import derivative_at

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import State
-from ..integrate.lane_block import scaled_state, state_of
+from ..integrate.batch import scaled_state, state_of
 from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import State
-from ..integrate.lane_block import scaled_state
+from ..integrate.batch import scaled_state
 from ..scene import Scene
 from .flow import StroboscopicMap
 from .orbit import Orbit, periodic_orbit

@@ -12,13 +12,13 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed, unknown_name
 from ..integrate import Engine, State
+from ..integrate.batch import can_share_lanes
 from ..integrate.engine import new_stop
-from ..integrate.lane_block import can_share_lanes
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, ForceErrors, relative_changes
 from ..scene import Scene
-from .lane_curve import lane_results
-from .lane_job import LaneResult
+from .batch_job import LaneResult
+from .batch_settle import lane_results
 from .regime import Regime
 from .settle import Settling, relax, settle
 from .threads import on_all_cores

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine
-from ..integrate.lane_block import NEVER, LaneBlock
-from ..kernels.lane_looks import REMEMBERED
-from ..kernels.largest_forces import new_log
-from ..kernels.section import LONGEST_PERIOD
-from ..kernels.shadow import run_shadowed
+from ..integrate.batch import NEVER, LaneBlock
+from ..kernels.batch.period_end import REMEMBERED
+from ..kernels.forces.largest import new_log
+from ..kernels.rk4.lyapunov import run_shadowed
+from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..lower import Lowered
 
 #: Distance of the shadow in drive amplitudes: far above rounding, far below the kinks of the contacts.

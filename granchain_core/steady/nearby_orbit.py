@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..kernels.section import LONGEST_PERIOD
+from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scene import Scene
 from .regime import changes
 from .strobe_map import FixedPoint, StrobeMap, fixed_point, sizes

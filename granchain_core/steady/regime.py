@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..kernels import section
-from ..kernels.section import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
+from ..kernels.strobes import periodicity as section
+from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.accuracy import measured_for
-from app.current import locate, page_setting
-from app.views.accuracy import described_reference, described_rows, described_ways, lesson_message
-from app.words import duration, short_error
+from app.page.active_setting import locate, page_setting
+from app.page.format import duration, short_error
+from app.pages.accuracy.page import measured_for
+from app.pages.accuracy.view import described_reference, described_rows, described_ways, lesson_message
 from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, ways
 from granchain_core.accuracy.naive import lesson
@@ -22,7 +22,7 @@ from granchain_core.steady import settle as settle_module
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rule in app/current.py is the one of steady/settle: the finest engine of a certified picture."""
+    """The rule in app/page/active_setting.py is the one of steady/settle: the finest engine of a certified picture."""
     used: list[Setting] = []
     engine = settle_module.Engine
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.views.branches import described_orbit, described_special, drawn_orbits
+from app.pages.branches.view import described_orbit, described_special, drawn_orbits
 from granchain_core import scene
 from granchain_core.orbits import Branch, continue_branch
 

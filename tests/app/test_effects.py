@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from app.account import with_account
-from app.effect_switches import ACCOUNT, EFFECTS, changes, present, variants
-from app.explain import slots_of
-from app.session import Session
+from app.cli.explain import slots_of
+from app.page.energy_residual import with_account
+from app.page.session import Session
+from app.pages.effects.switches import ACCOUNT, EFFECTS, changes, present, variants
 from granchain_core import BadInput, scene, scene_names, settled
 from granchain_core.integrate.engine import new_stop
 from granchain_core.warm import structure

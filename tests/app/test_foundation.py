@@ -7,7 +7,7 @@ import math
 import pytest
 
 from app.cli import main
-from app.foundation import beside_kappa, kept_along, kept_spring
+from app.pages.effects.foundation import beside_kappa, kept_along, kept_spring
 from granchain_core import scene, settled
 
 RIG = scene("rig")

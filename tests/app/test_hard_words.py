@@ -10,8 +10,8 @@ import time
 import numpy as np
 import pytest
 
-from app.hard_work import CaseProcess, Ended, case_of
-from app.views.hard import described, described_cases, figure_beside, figures, picture_message, summary
+from app.pages.check.view import described, described_cases, figure_beside, figures, picture_message, summary
+from app.pages.check.work import CaseProcess, Ended, case_of
 from granchain_core import Cancelled, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Figure, Picture, Trace, run_case
 from granchain_core.integrate.engine import new_stop

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.share import EXTRAS, decode, encode
+from app.page.share import EXTRAS, decode, encode
 from granchain_core import scene, scene_names
 
 

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app import stability as module
-from app import stability_work as work
-from app.stability import StabilityPage
-from app.stability_work import Analysis, Target, analyse, search, section_of, transient
-from app.views.stability import (
+from app.pages.stability import page as module
+from app.pages.stability import work
+from app.pages.stability.page import StabilityPage
+from app.pages.stability.view import (
     described_multipliers,
     evidence,
     multiplier_words,
@@ -24,6 +23,7 @@ from app.views.stability import (
     section_message,
     verdict,
 )
+from app.pages.stability.work import Analysis, Target, analyse, search, section_of, transient
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
 from granchain_core.integrate.engine import new_stop
 from granchain_core.steady.regime import Regime, modulus_words

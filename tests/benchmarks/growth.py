@@ -9,9 +9,9 @@ import numpy as np
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import LaneBlock
 from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import LaneBlock
-from granchain_core.kernels.lanes import LANES, lane_steps
+from granchain_core.kernels.batch.run import LANES, lane_steps
 
 from . import problem
 from .machine import timed

@@ -7,8 +7,8 @@ import pytest
 
 from granchain_core import Scene, State, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import scaled_state
 from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import scaled_state
 from granchain_core.lower import lower
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.steady.lyapunov import exponents, exponents_in_pairs

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.diagrams import COLUMNS, ROWS, page_grid
-from app.views.diagram import CATEGORIES, category, cells_message, described, head_message
+from app.pages.map.page import COLUMNS, ROWS, page_grid
+from app.pages.map.view import CATEGORIES, category, cells_message, described, head_message
 from granchain_core import scene
 from granchain_core.diagram import attractors
 from granchain_core.diagram.cells import REGIMES, empty_cells

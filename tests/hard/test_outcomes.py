@@ -16,13 +16,13 @@ import app
 import granchain_core
 from app.cli import main
 from granchain_core import BadInput, Cancelled, NumbersFailed, State, run, scene
-from granchain_core.budget import estimate
 from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.integrate import Engine, Setting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
 from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits import periodic_orbit
-from granchain_core.run import warnings
+from granchain_core.run.budget import estimate
+from granchain_core.run.run import warnings
 from granchain_core.scene.validity import ONSET_OF_YIELD, YIELD_STRESS, peak_pressures
 from granchain_core.store import load, save
 

@@ -1,5 +1,5 @@
 """A chain of Hertz contacts with a harmonic driver and nothing else, written by hand: what an absent effect must not
-cost more than. Arrays, loops, functions and their arguments are those of granchain_core/kernels/motion.py and
+cost more than. Arrays, loops, functions and their arguments are those of granchain_core/kernels/equations/motion.py and
 fixed_step.py with every optional term struck out; `slots` is handed on as there and only its chain and driver are read."""
 
 from __future__ import annotations
@@ -10,9 +10,9 @@ import numba
 import numpy as np
 
 from granchain_core.kernels.effects.contact import elastic_force, positive_part
-from granchain_core.kernels.fixed_step import step
+from granchain_core.kernels.equations.motion import motion
 from granchain_core.kernels.jit import kernel
-from granchain_core.kernels.motion import motion
+from granchain_core.kernels.rk4.step import step
 
 FLAGS = {"nsz", "arcp", "contract", "reassoc"}
 

@@ -124,7 +124,7 @@ def code_size(kernel, signature) -> int:
 
 def disassembled(bare: Engine, founded: Engine) -> dict:
     """Figures from the code's size: `motion`, `motion_by_hand`, `founded`; the cache folder must have been empty."""
-    from granchain_core.kernels.motion import motion
+    from granchain_core.kernels.equations.motion import motion
 
     slopes(by_hand.motions_by_hand, bare)(1)
     sizes = {}

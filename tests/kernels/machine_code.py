@@ -27,9 +27,10 @@ from numba import types
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import LaneBlock
 from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import LaneBlock
-from granchain_core.kernels import lanes, wide_run
+from granchain_core.kernels.batch import run as lanes
+from granchain_core.kernels.rk4 import short_chain_steps as wide_run
 
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
 NOTHING = {"dissipation": "none"}

@@ -10,7 +10,7 @@ import pytest
 from granchain_core import Run, resonance_curve, run, scene, settled
 from granchain_core.diagram import diagram
 from granchain_core.integrate import METHODS, Engine, Setting, State
-from granchain_core.kernels.largest_forces import brief_touch, closing_rate, cubic_top
+from granchain_core.kernels.forces.largest import brief_touch, closing_rate, cubic_top
 
 OWN, PULL = 1.3, -0.7
 

@@ -21,8 +21,8 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import LaneBlock
 from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import LaneBlock
 
 PROGRAM = Path(__file__).parent / "machine_code.py"
 KERNELS = ("wide", "lanes")

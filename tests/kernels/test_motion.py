@@ -10,7 +10,7 @@ import pytest
 from chains import LAWS
 
 from granchain_core import scene
-from granchain_core.kernels.motion import contact_force, motion, place
+from granchain_core.kernels.equations.motion import contact_force, motion, place
 from granchain_core.lower import lower
 
 #: law, tension, kappa, preload, wall: all structures, each wall often enough

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from granchain_core import Scene, scene
+from granchain_core.kernels.dop853.force_kinks import push
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji, damping
 from granchain_core.kernels.effects.driver import driver_velocity
-from granchain_core.kernels.effects.pushed import Sampled
-from granchain_core.kernels.motion import contact_force, motion, stored_energy
-from granchain_core.kernels.peaks import quartic_top
-from granchain_core.kernels.slackening import push
+from granchain_core.kernels.effects.given_force import Sampled
+from granchain_core.kernels.equations.motion import contact_force, motion, stored_energy
+from granchain_core.kernels.forces.peaks import quartic_top
 from granchain_core.lower import lower
 from granchain_core.scene import Bead
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core.kernels.dop853_tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
+from granchain_core.kernels.dop853.tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
 
 #: The coefficients are given to 16 digits; a sum of 16 terms of order ten then holds to 1e-14.
 ROUNDING = 2e-14

@@ -7,10 +7,10 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate.engine import new_stop
-from granchain_core.kernels import lane_looks
-from granchain_core.steady import lane_curve
+from granchain_core.kernels.batch import period_end as lane_looks
+from granchain_core.steady import batch_settle as lane_curve
+from granchain_core.steady.batch_job import LaneResult
 from granchain_core.steady.curve import draft_curve, resonance_curve
-from granchain_core.steady.lane_job import LaneResult
 from granchain_core.steady.settle import settle
 
 #: Between 1580 and 1640 Hz two attractors stand side by side; below 1000 Hz and on the peaks approaches are slow.

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
+from granchain_core.integrate.batch import LaneBlock
 from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import LaneBlock
-from granchain_core.kernels import lane_events, lane_looks
+from granchain_core.kernels.batch import contact_correction as lane_events
+from granchain_core.kernels.batch import period_end as lane_looks
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 
 LANE, ROW = 5, 4

@@ -9,8 +9,8 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import NEVER, LaneBlock, scaled_state
 from granchain_core.integrate.engine import new_stop, rest
-from granchain_core.integrate.lane_block import NEVER, LaneBlock, scaled_state
 from granchain_core.lower import lower
 
 FREQUENCIES = (200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0)

@@ -7,11 +7,11 @@ import pytest
 
 from granchain_core import Scene, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import LaneBlock, can_share_lanes, scaled_state
 from granchain_core.integrate.engine import new_stop, rest
-from granchain_core.integrate.lane_block import LaneBlock, can_share_lanes, scaled_state
 from granchain_core.lower import lower
+from granchain_core.steady.batch_settle import lane_results
 from granchain_core.steady.curve import curve_point
-from granchain_core.steady.lane_curve import lane_results
 
 CHAINS: list[dict[str, object]] = [
     {}, {"N": 1}, {"N": 2}, {"N": 6}, {"N": 7}, {"N": 14}, {"N": 100}, {"kappa": 0.001}, {"F0": 0.5}, {"F0": 5.0},

@@ -8,8 +8,8 @@ import numpy as np
 
 from granchain_core import Scene, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import NEVER, LaneBlock, scaled_state
 from granchain_core.integrate.engine import new_stop, rest
-from granchain_core.integrate.lane_block import NEVER, LaneBlock, scaled_state
 from granchain_core.lower import lower
 
 PERIODS = 3

@@ -6,8 +6,8 @@ import numpy as np
 
 from granchain_core.kernels.effects.contact import positive_part
 from granchain_core.kernels.jit import kernel
-from granchain_core.kernels.simd import aligned, load, store
-from granchain_core.kernels.simd_math import above_zero, gate
+from granchain_core.kernels.simd.functions import above_zero, gate
+from granchain_core.kernels.simd.vector import aligned, load, store
 
 VALUES = np.array([-1.0, 0.0, 2.0, np.nan, np.inf, -np.inf, 3.0, np.nan])
 

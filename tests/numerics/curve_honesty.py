@@ -17,7 +17,7 @@ import numpy as np
 from granchain_core import Scene, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.engine import new_stop
-from granchain_core.steady.lane_curve import lane_results
+from granchain_core.steady.batch_settle import lane_results
 
 #: The orbit repeats itself to this, or the point is not judged after this many periods.
 REPEATS, PATIENCE = 1e-9, 3000

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from granchain_core import resonance_curve, run, scene, settled
+from granchain_core.integrate.batch import scaled_state
 from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import scaled_state
 from granchain_core.lower import lower
 from granchain_core.orbits import periodic_orbit
 from granchain_core.steady.nearby_orbit import NearbyOrbit, orbit_of

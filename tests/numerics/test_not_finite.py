@@ -8,7 +8,7 @@ import pytest
 from granchain_core import NumbersFailed, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.failures import not_finite
-from granchain_core.kernels.sampling import first_not_finite
+from granchain_core.kernels.samples import first_not_finite
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

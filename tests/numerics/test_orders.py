@@ -38,7 +38,6 @@ ORDERS = {
     ("rk4", "Kuwabara–Kono"): 2.5,
     ("rk4-naive", "closed"): 4.0, ("rk4-naive", "none"): 2.75, ("rk4-naive", "linear"): 1.0,
     ("verlet-naive", "closed"): 1.0, ("verlet-naive", "none"): 2.0, ("verlet-naive", "linear"): 1.0,
-    ("dopri5", "closed"): 5.4, ("dopri5", "none"): 4.0, ("dopri5", "linear"): 4.4,
     ("dop853", "closed"): 8.5, ("dop853", "none"): 7.7, ("dop853", "linear"): 8.1, ("dop853", "Tsuji"): 7.9,
     ("dop853", "Kuwabara–Kono"): 7.35, ("dop853", "cut"): 9.55,
 }

@@ -13,10 +13,10 @@ import pytest
 from forces.located import located
 
 from granchain_core import run, scene
-from granchain_core.budget import Stopwatch
 from granchain_core.integrate import Setting
 from granchain_core.integrate.methods import typical_error
-from granchain_core.stated import Computations
+from granchain_core.run.budget import Stopwatch
+from granchain_core.run.stated import Computations
 
 REFINES = (4.0, 8.0, 16.0, 32.0)
 STEPS = 10_000

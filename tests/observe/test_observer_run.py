@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.observer_run import NUDGE, ObserverRun
-from app.views.observer import step_message
+from app.pages.observer.view import step_message
+from app.pages.observer.work import NUDGE, ObserverRun
 from granchain_core import scene, settled
 from granchain_core.integrate.engine import new_stop, rest
 

@@ -13,7 +13,7 @@ from app.cli import main
 from granchain_core import BadInput, Cancelled, scene
 from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits import Branch, Continuation, begin_branch, continue_branch, switch_to_doubled
-from granchain_core.orbits.branch_walk import SHORTEST
+from granchain_core.orbits.branch.walk import SHORTEST
 from granchain_core.store import load_branch, save_branch
 
 
@@ -99,7 +99,7 @@ def test_a_file_that_is_no_branch_is_refused(tmp_path: Path) -> None:
 
 def test_a_branch_that_cannot_be_followed_says_so_with_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
     from granchain_core import NumbersFailed
-    from granchain_core.orbits.branch_equations import BranchEquations
+    from granchain_core.orbits.branch.equations import BranchEquations
 
     branch = begin_branch(scene("sec2"), "f", 2000.0, 2100.0, 1)
 

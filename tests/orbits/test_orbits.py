@@ -7,7 +7,7 @@ import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, NumbersFailed, scene
-from granchain_core.integrate.lane_block import scaled_state
+from granchain_core.integrate.batch import scaled_state
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
 

@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels import section
+from granchain_core.kernels.strobes import periodicity as section
 from granchain_core.steady import regime, settle
 
 

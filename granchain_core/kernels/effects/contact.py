@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import kernel
-from ..simd_math import clip, root
+from ..simd.functions import clip, root
 
 
 class Chain(NamedTuple):

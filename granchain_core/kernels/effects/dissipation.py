@@ -13,8 +13,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..jit import term
-from ..simd import load
-from ..simd_math import gate, root
+from ..simd.functions import gate, root
+from ..simd.vector import load
 
 
 class LinearDashpot(NamedTuple):

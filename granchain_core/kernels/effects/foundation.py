@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..jit import term
-from ..simd import load
+from ..simd.vector import load
 
 
 class Foundation(NamedTuple):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import term
-from ..simd import load
+from ..simd.vector import load
 
 
 class Preload(NamedTuple):

@@ -11,9 +11,9 @@ import numpy as np
 from granchain_core import Scene, scene
 from granchain_core.errors import NumbersFailed
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import NEVER, LaneBlock
 from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import NEVER, LaneBlock
-from granchain_core.kernels.lanes import LANES
+from granchain_core.kernels.batch.run import LANES
 from granchain_core.lower import lower
 
 from .. import problem

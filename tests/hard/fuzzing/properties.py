@@ -12,7 +12,7 @@ from granchain_core.integrate.engine import rest
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.preload import Preload
-from granchain_core.kernels.sampling import Samples
+from granchain_core.kernels.samples import Samples
 from granchain_core.lower import Lowered, lower
 
 SAMPLES = 16

@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_SECTION, _REGIME, _SETTLE = "kernels/section.py", "steady/regime.py", "steady/settle.py"
+_SECTION, _REGIME, _SETTLE = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settle.py"
 _RUN, _STATED, _METHODS, _FAIL = "run.py", "stated.py", "integrate/methods.py", "integrate/failures.py"
 
 STEADY = (
@@ -30,7 +30,7 @@ STEADY = (
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
     Mutant("relaxed-by-change", _SETTLE, "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
            "the certified orbit is left too early", k.CLAIMS_SETTLED),
-    Mutant("shadow-not-pulled-back", "kernels/shadow.py", "* (start / now)", "* 1.0",
+    Mutant("shadow-not-pulled-back", "kernels/rk4/lyapunov.py", "* (start / now)", "* 1.0",
            "the exponent is that of a distance long since large", k.LYAPUNOV),
 )
 

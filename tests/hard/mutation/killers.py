@@ -29,7 +29,6 @@ GRAZING = ("tests/numerics/test_events.py", "-k", "brief_touch")
 #: Coefficients and orders of convergence.
 TABLEAU = ("tests/kernels/test_tableau.py",)
 RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-closed")
-DOPRI_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dopri5-closed")
 CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
 CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
 CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cut")

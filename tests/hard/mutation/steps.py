@@ -5,9 +5,9 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_MOTION, _FIXED, _EVENTS = "kernels/motion.py", "kernels/fixed_step.py", "kernels/events.py"
-_CERTIFIED, _DOP853, _TABLEAU = "kernels/certified.py", "kernels/dop853.py", "kernels/dop853_tableau.py"
-_DOPRI5, _SAMPLING, _ENGINE = "kernels/dopri5.py", "kernels/sampling.py", "integrate/engine.py"
+_MOTION, _FIXED, _EVENTS = "kernels/equations/motion.py", "kernels/rk4/step.py", "kernels/rk4/contact_events.py"
+_CERTIFIED, _DOP853, _TABLEAU = "kernels/dop853/located.py", "kernels/dop853/step.py", "kernels/dop853/tableau.py"
+_SAMPLING, _ENGINE = "kernels/rk4/run.py", "integrate/engine.py"
 
 MOTION = (
     Mutant("motion-without-last-contact", _MOTION, "for c in range(m - 1):\n        d = positive_part(overlap(slots.preload, y, c))\n        e[c] =",
@@ -104,8 +104,6 @@ CERTIFIED = (
            "the tenth digit of a stage weight", k.TABLEAU),
     Mutant("dop853-stage-time", _TABLEAU, "    0.6512820512820513,", "    0.6512820512810513,",
            "the twelfth digit of a stage time", k.TABLEAU),
-    Mutant("dopri5-weight", _DOPRI5, "[35 / 384, 0.0, 500 / 1113, 125 / 192", "[35 / 384, 0.0, 500 / 1113, 126 / 192",
-           "a wrong weight of Dormand and Prince", k.DOPRI_ORDER),
 )
 
 CLOCK = (
@@ -123,7 +121,7 @@ CLOCK = (
     Mutant("elastic-peak-of-first-contact", _SAMPLING, "elastic_force(slots.chain.stiffness[last], d))",
            "elastic_force(slots.chain.stiffness[0], d))", "the elastic output force is that of a bead, not of the wall",
            k.CLAIMS_RUN),
-    Mutant("peak-between-samples", "kernels/peaks.py", "x = 0.0 - first / second", "x = first / second",
+    Mutant("peak-between-samples", "kernels/forces/peaks.py", "x = 0.0 - first / second", "x = first / second",
            "the top of a force is looked for on the wrong side", k.UNLIKE),
 )
 

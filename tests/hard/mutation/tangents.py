@@ -5,8 +5,8 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_TIME, _STEP, _LANDING = "kernels/root_time.py", "kernels/flow_step.py", "kernels/landing.py"
-_FLOW, _TANGENT, _SALTATION = "kernels/flow.py", "kernels/tangent.py", "kernels/saltation.py"
+_TIME, _STEP, _LANDING = "kernels/dop853/time_map.py", "kernels/dop853/event_step.py", "kernels/dop853/event_location.py"
+_FLOW, _TANGENT, _SALTATION = "kernels/dop853/flow.py", "kernels/equations/tangent.py", "kernels/saltation.py"
 _MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
 
 #: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_LANE, _LANES, _BESIDE = "kernels/lane_step.py", "kernels/lanes.py", "kernels/lane_events.py"
-_LOOKS, _WIDE, _RUN, _ALONG = "kernels/lane_looks.py", "kernels/wide.py", "kernels/wide_run.py", "kernels/along.py"
-_MATH = "kernels/simd_math.py"
+_LANE, _LANES, _BESIDE = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
+_LOOKS, _WIDE, _RUN, _ALONG = "kernels/batch/period_end.py", "kernels/rk4/short_chain.py", "kernels/rk4/short_chain_steps.py", "kernels/rk4/long_chain.py"
+_MATH = "kernels/simd/functions.py"
 
 IN_LANES = (
     Mutant("lane-weights", _LANE, "before.u + 2.0 * u2, before.w + 2.0 * w2", "before.u + u2, before.w + u2",

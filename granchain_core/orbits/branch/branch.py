@@ -1,0 +1,164 @@
+"""Branches of periodic orbits: followed in one knob through folds, stable or not, with their special points.
+
+    branch = continue_branch(scene("sec2"), "f", 340.0, 60.0)
+
+Pseudo-arclength continuation (Keller 1977) of fixed points of the n-period stroboscopic map. The points come out one
+by one from a `Continuation`, which can be left at any time, saved, and taken up again as if it had never stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...errors import BadInput
+from ...integrate import State
+from ...integrate.batch import scaled_state
+from ...integrate.engine import new_stop
+from ...scene import Scene
+from ..orbit import periodic_orbit
+from .axis import KnobAxis
+from .equations import BranchEquations, relative_change
+from .point import BranchPoint, branch_point, state_at
+from .special import SpecialPoint
+from .walk import SHORTER, Arm, Walk
+
+#: Points of one arm at most: a branch that folds without end has to stop somewhere.
+MOST_POINTS = 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A branch: its axis, the period of its orbits in drive periods, and one or two arms from the same seed."""
+
+    axis: KnobAxis
+    period: int
+    arms: tuple[Arm, ...]
+
+    @property
+    def points(self) -> list[BranchPoint]:
+        """All orbits in their order along the branch, from the end of the second arm to that of the first."""
+        first = self.arms[0].points
+        return first if len(self.arms) == 1 else [*reversed(self.arms[1].points[1:]), *first]
+
+    @property
+    def special(self) -> list[SpecialPoint]:
+        """All special points in the order of the points."""
+        first = self.arms[0].special
+        return first if len(self.arms) == 1 else [*reversed(self.arms[1].special), *first]
+
+    def column(self, name: str) -> np.ndarray:
+        """One attribute of every point as an array, for example "knob" or "stable"."""
+        return np.array([getattr(point, name) for point in self.points])
+
+    def state(self, point: BranchPoint) -> State:
+        """The state of one of its orbits at drive phase 0 in SI."""
+        return state_at(self.axis.scene_at(point.knob), point.x)
+
+
+class Continuation(Iterator[BranchPoint]):
+    """A branch as it grows: each `next` is one more orbit; `branch` is what there is so far.
+
+    Of two arms the shorter one grows, so both go on by turns; `run` follows both at once. One may stop asking and go
+    on at any time. Where the stop flag is raised, `Cancelled` ends the present step only. An arm that closes on
+    itself is the whole branch: the other is dropped.
+    """
+
+    def __init__(self, branch: Branch, stop: np.ndarray | None = None) -> None:
+        self.branch = branch
+        self.stop = new_stop() if stop is None else stop
+        self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), arm) for arm in branch.arms]
+
+    def __next__(self) -> BranchPoint:
+        while left := [walk for walk in self._walks if not self._closed and not walk.arm.ended]:
+            shorter: Walk = min(left, key=lambda walk: len(walk.arm.points))
+            point = next(shorter, None)
+            if point is not None:
+                self._drop_double()
+                return point
+        raise StopIteration
+
+    def run(self, most_points: int = MOST_POINTS, on_point: Callable[[Arm], None] | None = None) -> Branch:
+        """Follow all arms to their ends, each in a thread, or until one has `most_points`."""
+
+        def follow(walk: Walk) -> None:
+            while not self._closed and len(walk.arm.points) < most_points and next(walk, None) is not None:
+                if on_point is not None:
+                    on_point(walk.arm)
+
+        with ThreadPoolExecutor(len(self._walks)) as pool:
+            for future in [pool.submit(follow, walk) for walk in self._walks]:
+                future.result()
+        self._drop_double()
+        return self.branch
+
+    @property
+    def _closed(self) -> bool:
+        return any(walk.arm.ended == "closed" for walk in self._walks)
+
+    def _drop_double(self) -> None:
+        closed = next((arm for arm in self.branch.arms if arm.ended == "closed"), None)
+        if closed is not None:
+            self.branch = replace(self.branch, arms=(closed,))
+
+
+def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
+                 start_state: State | None = None, both: bool = False, stop: np.ndarray | None = None) -> Branch:
+    """The seed of a branch, to be followed by a `Continuation`.
+
+    The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
+    rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
+    and to `end`. Raises `BadInput`, `NumbersFailed` where there is no such orbit, and `Cancelled`.
+    """
+    axis = KnobAxis.of(scene, knob, start, end)
+    seed_at = float(scene.knobs[knob]) if both else axis.start
+    if not axis.contains(seed_at):
+        nearest = min(max(seed_at, axis.low), axis.high)
+        raise BadInput(f"Both ways begin at the scene's own {axis.said(seed_at)}, which is outside {axis.low:g} to "
+                       f"{axis.high:g}; the nearest valid value is {nearest:g}.")
+    BranchEquations(axis, 1).strobe(seed_at)  # a scene whose orbits are not computed is refused before it settles
+    orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
+    equations = BranchEquations(axis, orbit.period, stop)
+    strobe = equations.strobe(seed_at)
+    x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    _refuse_shorter(equations, x, seed_at)
+    return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
+
+
+def arms_from(equations: BranchEquations, x: np.ndarray, value: float, directions: tuple[int, ...]) -> tuple[Arm, ...]:
+    """Arms with their seed only, the orbit at the knob's `value` near the scaled state x."""
+    fixed = np.zeros(equations.size + 1)
+    fixed[-1] = 1.0
+    solved = equations.solve(equations.point(x, value), fixed)
+    return tuple(Arm(direction, [branch_point(equations, solved, equations.tangent(solved, direction * fixed), 0.0)])
+                 for direction in directions)
+
+
+def continue_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
+                    start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
+                    on_point: Callable[[Arm], None] | None = None, stop: np.ndarray | None = None) -> Branch:
+    """The branch of periodic orbits of `period` drive periods through the one at knob = `start`, as far as `end`.
+
+    See `begin_branch` for its seed. `on_point` is told the arm that has grown. An arm ends where the knob reaches `end`
+    or comes back to `start`, where the branch closes on itself or merges with one of half the period, or where it
+    cannot be followed; `branch.arms[0].reason` says which.
+    """
+    if not 2 <= most_points <= MOST_POINTS:
+        raise BadInput(f"most_points = {most_points} is outside 2 to {MOST_POINTS}; the nearest valid value is "
+                       f"{min(max(most_points, 2), MOST_POINTS)}.")
+    begun = begin_branch(scene, knob, start, end, period, start_state, both, stop)
+    return Continuation(begun, stop).run(most_points, on_point)
+
+
+def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> None:
+    """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
+    n = equations.period
+    for d in range(1, n):
+        if n % d == 0:
+            end = equations.strobe(value, d).end(x)
+            if relative_change(end - x, x) < SHORTER:
+                raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after "
+                               f"{d} already; give period {d}.")
