@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from .integrate import Engine, Setting
-from .integrate.batch import LaneBlock, alike, can_share_lanes, scaled_state
+from .integrate.batch import Batch, can_share_batch, is_uniform, scaled_state
 from .integrate.engine import new_stop, rest
 from .kernels.jit import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
@@ -28,7 +28,7 @@ def structure(shown: Scene) -> str:
     law = shown.dissipation if shown.has_dissipation else "none"
     width = next((f"{lanes} lanes" for lanes in WIDTHS if lanes >= shown.N + 2), "long")
     effects = (("cut", shown.cuts_tension), ("foundation", shown.k > 0), ("preload", shown.F0 > 0),
-               ("unequal beads", not alike(lower(shown))))
+               ("unequal beads", not is_uniform(lower(shown))))
     return "+".join([law, *(name for name, present in effects if present)]) + f", {width}"
 
 
@@ -65,8 +65,8 @@ def _warm_curve(short: Scene) -> None:
     if short.forces_jump:
         Engine(short, Setting("rk4-split"), 1).record(1)
     exponents(Engine(short, Setting("rk4-split"), 1), 1, 1)
-    if can_share_lanes(short):
-        block = LaneBlock(short, new_stop())
+    if can_share_batch(short):
+        block = Batch(short, new_stop())
         lowered = lower(short)
         y = scaled_state(lowered, rest(short))
         block.put(0, lowered, y, 1, look=1)

@@ -13,7 +13,7 @@ from granchain_core.accuracy.ways import label
 from granchain_core.integrate import METHODS, Setting, method_for
 from granchain_core.steady.settle import certified_setting
 
-#: The live picture's steps (granchain_core.live).
+#: The live picture's steps (granchain_core.run.live).
 _LIVE = Setting("rk4-split", refine=2)
 
 

@@ -18,7 +18,7 @@ from ..integrate.engine import rest
 from ..orbits import Orbit
 from ..result import ForceErrors
 from ..scene import Scene
-from ..steady.batch_job import LaneResult, Start
+from ..steady.batch_job import BatchResult, Start
 from ..steady.regime import Regime
 from .compute import settle_on_all_cores
 from .sameness import LIVE, Found, found, merged
@@ -107,9 +107,9 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Calla
 
 
 def _settled(starts: list[Start], stop: Callable[[], bool] | None,
-             progress: Callable[[float], None] | None = None) -> list[LaneResult]:
+             progress: Callable[[float], None] | None = None) -> list[BatchResult]:
     """Where starts lead, in their order."""
-    results: list[LaneResult] = []
+    results: list[BatchResult] = []
     for result in settle_on_all_cores(starts, stop):
         results.append(result)
         if progress is not None:

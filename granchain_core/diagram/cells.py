@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..result import ForceErrors
-from ..steady.batch_job import LaneResult
+from ..steady.batch_job import BatchResult
 from ..steady.regime import Regime
 from .grid import Grid
 
@@ -39,7 +39,7 @@ def empty_cells(grid: Grid) -> np.ndarray:
     return cells
 
 
-def cell_of(result: LaneResult) -> np.ndarray:
+def cell_of(result: BatchResult) -> np.ndarray:
     """The row () of one result."""
     regime = result.regime
     name = "failed" if result.failure else regime.name

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
-from ..integrate.batch import can_share_lanes
+from ..integrate.batch import can_share_batch
 from ..integrate.engine import new_stop
 from ..scene import Scene
-from ..steady.batch_job import LaneResult, Start
-from ..steady.batch_settle import lane_states
+from ..steady.batch_job import BatchResult, Start
+from ..steady.batch_settle import batch_states
 from ..steady.curve import CurvePoint, safe_point, second_look
 from ..steady.threads import on_all_cores
 from .cells import Diagram, cell_of, empty_cells
@@ -31,15 +31,15 @@ def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
     return list(groups.values())
 
 
-def settle_starts(starts: Iterable[Start], stop: np.ndarray) -> Iterator[LaneResult]:
+def settle_starts(starts: Iterable[Start], stop: np.ndarray) -> Iterator[BatchResult]:
     """Where starts of one structure lead: by lanes where they can share them, else one by one."""
     rest_of_them = iter(starts)
     first = next(rest_of_them, None)
     if first is None:
         return
     together = _chained(first, rest_of_them)
-    if can_share_lanes(first.scene):
-        for result in lane_states(together, stop):
+    if can_share_batch(first.scene):
+        for result in batch_states(together, stop):
             yield result if not result.doubtful else _as_result(Start(result.scene, number=result.number),
                                                                 second_look(result, stop))
         return
@@ -52,9 +52,9 @@ def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
     yield from others
 
 
-def _as_result(start: Start, point: CurvePoint) -> LaneResult:
+def _as_result(start: Start, point: CurvePoint) -> BatchResult:
     tops = np.array([point.max_input_force, point.max_output_force, point.max_output_force_elastic])
-    return LaneResult(start.scene, tops, point.regime, _errors(point), point.state, point.failure, start.number)
+    return BatchResult(start.scene, tops, point.regime, _errors(point), point.state, point.failure, start.number)
 
 
 def _errors(point: CurvePoint) -> np.ndarray | None:
@@ -71,7 +71,7 @@ def block_cells(grid: Grid, numbers: Sequence[int], stop: np.ndarray | None = No
 
 def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
                  stop: Callable[[], bool] | None = None, workers: int | None = None,
-                 pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
+                 pause: Callable[[], None] | None = None) -> Iterator[BatchResult]:
     """Cells of the diagram as they are decided, coarse first; `missing` are those wanted, else all.
 
     The result's `number` is the cell's. `stop` is asked between cells and may end the computation; running cells are
@@ -86,7 +86,7 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
 
 
 def settle_on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None = None,
-                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
+                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[BatchResult]:
     """Where starts of one structure lead, as they are found; closing the generator ends it."""
     flag = new_stop()
     return on_all_cores(lambda shared: settle_starts(shared, flag), starts, flag, stop, workers, pause)

@@ -20,7 +20,7 @@ from ..integrate.batch import scaled_state
 from ..lower import lower
 from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
-from ..steady.batch_job import LaneResult
+from ..steady.batch_job import BatchResult
 
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are one; coarser ones where it failed.
 _SAME = 1e-7
@@ -36,7 +36,7 @@ LIVE, _CERTIFIED = Setting("rk4-split"), Setting("dop853", tolerance=1e-11)
 class Found:
     """One result with its section: n strobes of a periodic orbit, or the record of another motion, (P, 2, N)."""
 
-    result: LaneResult
+    result: BatchResult
     section: np.ndarray
     orbit: Orbit | None = None
 
@@ -53,13 +53,13 @@ class Found:
         return self.orbit is not None and not self.orbit.stable
 
 
-def found(result: LaneResult) -> Found:
+def found(result: BatchResult) -> Found:
     """A result with the section of its motion."""
     period = result.regime.period
     return Found(result, _strobes(result.scene, result.state, period, LIVE) if period else _section(result))
 
 
-def _section(result: LaneResult) -> np.ndarray:
+def _section(result: BatchResult) -> np.ndarray:
     """Stroboscopic states of displacement and velocity, scaled, of what is not periodic, (P, 2, N)."""
     engine = Engine(result.scene, LIVE, 1)
     engine.start(result.state)

@@ -28,18 +28,18 @@ NEVER = int(np.iinfo(np.int64).max)
 _WAIT, _FEWEST = 16, 2
 
 
-def can_share_lanes(scene: Scene) -> bool:
+def can_share_batch(scene: Scene) -> bool:
     """Whether lanes can run this scene: the tension cut needs all velocities before the forces, which lanes lack."""
     return not scene.cuts_tension
 
 
-def alike(lowered: Lowered) -> bool:
+def is_uniform(lowered: Lowered) -> bool:
     """Whether all beads, and all contacts but the wall's, are alike."""
     chain = lowered.slots.chain
     return bool((chain.inverse_mass[1:-1] == 1.0).all() and (chain.stiffness[:-1] == 1.0).all())
 
 
-class LaneBlock:
+class Batch:
     """Eight places for scenes of one structure and one N, run by one thread."""
 
     def __init__(self, example: Scene, stop: np.ndarray) -> None:
@@ -48,7 +48,7 @@ class LaneBlock:
         n, slots = example.N, lowered.slots
         dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
         self.lanes = kernels.Lanes(
-            wall=aligned(1), unequal=None if alike(lowered) else Unequal(aligned(n + 2), aligned(n + 1)),
+            wall=aligned(1), unequal=None if is_uniform(lowered) else Unequal(aligned(n + 2), aligned(n + 1)),
             dissipation=None if dissipation is None else type(dissipation)(aligned(1)),
             foundation=None if foundation is None else type(foundation)(aligned(1)),
             preload=None if preload is None else type(preload)(aligned(n + 1)),
@@ -57,7 +57,7 @@ class LaneBlock:
         rows = 2 * (n + 2)
         whole = [np.zeros(LANES, dtype=np.int64) for _ in range(9)]
         parts = [np.zeros(LANES) for _ in range(2)]
-        self.state = kernels.LaneState(
+        self.state = kernels.BatchState(
             y=aligned(rows), gaps=aligned(n + 1), ends=aligned(4), phase=aligned(2), peaks=aligned(PEAKS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
             wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], jumped=parts[1],
@@ -110,7 +110,7 @@ class LaneBlock:
 
     def run(self) -> tuple[int, bool]:
         """Run until a lane should be looked at; its number, and whether it is finite."""
-        status, lane = kernels.run_lanes(self.lanes, self.state, self.stop)
+        status, lane = kernels.run_batch(self.lanes, self.state, self.stop)
         if status == CANCELLED:
             raise Cancelled
         return int(lane), status == 0

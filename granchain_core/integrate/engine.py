@@ -14,9 +14,9 @@ from ..kernels.equations.velocity_form import Rk4Naive, VerletNaive, naive_motio
 from ..kernels.forces.largest import new_log
 from ..kernels.forces.peaks import MEMORY, ROWS, forget, next_period
 from ..kernels.rk4.contact_events import ENDS
-from ..kernels.rk4.long_chain import Along
+from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import run_periods, run_samples
-from ..kernels.rk4.short_chain import BLOCK, KEPT, WIDTHS, Wide
+from ..kernels.rk4.short_chain import BLOCK, KEPT, WIDTHS, ShortChain
 from ..kernels.rk4.step import Rk4, Rk4Split, Stages
 from ..kernels.samples import Samples
 from ..kernels.simd.vector import LANES, aligned
@@ -77,10 +77,10 @@ class Engine:
         self.drive = np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
         self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size),
                                 np.zeros((ENDS, lo.row - 1)), lo.forces(),
-                                self.new_along())
+                                self.new_simd_workspace())
         self.grid = n
 
-    def new_along(self) -> Along | Wide | None:
+    def new_simd_workspace(self) -> LongChain | ShortChain | None:
         """The workspace of SIMD steps: neither tension cut nor energy account in the equations, and one chain."""
         lo, slots = self.lowered, self.lowered.slots
         if self.setting.method != "rk4-split" or slots.tension is not None or slots.balance is not None:
@@ -99,12 +99,12 @@ class Engine:
             return np.zeros((rows, LANES))
 
         preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
-        return Along(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
+        return LongChain(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
                      now=empty(2 * blocks), before=empty(2 * blocks), acc=empty(2 * blocks), first=empty(2 * blocks),
                      second=empty(2 * blocks), gap=empty(blocks), slope=empty(blocks), elastic=empty(blocks),
                      signs=np.zeros(blocks, dtype=np.int64))
 
-    def _wide(self, width: int) -> Wide:
+    def _wide(self, width: int) -> ShortChain:
         """The workspace of a chain whose bodies fit into one vector."""
         slots = self.lowered.slots
 
@@ -114,7 +114,7 @@ class Engine:
             return row
 
         preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
-        return Wide(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
+        return ShortChain(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
                     aligned(2 * KEPT, width), aligned(ENDS, width), np.zeros((3, BLOCK)))
 
     def _prepare_adaptive(self) -> None:

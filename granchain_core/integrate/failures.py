@@ -115,7 +115,7 @@ def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: i
     """State and slopes after steps `first` to `last`, counted through periods, by vectors or by scalar code."""
     n, now = engine.method.steps_per_period, y.copy()
     # new vectors: those of the failed call are full of what failed
-    work = engine.work._replace(along=engine.new_along() if vectors else None, k=np.zeros_like(engine.work.k))
+    work = engine.work._replace(along=engine.new_simd_workspace() if vectors else None, k=np.zeros_like(engine.work.k))
     work.k[0] = slope
     kept, log = engine.empty_samples(2), new_log()
     j = first

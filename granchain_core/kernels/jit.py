@@ -51,7 +51,7 @@ def cache_folder() -> Path:
 CACHE_FOLDER = cache_folder()
 
 
-def inlined(function):
+def inline_llvm(function):
     """Decorator for what belongs into its caller's code: values that stay in registers."""
     return numba.njit(nogil=True, forceinline=True, **_OPTIONS)(function)
 
@@ -66,7 +66,7 @@ def kernel(function):
         numba.config.CACHE_DIR = before
 
 
-def part(function):
+def inline_numba(function):
     """Decorator for a kernel called at one place: it becomes part of that code, and is not compiled for itself as well.
 
     Compiled code is linked and optimised again in every caller, up to the kernel that Python calls; of a step of the
@@ -75,7 +75,7 @@ def part(function):
     return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
 
 
-def term(absent, forceinline=False):
+def by_slot(absent, forceinline=False):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 
     The decorated function is the code for an absent effect (slot None). `function.of(Slot)` registers the code
@@ -110,6 +110,6 @@ def term(absent, forceinline=False):
     return generic
 
 
-def inlined_term(absent):
+def by_slot_inlined(absent):
     """A term that becomes part of its caller's code: for one that takes many arguments and is called at each step."""
-    return term(absent, forceinline=True)
+    return by_slot(absent, forceinline=True)

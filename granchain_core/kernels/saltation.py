@@ -23,7 +23,7 @@ from .effects.contact import positive_part
 from .effects.dissipation import damping
 from .effects.foundation import foundation_pull
 from .equations.tangent import carry, stage_gaps
-from .jit import part
+from .jit import inline_numba
 
 
 class VelocityTangent(NamedTuple):
@@ -44,7 +44,7 @@ def _(tangent, slots, state, stage):
     stage_gaps(slots, state, stage, tangent.gaps)
 
 
-@part
+@inline_numba
 def velocity_slope(slots, rate, gaps, closed, T, out):
     """Slope of all columns T at one stage, times dt/dx."""
     n, columns = T.shape[0] // 2, T.shape[1]

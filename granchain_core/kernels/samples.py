@@ -8,7 +8,7 @@ import numpy as np
 
 from .effects.balance import Balance, account_ends
 from .equations.motion import contact_force, stored_energy
-from .jit import kernel, term
+from .jit import by_slot, kernel
 
 
 class Samples(NamedTuple):
@@ -35,7 +35,7 @@ def keep(slots, row, y, dy, e, samples):
     keep_account(slots.balance, slots, row, y, dy, samples)
 
 
-@term
+@by_slot
 def keep_account(balance, slots, row, y, dy, samples):
     """Write stored energy, work and loss of one sample. Absent: there is no account and no array for it."""
 

@@ -14,7 +14,7 @@ import numpy as np
 from ..integrate import Engine, Setting, State
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import FAR
-from ..kernels.effects.given_force import Echo
+from ..kernels.effects.given_force import ObserverCoupling
 from ..kernels.effects.preload import Preload
 from ..kernels.samples import Samples
 from ..lower import Lowered, lower
@@ -35,7 +35,7 @@ def lower_pair(scene: Scene) -> Lowered:
     slots = one.slots._replace(
         chain=Chain(np.concatenate([mass, mass[1:]]), np.concatenate([stiffness, [0.0], stiffness[1:]])),
         preload=Preload(np.concatenate([static, [-FAR], static[1:]])),
-        driver=Echo(1.0, one.beta, scene.N + 1),
+        driver=ObserverCoupling(1.0, one.beta, scene.N + 1),
     )
     return replace(one, slots=slots)
 

@@ -13,10 +13,11 @@ from ..kernels.effects.given_force import Sampled
 from ..kernels.equations.motion import place
 from ..kernels.forces.largest import new_log
 from ..kernels.forces.peaks import MEMORY, ROWS, forget
-from ..kernels.rk4 import run as sampling
 from ..kernels.rk4.contact_events import ENDS
 from ..kernels.rk4.observed import run_observed
 from ..kernels.rk4.step import Rk4Split, Stages
+from ..kernels.samples import Samples, first_not_finite
+from ..kernels.status import CANCELLED, NOT_FINITE
 from ..lower import lower
 from ..scene import Scene
 from .record import ForceRecord
@@ -47,7 +48,7 @@ class PushedChain:
         """Largest input, output and elastic output force of the last run, in scaled units."""
         return self._log.peaks[:MEMORY:ROWS].copy()
 
-    def run(self, start: State, halvings: int) -> sampling.Samples:
+    def run(self, start: State, halvings: int) -> Samples:
         """The motion from `start` in steps halved so many times; one row a sample, in scaled units."""
         lo, n, row = self.lowered, self.lowered.beads, self.lowered.row
         if len(start.displacement) != n:
@@ -65,13 +66,13 @@ class PushedChain:
         place(lo.slots, 0.0, y, stages.k[0], stages.forces, True)
         forget(self._log.peaks)
         rows = len(self._spans) + 1
-        samples = sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
+        samples = Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
         status, done = run_observed(Rk4Split(0), lo.slots, self._spans, self._pieces, substeps, y, stages,
                                     np.zeros((0, 2)), samples, self._log, self.counts.array, self._stop)
-        if status == sampling.CANCELLED:
+        if status == CANCELLED:
             raise Cancelled
-        if status == sampling.NOT_FINITE:
-            bead = max(1, sampling.first_not_finite(y, row))
+        if status == NOT_FINITE:
+            bead = max(1, first_not_finite(y, row))
             raise NumbersFailed(f"The motion of bead {bead} stopped being a finite number at about "
                                 f"{self.record.time[done - 1]:.6g} s; look at the force there, or lower the damping.",
                                 "not-finite")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..integrate import Engine, Setting, State
-from ..integrate.batch import LaneBlock, state_of
+from ..integrate.batch import Batch, state_of
 from ..integrate.engine import rest
 from ..integrate.methods import AT_A_JUMP, jump_errors
 from ..lower import Lowered
@@ -33,7 +33,7 @@ class Start:
 
 
 @dataclass(eq=False)
-class LaneResult:
+class BatchResult:
     """A steady state found in a lane: largest forces [N] in the order input, output, elastic output.
 
     `errors` (3,) are their relative errors, None where none is claimed; `number` is that of its start. Where it is
@@ -84,7 +84,7 @@ class Job:
         """Whether the budget of steps allows another long look."""
         return self.run + MOST_PERIODS < self.affordable_periods
 
-    def fine_result(self, block: LaneBlock, lane: int) -> LaneResult:
+    def fine_result(self, block: Batch, lane: int) -> BatchResult:
         """The result of the finer run."""
         assert self.coarse is not None
         regime, before = self.coarse
@@ -99,7 +99,7 @@ class Job:
         # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
         errors += 1.5 * max(distance, regime.distance)
         tops = tops * self.lowered.scales.force
-        return LaneResult(self.scene, tops, replace(regime, distance=distance), errors, state_of(self.lowered, y),
+        return BatchResult(self.scene, tops, replace(regime, distance=distance), errors, state_of(self.lowered, y),
                           number=self.number)
 
     def _located_tops(self, y: np.ndarray, regime: Regime) -> tuple[np.ndarray, np.ndarray]:
@@ -117,7 +117,7 @@ class Job:
         return tops, moved + jump_errors(_LOCATED, self.lowered, 1, engine.jumps, tops)
 
 
-def draft_result(job: Job, block: LaneBlock, lane: int) -> LaneResult:
+def draft_result(job: Job, block: Batch, lane: int) -> BatchResult:
     """What the coarse run alone has come to."""
     run = int(block.state.periods[lane])
     period = block.state.seen[lane, 0]
@@ -125,10 +125,10 @@ def draft_result(job: Job, block: LaneBlock, lane: int) -> LaneResult:
         return unsettled(job, block, lane, run)
     regime = _periodic(block, lane, run)
     tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
-    return LaneResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]), number=job.number)
+    return BatchResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]), number=job.number)
 
 
-def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | None:
+def check_coarse(job: Job, block: Batch, lane: int) -> BatchResult | Job | None:
     """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
     here = int(block.state.periods[lane])
     run = job.run + here
@@ -147,30 +147,30 @@ def look_coarse(job: Job, block: LaneBlock, lane: int) -> LaneResult | Job | Non
     return None
 
 
-def _periodic(block: LaneBlock, lane: int, run: int) -> Regime:
+def _periodic(block: Batch, lane: int, run: int) -> Regime:
     """The periodic regime that a coarse lane has come to; followed where extrapolations brought it there."""
     period, rate, distance = block.state.seen[lane]
     return Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run,
                   followed=bool(block.state.slowest[lane] > 0.0))
 
 
-def _in_doubt(job: Job, block: LaneBlock, lane: int, run: int, record: np.ndarray) -> Job:
+def _in_doubt(job: Job, block: Batch, lane: int, run: int, record: np.ndarray) -> Job:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
     tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
     return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, in_doubt=True, record=record, tops=tops,
                number=job.number)
 
 
-def unsettled(job: Job, block: LaneBlock, lane: int, run: int) -> LaneResult:
+def unsettled(job: Job, block: Batch, lane: int, run: int) -> BatchResult:
     """What a lane has come to when its budget of steps is spent."""
     tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
     state = state_of(job.lowered, block.state.y[:, lane])
-    return LaneResult(job.scene, tops, Regime("unsettled", None, None, None, run), None, state,
+    return BatchResult(job.scene, tops, Regime("unsettled", None, None, None, run), None, state,
                       number=job.number)
 
 
-def failed(job: Job) -> LaneResult:
+def failed(job: Job) -> BatchResult:
     """A lane whose numbers stopped being finite."""
     nothing = Regime("unsettled", None, None, None, 0)
     sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping or ask for higher accuracy."
-    return LaneResult(job.scene, np.full(3, np.nan), nothing, None, rest(job.scene), sentence, job.number)
+    return BatchResult(job.scene, np.full(3, np.nan), nothing, None, rest(job.scene), sentence, job.number)

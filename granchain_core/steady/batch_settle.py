@@ -15,12 +15,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate.batch import NEVER, LaneBlock, scaled_state, state_of
+from ..integrate.batch import NEVER, Batch, scaled_state, state_of
 from ..integrate.engine import rest
 from ..kernels.batch.run import LANES
 from ..lower import lower
 from ..scene import Scene
-from .batch_job import Job, LaneResult, Start, draft_result, failed, look_coarse
+from .batch_job import BatchResult, Job, Start, check_coarse, draft_result, failed
 from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
 from .lyapunov import MOST_APART, exponents_in_pairs
 from .nearby_orbit import MOST_BEADS, seen_modulus
@@ -42,7 +42,7 @@ class _Lanes:
     """A block of lanes with the jobs in them, those waiting for a lane and those whose regime is in doubt."""
 
     def __init__(self, first: Start, starts: Iterator[Start], stop: np.ndarray, draft: bool) -> None:
-        self.block = LaneBlock(first.scene, stop)
+        self.block = Batch(first.scene, stop)
         self.draft = draft
         self.stop = stop
         self.waiting = [_new_job(first)]
@@ -70,7 +70,7 @@ class _Lanes:
         rate = max(1e-3, regime.slowness)
         self.block.put_fine(lane, job.lowered, job.y, _FINER, regime.period, rate, tops)
 
-    def step(self) -> LaneResult | None:
+    def step(self) -> BatchResult | None:
         """Run until a lane is to be looked at, and do so."""
         lane, finite = self.block.run()
         job = self.jobs[lane]
@@ -81,11 +81,11 @@ class _Lanes:
             result = draft_result(job, self.block, lane)
             self._free(lane)
             return result
-        outcome = look_coarse(job, self.block, lane) if job.coarse is None else job.fine_result(self.block, lane)
+        outcome = check_coarse(job, self.block, lane) if job.coarse is None else job.fine_result(self.block, lane)
         if outcome is None:
             return None
         self._free(lane)
-        if isinstance(outcome, LaneResult):
+        if isinstance(outcome, BatchResult):
             return confirmed(outcome, self.stop)
         (self.doubtful if outcome.in_doubt else self.waiting).append(outcome)
         return None
@@ -103,7 +103,7 @@ class _Lanes:
                 return jobs[i : i + _PAIRS]
         return [] if self.jobs else [job for job in jobs if _steps(job) <= MOST_APART * _steps(jobs[0])]
 
-    def decide(self, jobs: list[Job]) -> Iterator[LaneResult]:
+    def decide(self, jobs: list[Job]) -> Iterator[BatchResult]:
         """Tell doubtful jobs apart; one whose neighbours come closer is given more time."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
         found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], BLOCKS, BLOCK, self.stop)
@@ -126,19 +126,19 @@ class _Lanes:
                 self.waiting.append(job)
             else:
                 unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
-                yield LaneResult(job.scene, job.tops, regime, None, state_of(job.lowered, y), number=job.number,
+                yield BatchResult(job.scene, job.tops, regime, None, state_of(job.lowered, y), number=job.number,
                                  doubtful=unclear and job.affordable)
 
 
-def lane_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False) -> Iterator[LaneResult]:
+def batch_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False) -> Iterator[BatchResult]:
     """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
 
-    See `lane_states`.
+    See `batch_states`.
     """
-    return lane_states((Start(scene) for scene in scenes), stop, draft)
+    return batch_states((Start(scene) for scene in scenes), stop, draft)
 
 
-def lane_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) -> Iterator[LaneResult]:
+def batch_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) -> Iterator[BatchResult]:
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
     What is found does not depend on which starts share the lanes, but for rounding. A draft ends with the coarse run
@@ -161,7 +161,7 @@ def lane_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) 
                 yield result
 
 
-def confirmed(result: LaneResult, stop: np.ndarray) -> LaneResult:
+def confirmed(result: BatchResult, stop: np.ndarray) -> BatchResult:
     """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
     if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:

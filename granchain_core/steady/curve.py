@@ -12,13 +12,13 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed, unknown_name
 from ..integrate import Engine, State
-from ..integrate.batch import can_share_lanes
+from ..integrate.batch import can_share_batch
 from ..integrate.engine import new_stop
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, ForceErrors, relative_changes
 from ..scene import Scene
-from .batch_job import LaneResult
-from .batch_settle import lane_results
+from .batch_job import BatchResult
+from .batch_settle import batch_results
 from .regime import Regime
 from .settle import Settling, relax, settle
 from .threads import on_all_cores
@@ -164,22 +164,22 @@ def _points(scenes: Iterator[Scene], flag: np.ndarray) -> Iterator[CurvePoint]:
     if first is None:
         return
     rest_of_them = itertools.chain([first], scenes)
-    if can_share_lanes(first):
+    if can_share_batch(first):
         yield from (_from_lane(result) if not result.doubtful else second_look(result, flag)
-                    for result in lane_results(rest_of_them, flag))
+                    for result in batch_results(rest_of_them, flag))
         return
     for one in rest_of_them:
         yield safe_point(one, None, flag)
 
 
-def second_look(result: LaneResult, stop: np.ndarray) -> CurvePoint:
+def second_look(result: BatchResult, stop: np.ndarray) -> CurvePoint:
     """The point of a result that the lanes left in doubt: its chain by itself, from where they left it."""
     point = safe_point(result.scene, result.state, stop)
     run = result.regime.periods_run + point.regime.periods_run
     return replace(point, regime=replace(point.regime, periods_run=run))
 
 
-def _from_lane(result: LaneResult) -> CurvePoint:
+def _from_lane(result: BatchResult) -> CurvePoint:
     tops = result.tops
     return CurvePoint(result.scene.f, float(tops[1]), float(tops[2]), float(tops[0]), result.regime,
                       ForceErrors.of(result.errors), result.state, result.failure,
@@ -192,10 +192,10 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: n
     Coarse steps and few periods: no errors are claimed, and what is not periodic by then is unsettled. Empty for scenes
     that lanes cannot run. `stop` is a flag from `new_stop`. Raises `BadInput` and `Cancelled`.
     """
-    if not can_share_lanes(scene):
+    if not can_share_batch(scene):
         return []
     scenes = iter(checked_frequencies(scene, frequencies))
-    return [_from_lane(result) for result in lane_results(scenes, stop, draft=True)]
+    return [_from_lane(result) for result in batch_results(scenes, stop, draft=True)]
 
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",

@@ -41,7 +41,7 @@ def test_an_unwritable_out_is_said_before_the_work_and_not_after_it(tmp_path, mo
     def computes(*_, **__):
         pytest.fail("computed before looking at --out")
 
-    monkeypatch.setattr(sys.modules["granchain_core.run"], "run", computes)
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "run", computes)
     assert main(["run", "sec2", *SHORT, "--out", str(tmp_path / "none" / "a.h5")]) == 2
     assert "Cannot write" in capsys.readouterr().err
 
@@ -69,7 +69,7 @@ def test_sizes_that_cannot_be_kept_are_refused(words, capsys):
 
 def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
     """A million periods of ten thousand beads would be 160 GB of strobes."""
-    module = sys.modules["granchain_core.run"]
+    module = sys.modules["granchain_core.run.run"]
     shown = scene("sec2").evolve(N=2, f=3000.0)
     setting = module.method_for(1e-3)
     kept = module._attempt(shown, setting, module.rest(shown), (3000, 1, 4), module.new_stop(), None, module.Counts())
@@ -81,7 +81,7 @@ def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, ca
     def fails(*_, **__):
         raise NumbersFailed("The motion of bead 3 stopped being a finite number at about 1 s.", "not-finite")
 
-    monkeypatch.setattr(sys.modules["granchain_core.run"], "run", fails)
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "run", fails)
     assert main(["run", "sec2", *SHORT, "--json"]) == 3
     out, said = capsys.readouterr()
     assert json.loads(out)["status"] == "not-finite"

@@ -60,7 +60,7 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path):
 def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path):
     """The scene names it, the equation shows it, a scene without it has no slot."""
     told = follow(tree, "-c", """
-from app.explain import explanation
+from app.cli.explain import explanation
 from granchain_core import scene
 from granchain_core.lower import lower
 one = scene("drag")

@@ -27,7 +27,7 @@ from numba import types
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.batch import LaneBlock
+from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.engine import new_stop
 from granchain_core.kernels.batch import run as lanes
 from granchain_core.kernels.rk4 import short_chain_steps as wide_run
@@ -78,7 +78,7 @@ def counts(kernel, arguments) -> dict:
 def argument_types(knobs: dict) -> dict[str, tuple]:
     """Types of the arguments of both kernels for section 2's chain with these knobs."""
     chain = scene("sec2").evolve(**knobs)
-    e, block = Engine(chain, Setting("rk4-split"), 1), LaneBlock(chain, new_stop())
+    e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, new_stop())
     one = (e.work.along, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0], e.work.forces.e, e.log,
            e.counts.array, e.stop)
     return {"wide": tuple(map(numba.typeof, one)), "lanes": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
@@ -90,9 +90,9 @@ def by_hand(found: dict[str, tuple], absent: tuple[str, ...]) -> dict[str, dict]
         struck = struck_out.without(absent, Path(folder))
         workspace, *others = found["wide"]
         width = numba.typeof(struck["wide"].WIDTHS[16])
-        own = types.NamedTuple((width, *workspace.types[1:]), struck["wide"].Wide)
-        return {"wide": counts(struck["wide_run"].wide_steps, (own, *others)),
-                "lanes": counts(struck["lanes"].lane_steps, found["lanes"])}
+        own = types.NamedTuple((width, *workspace.types[1:]), struck["wide"].ShortChain)
+        return {"wide": counts(struck["wide_run"].run_short_chain, (own, *others)),
+                "lanes": counts(struck["lanes"].batch_steps, found["lanes"])}
 
 
 def cases() -> dict[str, dict]:
@@ -108,8 +108,8 @@ def main() -> None:
     found: dict[str, dict] = {"wide": {}, "lanes": {}}
     signatures_of = pickle.loads(sys.stdin.buffer.read())
     for case, signatures in signatures_of.items():
-        found["wide"][case] = counts(wide_run.wide_steps, signatures["wide"])
-        found["lanes"][case] = counts(lanes.lane_steps, signatures["lanes"])
+        found["wide"][case] = counts(wide_run.run_short_chain, signatures["wide"])
+        found["lanes"][case] = counts(lanes.batch_steps, signatures["lanes"])
         if case in BY_HAND:
             absent = (*(effect for effect in EFFECTS if effect != case), "unequal")
             for kernel, counted in by_hand(signatures, absent).items():

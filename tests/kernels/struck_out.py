@@ -15,13 +15,13 @@ import granchain_core.kernels as kernels
 
 FOLDER = Path(kernels.__file__).parent
 #: Modules in the order in which they import each other.
-MODULES = ("events", "lane_events", "lane_step", "lanes", "wide", "wide_run")
+MODULES = ("events", "lane_events", "batch_step", "lanes", "wide", "wide_run")
 #: What is left of a call of a term where its effect is absent; a, b, c, … are the call's arguments, None is no statement.
 LEFT = {
-    "dissipation": {"damping": "0.0", "primitive": "0.0", "shape": "0.0", "row_velocity": "b", "lane_velocity": "d",
-                    "lane_values": "None", "note_path": None, "path_excess": "None", "give_back_path": None},
-    "foundation": {"pull_back": "b", "lane_foundation": "None"},
-    "preload": {"row_overlap": "b - c", "lane_overlap": "b - c", "row_values": "None"},
+    "dissipation": {"damping": "0.0", "primitive": "0.0", "shape": "0.0", "row_velocity": "b", "batch_velocity": "d",
+                    "batch_values": "None", "add_displacement_error": None, "displacement_error": "None", "correct_displacement": None},
+    "foundation": {"add_foundation_force": "b", "lane_foundation": "None"},
+    "preload": {"row_overlap": "b - c", "batch_overlap": "b - c", "row_values": "None"},
     "jumps": {"watch_jumps": None},
     "unequal": {"over_mass": "c", "times_stiffness": "(b * e if c == d else e)"},
 }

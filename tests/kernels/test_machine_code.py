@@ -21,7 +21,7 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.batch import LaneBlock
+from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.engine import new_stop
 
 PROGRAM = Path(__file__).parent / "machine_code.py"
@@ -97,7 +97,7 @@ def test_absent_effects_have_no_arrays_in_the_simd_workspaces():
     """None in place of the static overlaps, of the damping's and the foundation's lanes, of unequal beads."""
     bare = scene("sec2").evolve(dissipation="none")
     assert Engine(bare, Setting("rk4-split"), 1).work.along.preload is None
-    lanes = LaneBlock(bare, new_stop()).lanes
+    lanes = Batch(bare, new_stop()).lanes
     assert (lanes.dissipation, lanes.foundation, lanes.preload, lanes.unequal) == (None, None, None, None)
-    full = LaneBlock(scene("sec2").evolve(kappa=0.001, F0=1.0), new_stop()).lanes
+    full = Batch(scene("sec2").evolve(kappa=0.001, F0=1.0), new_stop()).lanes
     assert None not in (full.dissipation, full.foundation, full.preload)

@@ -12,7 +12,7 @@ from granchain_core.kernels.effects.balance import Balance
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from granchain_core.kernels.rk4 import contact_events as events
 from granchain_core.kernels.rk4 import step as fixed_step
-from granchain_core.kernels.rk4.contact_events import GAP, GAP_END, IMPULSE, PATH, RATE, RATE_END
+from granchain_core.kernels.rk4.contact_events import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END
 
 
 def ends_of(*roots: float, sign: float = 1.0) -> tuple[float, float, float, float]:
@@ -73,10 +73,10 @@ def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None
     """K v^{3/2} h^{5/2} and c v^p h^{p+1} times the excess over the closed side: behind an onset, before a release."""
     ends, h = np.zeros((events.ENDS, 2)), 0.2
     ends[RATE, 1] = rate
-    events.note_event.py_func(law, 1.4, ends, 1, h, 0.25)
-    assert ends[IMPULSE, 1] == pytest.approx(1.4 * 0.7**1.5 * h**2.5 * excess(1.5, part), rel=1e-9)
-    assert ends[PATH, 1] == pytest.approx(scale * 0.7**power * h ** (power + 1.0) * excess(power, part), rel=1e-9)
-    assert ends[GAP, 1] * rate > 0.0 and not ends[[IMPULSE, PATH], 0].any()
+    events.add_quadrature_errors.py_func(law, 1.4, ends, 1, h, 0.25)
+    assert ends[MOMENTUM_ERROR, 1] == pytest.approx(1.4 * 0.7**1.5 * h**2.5 * excess(1.5, part), rel=1e-9)
+    assert ends[DISPLACEMENT_ERROR, 1] == pytest.approx(scale * 0.7**power * h ** (power + 1.0) * excess(power, part), rel=1e-9)
+    assert ends[GAP, 1] * rate > 0.0 and not ends[[MOMENTUM_ERROR, DISPLACEMENT_ERROR], 0].any()
 
 
 @pytest.mark.parametrize(("before", "after", "rising", "risen", "seen"), [
@@ -91,12 +91,12 @@ def test_a_contact_that_turned_may_have_changed_in_between(before, after, rising
 
 
 def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None:
-    """Contact c pushed its beads apart too much by ends[IMPULSE, c]; the driver did that of contact 0 at its speed."""
+    """Contact c pushed its beads apart too much by ends[MOMENTUM_ERROR, c]; the driver did that of contact 0 at its speed."""
     inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((events.ENDS, 3))
-    ends[IMPULSE], ends[PATH] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)
+    ends[MOMENTUM_ERROR], ends[DISPLACEMENT_ERROR] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)
     slots = SimpleNamespace(chain=SimpleNamespace(inverse_mass=inverse), balance=Balance(1))
     y = np.zeros(10)
-    fixed_step.give_back.py_func(slots, ends, 0.25, y)
+    fixed_step.correct_state.py_func(slots, ends, 0.25, y)
     # bead i is pushed forward by contact i − 1 and back by contact i
     assert y == pytest.approx([0.0, 0.3, 0.25, 0.0, 0.0, 2.0, 1.5, 0.0, -3.0 * 0.25, 0.0], abs=1e-15)
 

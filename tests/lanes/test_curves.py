@@ -9,7 +9,7 @@ from granchain_core import scene
 from granchain_core.integrate.engine import new_stop
 from granchain_core.kernels.batch import period_end as lane_looks
 from granchain_core.steady import batch_settle as lane_curve
-from granchain_core.steady.batch_job import LaneResult
+from granchain_core.steady.batch_job import BatchResult
 from granchain_core.steady.curve import draft_curve, resonance_curve
 from granchain_core.steady.settle import settle
 
@@ -17,10 +17,10 @@ from granchain_core.steady.settle import settle
 FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620.0, 1640.0, 1900.0]
 
 
-def results(frequencies: list[float]) -> dict[float, LaneResult]:
+def results(frequencies: list[float]) -> dict[float, BatchResult]:
     """What lanes find at these frequencies of section 2."""
     scenes = (scene("sec2").evolve(f=f) for f in frequencies)
-    return {found.scene.f: found for found in lane_curve.lane_results(scenes, new_stop())}
+    return {found.scene.f: found for found in lane_curve.batch_results(scenes, new_stop())}
 
 
 def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.integrate.batch import LaneBlock
+from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.engine import new_stop
 from granchain_core.kernels.batch import contact_correction as lane_events
 from granchain_core.kernels.batch import period_end as lane_looks
@@ -15,9 +15,9 @@ from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashp
 LANE, ROW = 5, 4
 
 
-def seen(record: np.ndarray) -> LaneBlock:
+def seen(record: np.ndarray) -> Batch:
     """A block of two-bead chains in one lane of which all numbers of the beads were `record`, strobe by strobe."""
-    block = LaneBlock(scene("sec2").evolve(N=2), new_stop())
+    block = Batch(scene("sec2").evolve(N=2), new_stop())
     block.state.strobes[LANE, : len(record), :, 1:-1] = record[:, None, None]
     block.state.kept[LANE] = block.state.periods[LANE] = len(record)
     block.state.y[[1, 2, ROW + 1, ROW + 2], LANE] = record[-1]
@@ -27,10 +27,10 @@ def seen(record: np.ndarray) -> LaneBlock:
 def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() -> None:
     """States that repeat are periodic where the chain came there by itself; where it was put there they are tried."""
     block = seen(np.ones(60))
-    assert lane_looks.look_coarse.py_func(block.state, LANE)
+    assert lane_looks.check_coarse.py_func(block.state, LANE)
     block = seen(np.ones(60))
     block.state.slowest[LANE] = 0.9
-    assert not lane_looks.look_coarse.py_func(block.state, LANE)
+    assert not lane_looks.check_coarse.py_func(block.state, LANE)
     assert block.state.testing[LANE] == 1
     moved = np.abs(block.state.y[[1, 2, ROW + 1, ROW + 2], LANE] - 1.0)
     assert moved == pytest.approx(lane_looks._DISTURBANCE, rel=1e-9)
@@ -54,7 +54,7 @@ def test_a_jump_is_kept_only_if_changes_are_smaller_behind_it(before: float, kep
     block = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
     state = block.state
     state.jumped[LANE], state.before[LANE, :, 1:-1], state.ready[LANE], state.wait[LANE] = before, 0.25, 10_000, 16
-    assert not lane_looks.look_coarse.py_func(state, LANE)
+    assert not lane_looks.check_coarse.py_func(state, LANE)
     assert state.jumped[LANE] == 0.0
     assert (state.y[1, LANE] != 0.25) == kept and (state.wait[LANE] == 16) == kept
 
@@ -69,7 +69,7 @@ def test_what_a_lanes_step_across_an_event_gives_too_much(r: float) -> None:
     """Impulse and path of lane_events.py by their definition, law by law."""
     half, speed, h, c = max(r - 0.5, 0.0), 0.7, 0.2, 0.3
     beside = ((r**1.5 + 4.0 * (r + 0.5) ** 1.5 + (r + 1.0) ** 1.5) / 6.0 - 0.4 * ((r + 1.0) ** 2.5 - r**2.5))
-    assert lane_events.impulse_excess.py_func(r, r**1.5, half**1.5) == pytest.approx(excess(1.5, r) + beside, abs=1e-14)
+    assert lane_events.momentum_error.py_func(r, r**1.5, half**1.5) == pytest.approx(excess(1.5, r) + beside, abs=1e-14)
     for law, scale, power in ((LinearDashpot(c), c, 1.0), (Tsuji(c), 0.8 * c, 1.25), (KuwabaraKono(c), 2.0 / 3.0 * c, 1.5)):
-        found = lane_events.path_excess(law, r, half, r**1.5, half**1.5, speed, h)
+        found = lane_events.displacement_error(law, r, half, r**1.5, half**1.5, speed, h)
         assert found == pytest.approx(scale * speed**power * h ** (power + 1.0) * excess(power, r), rel=1e-9, abs=1e-16)

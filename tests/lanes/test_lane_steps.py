@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.batch import NEVER, LaneBlock, scaled_state
+from granchain_core.integrate.batch import NEVER, Batch, scaled_state
 from granchain_core.integrate.engine import new_stop, rest
 from granchain_core.lower import lower
 
@@ -29,7 +29,7 @@ def scenes_of(case: str):
     return [scene("sec2").evolve(f=f, **CHAINS[case]) for f in FREQUENCIES]
 
 
-def put(block: LaneBlock, lane: int, one, refine: float) -> None:
+def put(block: Batch, lane: int, one, refine: float) -> None:
     """Start a scene from rest; it is looked at after its periods."""
     lowered = lower(one)
     block.put(lane, lowered, scaled_state(lowered, rest(one)), refine, look=PERIODS, earliest=NEVER)
@@ -37,7 +37,7 @@ def put(block: LaneBlock, lane: int, one, refine: float) -> None:
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
     """Displacements at the strobes (8, PERIODS + 1, N) and largest forces of all periods (8, 3)."""
-    block = LaneBlock(scenes[0], new_stop())
+    block = Batch(scenes[0], new_stop())
     for lane, one in enumerate(scenes):
         put(block, lane, one, refine)
     strobes, tops = {}, {}
@@ -115,7 +115,7 @@ def test_a_lane_does_not_know_of_the_others(case):
     assert (np.roll(turned, 3, axis=0) == together).all()
     same = run_all([scenes[3]] * 8, 1.0)[0]
     assert (same == together[3]).all()
-    block = LaneBlock(scenes[0], new_stop())
+    block = Batch(scenes[0], new_stop())
     put(block, 5, scenes[3], 1.0)
     assert block.run() == (5, True)
     assert (block.strobes(5)[: PERIODS + 1, 0] == together[3]).all()

@@ -7,10 +7,10 @@ import pytest
 
 from granchain_core import Scene, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.batch import LaneBlock, can_share_lanes, scaled_state
+from granchain_core.integrate.batch import Batch, can_share_batch, scaled_state
 from granchain_core.integrate.engine import new_stop, rest
 from granchain_core.lower import lower
-from granchain_core.steady.batch_settle import lane_results
+from granchain_core.steady.batch_settle import batch_results
 from granchain_core.steady.curve import curve_point
 
 CHAINS: list[dict[str, object]] = [
@@ -51,7 +51,7 @@ def test_a_curve_by_lanes_is_what_each_frequency_gives_by_itself() -> None:
 def test_a_lane_that_is_not_finite_does_not_lose_the_others() -> None:
     # Far more damping than the lane's explicit step can follow is refused by a smaller step, so poison one instead.
     scenes = [scene("sec2").evolve(f=f) for f in (1000.0, 1130.0)]
-    block = LaneBlock(scenes[0], new_stop())
+    block = Batch(scenes[0], new_stop())
     for lane, one in enumerate(scenes):
         y = scaled_state(lower(one), rest(one))
         block.put(lane, lower(one), y * (np.nan if lane == 0 else 1.0), 1, look=5, earliest=5)
@@ -63,7 +63,7 @@ def test_a_lane_that_is_not_finite_does_not_lose_the_others() -> None:
 
 def test_a_scene_with_a_tension_cut_is_not_given_to_lanes() -> None:
     cut: Scene = scene("sec2").evolve(tension="cut")
-    assert not can_share_lanes(cut) and can_share_lanes(scene("sec2"))
+    assert not can_share_batch(cut) and can_share_batch(scene("sec2"))
     points = list(iter_curve(cut, [340.0, 400.0]))
     assert sorted(p.frequency for p in points) == [340.0, 400.0]
     assert all(p.max_output_force > 0.0 for p in points)
@@ -75,4 +75,4 @@ def test_raising_the_stop_flag_ends_the_lanes() -> None:
     stop = new_stop()
     stop[0] = 1
     with pytest.raises(Cancelled):
-        list(lane_results(iter([scene("sec2")]), stop))
+        list(batch_results(iter([scene("sec2")]), stop))

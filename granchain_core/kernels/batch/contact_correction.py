@@ -12,27 +12,27 @@ and with it RK4 in lanes goes from order 2 to about 3 (docs/model.md).
 from __future__ import annotations
 
 from ..effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
-from ..effects.preload import lane_overlap
+from ..effects.preload import batch_overlap
 from ..effects.unequal import over_mass, times_stiffness
-from ..jit import inlined, term
+from ..jit import by_slot, inline_llvm
 from ..simd.functions import clip, gate, larger, root
 from ..simd.vector import blank, load, positive_mask, store
 
 
-@inlined
+@inline_llvm
 def three_halves(r):
     """r^{3/2}."""
     return r * root(r)
 
 
-@inlined
+@inline_llvm
 def five_quarters(r):
     """r^{5/4}."""
     return r * root(root(r))
 
 
-@inlined
-def impulse_excess(r, power, half_power):
+@inline_llvm
+def momentum_error(r, power, half_power):
     """S_{3/2}(r) + E(r) from r, r^{3/2} and [r − 1/2]_+^{3/2}."""
     inside = (power + 4.0 * half_power) * (1.0 / 6.0) - 0.4 * r * power
     one = r + 1.0
@@ -41,44 +41,44 @@ def impulse_excess(r, power, half_power):
     return inside + beside
 
 
-@term
-def path_excess(law, r, half, power, half_power, speed, h):
+@by_slot
+def displacement_error(law, r, half, power, half_power, speed, h):
     """c v^p h^{p+1} S_p(r) over the coefficient c's lanes; `power` and `half_power` are 3/2. Absent: nothing."""
     return None
 
 
-@path_excess.of(LinearDashpot)
+@displacement_error.of(LinearDashpot)
 def _(law, r, half, power, half_power, speed, h):
     return law.coefficient * speed * h * h * ((r + 4.0 * half) * (1.0 / 6.0) - 0.5 * r * r)
 
 
-@path_excess.of(Tsuji)
+@displacement_error.of(Tsuji)
 def _(law, r, half, power, half_power, speed, h):
     q = five_quarters(r)
     inside = (q + 4.0 * five_quarters(half)) * (1.0 / 6.0) - (4.0 / 9.0) * r * q
     return 0.8 * law.coefficient * h * five_quarters(speed * h) * inside
 
 
-@path_excess.of(KuwabaraKono)
+@displacement_error.of(KuwabaraKono)
 def _(law, r, half, power, half_power, speed, h):
     inside = (power + 4.0 * half_power) * (1.0 / 6.0) - 0.4 * r * power
     return 2.0 / 3.0 * law.coefficient * h * three_halves(speed * h) * inside
 
 
-@term
-def give_back_path(law, values, y, c, changed, path):
+@by_slot
+def correct_displacement(law, values, y, c, changed, path):
     """Take the path's excess from the displacements on both sides of contact c. Absent: there is none."""
 
 
 for _law in (LinearDashpot, Tsuji, KuwabaraKono):
 
-    @give_back_path.of(_law)
+    @correct_displacement.of(_law)
     def _(law, values, y, c, changed, path):
-        give_back(values, y, c, 0, gate(changed, path))
+        correct_state(values, y, c, 0, gate(changed, path))
 
 
-@inlined
-def give_back(values, y, c, row, excess):
+@inline_llvm
+def correct_state(values, y, c, row, excess):
     """Take from the beads beside contact c, in the row of y that begins at `row`, what it gave them too much."""
     if c > 0:
         store(y, row + c, load(y, row + c) + over_mass(values.unequal, c, excess))
@@ -86,14 +86,14 @@ def give_back(values, y, c, row, excess):
         store(y, row + c + 1, load(y, row + c + 1) - over_mass(values.unequal, c + 1, excess))
 
 
-@inlined
+@inline_llvm
 def correct_contacts(values, y, gaps, h, u0):
     """Take back what the last step got wrong at contacts that changed in it; `gaps` are the overlaps before it."""
     m = values.last + 2
     left = u0
     for c in range(values.last + 1):
         right = load(y, c + 1)
-        gap = lane_overlap(values.preload, left, right, c)
+        gap = batch_overlap(values.preload, left, right, c)
         before = load(gaps, c)
         store(gaps, c, gap)
         changed = blank(gap) - before * gap
@@ -103,10 +103,10 @@ def correct_contacts(values, y, gaps, h, u0):
             r = larger(gap, before) / (speed * h)
             half = clip(r - 0.5)
             power, half_power = three_halves(r), three_halves(half)
-            impulse = h * three_halves(speed * h) * impulse_excess(r, power, half_power)
+            impulse = h * three_halves(speed * h) * momentum_error(r, power, half_power)
             impulse = times_stiffness(values.unequal, values.wall, c, values.last, impulse)
-            path = path_excess(values.law, r, half, power, half_power, speed, h)
-            give_back(values, y, c, m, gate(changed, impulse))
-            give_back_path(values.law, values, y, c, changed, path)
+            path = displacement_error(values.law, r, half, power, half_power, speed, h)
+            correct_state(values, y, c, m, gate(changed, impulse))
+            correct_displacement(values.law, values, y, c, changed, path)
             right = load(y, c + 1)
         left = right

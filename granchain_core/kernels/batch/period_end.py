@@ -15,7 +15,7 @@ import numpy as np
 
 from ..equations.motion import copy
 from ..forces.peaks import MEMORY, ROWS
-from ..jit import kernel, part
+from ..jit import inline_numba, kernel
 from ..strobes.extrapolation import ORBITS, reduced_rank
 from ..strobes.periodicity import (
     LONGEST_PERIOD,
@@ -47,7 +47,7 @@ PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
 
 
 @kernel
-def keep_lane_strobe(state, lane):
+def keep_member_strobe(state, lane):
     """Note where a lane is behind its earlier strobes, of which the oldest half goes when it is full; if finite."""
     strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
     if state.kept[lane] == strobes.shape[1]:
@@ -65,7 +65,7 @@ def keep_lane_strobe(state, lane):
 
 
 @kernel
-def place_lane(state, lane, where):
+def place_member(state, lane, where):
     """Put a lane into the state `where` (2, m); its record begins there."""
     m = where.shape[1]
     for i in range(1, m - 1):
@@ -75,7 +75,7 @@ def place_lane(state, lane, where):
     for row in range(4):
         state.ends[row, lane] = 1.0  # closed: what follows is no closing
     state.kept[lane] = 0
-    keep_lane_strobe(state, lane)
+    keep_member_strobe(state, lane)
 
 
 @kernel
@@ -92,12 +92,12 @@ def follow(state, lane, n, rate, change):
         for i in range(limit.shape[1]):
             if not abs(limit[q, i] - record[ORBITS * n, q, i]) <= reach * state.scale[q]:
                 return False
-    place_lane(state, lane, limit)
+    place_member(state, lane, limit)
     return True
 
 
 @kernel
-def look_coarse(state, lane):
+def check_coarse(state, lane):
     """See what a lane's last strobes show and follow what they approach; whether it is periodic."""
     kept, periods = state.kept[lane], state.periods[lane]
     period, rate, distance, n, its_rate, change = find(
@@ -113,7 +113,7 @@ def look_coarse(state, lane):
         proved = n > 0 and change < state.jumped[lane]
         state.jumped[lane] = 0.0
         if not proved:
-            place_lane(state, lane, state.before[lane])
+            place_member(state, lane, state.before[lane])
             state.wait[lane] *= 2
             state.ready[lane] = periods + state.wait[lane]
             return False
@@ -134,7 +134,7 @@ def look_coarse(state, lane):
     return False
 
 
-@part
+@inline_numba
 def disturb(state, lane, period):
     """Push a lane off the orbit it seems to be on and note the orbit's state and forces."""
     kept, m = state.kept[lane], state.limit.shape[1]
@@ -144,12 +144,12 @@ def disturb(state, lane, period):
             state.limit[q, i] = state.before[lane, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
     for q in range(3):
         state.fine[lane, FORCES + q] = largest_top(state, lane, period, q)
-    place_lane(state, lane, state.limit)
+    place_member(state, lane, state.limit)
     state.testing[lane] = period
     state.earliest[lane] = state.periods[lane] + _TEST_ORBITS * period
 
 
-@part
+@inline_numba
 def decayed(state, lane):
     """Whether the disturbance of a lane has become smaller; the lane is then put back, and its decay is known."""
     n, m = state.testing[lane], state.limit.shape[1]
@@ -167,7 +167,7 @@ def decayed(state, lane):
         late += whole if quarter == 3 else 0.0
         last = there
     if last <= _LEFT * first:
-        place_lane(state, lane, state.before[lane])
+        place_member(state, lane, state.before[lane])
         rate = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
         state.seen[lane, 1] = max(state.seen[lane, 1], min(rate, _NEARLY_ONE))
         return True
@@ -185,8 +185,8 @@ def largest_top(state, lane, n, q):
     return largest
 
 
-@part
-def look_fine(state, lane):
+@inline_numba
+def check_fine(state, lane):
     """Whether a fine lane has forgotten the coarse orbit; if not, it is followed to its own.
 
     Where changes are not smaller behind a jump it is taken back, and the lane goes on without.
@@ -200,7 +200,7 @@ def look_fine(state, lane):
     proved = change < state.jumped[lane] or state.jumped[lane] == 0.0
     state.jumped[lane] = 0.0
     if not proved:
-        place_lane(state, lane, state.before[lane])
+        place_member(state, lane, state.before[lane])
         state.earliest[lane], fine[ROUNDS] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND]), _MOST_ROUNDS
         return False
     moved = 0.0
@@ -223,7 +223,7 @@ def end_period(state, lane):
     """Note strobe and largest forces of a lane, restart its phase exactly; whether it should be looked at."""
     state.periods[lane] += 1
     periods = state.periods[lane]
-    finite = keep_lane_strobe(state, lane)
+    finite = keep_member_strobe(state, lane)
     tops = state.tops[lane, periods % REMEMBERED]
     for q in range(3):
         tops[q] = state.peaks[ROWS * q, lane]
@@ -241,6 +241,6 @@ def end_period(state, lane):
         if state.testing[lane] > 0:
             if decayed(state, lane):
                 return True
-        elif look_fine(state, lane) if state.fine[lane, PERIOD] > 0.0 else look_coarse(state, lane):
+        elif check_fine(state, lane) if state.fine[lane, PERIOD] > 0.0 else check_coarse(state, lane):
             return True
     return periods >= state.look[lane] and state.testing[lane] == 0

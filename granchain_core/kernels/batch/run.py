@@ -12,16 +12,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..effects.dissipation import lane_values
+from ..effects.dissipation import batch_values
 from ..effects.foundation import lane_foundation
-from ..effects.preload import lane_overlap
-from ..jit import kernel, part
+from ..effects.preload import batch_overlap
+from ..jit import inline_numba, kernel
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import LANES, load, store
 from ..status import CANCELLED, DONE, NOT_FINITE
 from .contact_correction import correct_contacts
 from .period_end import end_period
-from .step import Values, lane_step, watch_ends
+from .step import Values, batch_step, watch_ends
 
 #: Steps after which the stop flag is asked at the latest.
 _PATIENCE = 4096
@@ -43,7 +43,7 @@ class Lanes(NamedTuple):
     h: np.ndarray
 
 
-class LaneState(NamedTuple):
+class BatchState(NamedTuple):
     """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), overlap and rate of the first and of
     the last contact a step ago (4, 8), sin and cos of the phase (2, 8), peaks (17, 8).
 
@@ -84,11 +84,11 @@ class LaneState(NamedTuple):
 
 
 @kernel
-def lane_steps(lanes, state, count):
+def batch_steps(lanes, state, count):
     """Take `count` steps in all lanes."""
     y, before = state.y, flush_subnormals()
     last = y.shape[0] // 2 - 2
-    values = Values(load(lanes.wall, 0), lane_values(lanes.dissipation), lane_foundation(lanes.foundation),
+    values = Values(load(lanes.wall, 0), batch_values(lanes.dissipation), lane_foundation(lanes.foundation),
                     lanes.preload, lanes.unequal, last)
     h, beta = load(lanes.h, 0), load(lanes.beta, 0)
     c, s = load(lanes.turn, 0), load(lanes.turn, 1)
@@ -97,9 +97,9 @@ def lane_steps(lanes, state, count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
         end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
         correct_contacts(values, y, state.gaps, h, sine)
-        gap_first = lane_overlap(values.preload, sine, load(y, 1), 0)
-        gap_last = lane_overlap(values.preload, load(y, last), load(y, last + 1), last)
-        ends = lane_step(values, y, h, sine, middle, end)
+        gap_first = batch_overlap(values.preload, sine, load(y, 1), 0)
+        gap_last = batch_overlap(values.preload, load(y, last), load(y, last + 1), last)
+        ends = batch_step(values, y, h, sine, middle, end)
         watch_ends(values, h, gap_first, gap_last, beta * cosine, ends, state.ends, state.peaks)
         sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
@@ -108,13 +108,13 @@ def lane_steps(lanes, state, count):
 
 
 @kernel
-def run_lanes(lanes, state, stop):
+def run_batch(lanes, state, stop):
     """Run until a lane should be looked at; returns (status, lane)."""
     while True:
         count = _PATIENCE
         for lane in range(LANES):
             count = min(count, state.left[lane])
-        lane_steps(lanes, state, count)
+        batch_steps(lanes, state, count)
         found = -1
         for lane in range(LANES):
             state.left[lane] -= count
@@ -126,8 +126,8 @@ def run_lanes(lanes, state, stop):
             return (DONE if np.isfinite(state.y[1, found]) else NOT_FINITE), found
 
 
-@part
-def part_again(state, m, start, growth, lane):
+@inline_numba
+def renormalise(state, m, start, growth, lane):
     """Note by how much a pair of lanes has parted in a period and pull the second back to the distance `start`."""
     y, total = state.y, 0.0
     for i in range(2 * m):
@@ -149,7 +149,7 @@ def run_pairs(lanes, state, start, growth, stop):
         count = _PATIENCE
         for lane in range(LANES):
             count = min(count, state.left[lane])
-        lane_steps(lanes, state, count)
+        batch_steps(lanes, state, count)
         busy = False
         for lane in range(0, LANES, 2):
             counted = state.periods[lane] < periods and state.look[lane] == periods
@@ -160,7 +160,7 @@ def run_pairs(lanes, state, start, growth, stop):
             if counted and state.left[lane] == state.steps[lane]:
                 if not (np.isfinite(state.y[1, lane]) and np.isfinite(state.y[1, lane + 1])):
                     return NOT_FINITE
-                part_again(state, m, start, growth, lane)
+                renormalise(state, m, start, growth, lane)
             busy = busy or (counted and state.periods[lane] < periods)
         if stop[0] != 0:
             return CANCELLED

@@ -6,12 +6,12 @@ from typing import Any, NamedTuple
 
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, SMOOTH_LAWS, LinearDashpot, damping, shape
-from ..effects.foundation import pull_back
-from ..effects.preload import lane_overlap
+from ..effects.foundation import add_foundation_force
+from ..effects.preload import batch_overlap
 from ..effects.unequal import over_mass, times_stiffness
 from ..forces.largest import brief_touch, closing_rate
 from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_lanes
-from ..jit import inlined, term
+from ..jit import by_slot, inline_llvm
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
 from ..simd.vector import blank, load, positive_mask, store
 
@@ -36,51 +36,51 @@ class Bead(NamedTuple):
     G: Any
 
 
-@inlined
+@inline_llvm
 def by_divider(d):
     """√d by the divider."""
     return root(d)
 
 
-@inlined
+@inline_llvm
 def by_multipliers(d):
     """√d, d > 0, by the multipliers."""
     return root_by_series(d)
 
 
-@inlined
+@inline_llvm
 def contact(values, root_of, left, right, c):
     """Elastic force and shape of G of contact c; `root_of` takes the root its own way."""
-    d = above_zero(lane_overlap(values.preload, left, right, c))
+    d = above_zero(batch_overlap(values.preload, left, right, c))
     r = root_of(d)
     return times_stiffness(values.unequal, values.wall, c, values.last, d * r), shape(values.law, d, r)
 
 
-@inlined
+@inline_llvm
 def first_bead(values, root_of, u0, u, w):
     """Bead 1 of a stage with the driver at u0."""
     e, G = contact(values, root_of, u0, u, 0)
     return Bead(u, w, e, G)
 
 
-@inlined
+@inline_llvm
 def bead_slope(values, root_of, bead, i, right, right_w):
     """Slope of bead i, which is `bead`, between its neighbours; and the next bead with the contact between them."""
     e, G = contact(values, root_of, bead.u, right, i)
-    du = lane_velocity(values.law, values.unequal, i, bead.w, bead.G - G)
-    dw = over_mass(values.unequal, i, pull_back(values.foundation, bead.e - e, bead.u))
+    du = batch_velocity(values.law, values.unequal, i, bead.w, bead.G - G)
+    dw = over_mass(values.unequal, i, add_foundation_force(values.foundation, bead.e - e, bead.u))
     return du, dw, Bead(right, right_w, e, G)
 
 
-@term
-def lane_velocity(law, unequal, i, w, difference):
+@by_slot
+def batch_velocity(law, unequal, i, w, difference):
     """v = w + (G_{i-1} − G_i)/m of bead i in all lanes, from the difference of shapes."""
     return w
 
 
 for _law in LAWS:
 
-    @lane_velocity.of(_law)
+    @batch_velocity.of(_law)
     def _(law, unequal, i, w, difference):
         return w + over_mass(unequal, i, law.coefficient * difference)
 
@@ -94,8 +94,8 @@ class Ends(NamedTuple):
     v_last: Any
 
 
-@inlined
-def lane_step(values, y, h, u0, middle, end):
+@inline_llvm
+def batch_step(values, y, h, u0, middle, end):
     """One RK4 step in place, the driver at u0, at `middle` and at `end`; returns the `Ends` where it began.
 
     The four stages run along the chain one bead behind another, so that a step goes through memory once. The stages'
@@ -149,7 +149,7 @@ def lane_step(values, y, h, u0, middle, end):
     return Ends(pushed, v_first, one.e, v_last)
 
 
-@inlined
+@inline_llvm
 def watch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
     """Follow input force, output force and its elastic part in all lanes, where a step began."""
     first = damping(values.law, positive_part(gap_first)) * (v0 - ends.v_first)
@@ -160,7 +160,7 @@ def watch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
     watch_jumps(values.law, values, h, gap_first, v0 - ends.v_first, gap_last, ends.v_last, before, peaks)
 
 
-@term
+@by_slot
 def watch_jumps(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks):
     """Follow the jumps of both end contacts over the last step. Absent, and where g(0) = 0: forces have none."""
 
@@ -175,7 +175,7 @@ def _(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks)
 watch_jumps.absent_for(*SMOOTH_LAWS)
 
 
-@inlined
+@inline_llvm
 def watch_jump(coefficient, own, h, gap, rate, before, row, peaks, peak):
     """Follow the jump of one contact; its overlap and rate a step ago are rows of `before`, and become those of now."""
     gap_before, rate_before = load(before, row), load(before, row + 1)

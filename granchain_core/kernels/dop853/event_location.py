@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..effects.preload import overlap
-from ..jit import kernel, part
+from ..jit import inline_numba, kernel
 from ..status import DONE, NOT_FINITE, STEP_TOO_SMALL
 from .event_step import attempt_in_time, first_change
 from .tableau import STAGES
@@ -29,7 +29,7 @@ _PART = 0.5
 _LOST = -1
 
 
-@part
+@inline_numba
 def next_release(slots, y, path):
     """(contact, time) to the release that is nearest if its speed stays, (−1, ∞) if no contact opens."""
     contact, first = -1, np.inf
@@ -42,8 +42,8 @@ def next_release(slots, y, path):
     return contact, first
 
 
-@part
-def land(method, slots, beta, time, h, y, work, path, tangent, c, counts):
+@inline_numba
+def locate_change(method, slots, beta, time, h, y, work, path, tangent, c, counts):
     """Correct the size of a step until it ends on the change of contact c; returns it."""
     for _ in range(_TRIALS):
         d = overlap(slots.preload, work.end, c)
@@ -64,13 +64,13 @@ def shrunk(h, error):
     return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
 
 
-@part
+@inline_numba
 def grown(h, error):
     """The step to try after one with a tolerable error."""
     return h * min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
 
 
-@part
+@inline_numba
 def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     """Step from t towards the release of contact c, guessed at `goal`: onto it, or part of the way.
 
@@ -112,7 +112,7 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     return DONE, time, h, c if landed else -1, goal
 
 
-@part
+@inline_numba
 def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangent, counts):
     """One accepted step from y at local time t, at most to `limit`, with the last onset at `onset` (−∞: none).
 
@@ -166,11 +166,11 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
         h *= x
         attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
         counts[1] += STAGES
-        return DONE, time, land(method, slots, beta, time, h, y, work, path, tangent, contact, counts), contact
+        return DONE, time, locate_change(method, slots, beta, time, h, y, work, path, tangent, contact, counts), contact
     return STEP_TOO_SMALL, time, h, -1
 
 
-@part
+@inline_numba
 def next_dt(time, h, error, before, limit):
     """The next step in t after an accepted one of size h in x; not less than before where only the limit cut it."""
     end = time_at(time, h)

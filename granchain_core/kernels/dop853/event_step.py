@@ -14,7 +14,7 @@ import numpy as np
 
 from ..effects.driver import driver_displacement
 from ..effects.preload import overlap
-from ..jit import kernel, part, term
+from ..jit import by_slot, inline_numba, kernel
 from .located import may_turn
 from .step import combine, dense_value, error_norm
 from .tableau import STAGES, C
@@ -34,7 +34,7 @@ class Path(NamedTuple):
     logged: np.ndarray
 
 
-@term
+@by_slot
 def keep_gaps(tangent, slots, state, stage):
     """Keep the overlaps of one stage for the tangents. Absent: nobody needs them."""
 
@@ -67,7 +67,7 @@ def overlap_at(slots, beta, time, h, y, work, c, x):
     return overlap(slots.preload, probe, c)
 
 
-@part
+@inline_numba
 def root_between(slots, beta, time, h, y, work, c, low, high, rising):
     """Fraction in [low, high] at which δ_c changes sign, upwards if `rising` (bisection and regula falsi in turn)."""
     f_low = overlap_at(slots, beta, time, h, y, work, c, low)
@@ -102,7 +102,7 @@ def turning_point(slots, beta, time, h, y, work, c, sign):
     return 0.5 * (low + high)
 
 
-@part
+@inline_numba
 def first_change(slots, beta, time, h, y, work, path, counts, but):
     """(contact, fraction) of the first change inside the step of any contact but one; (−1, 2) if there is none."""
     contact, first, ready = -1, 2.0, False

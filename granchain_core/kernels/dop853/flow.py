@@ -11,7 +11,7 @@ import numpy as np
 from ..effects.preload import overlap
 from ..equations.motion import copy
 from ..equations.tangent import Tangent, carry
-from ..jit import kernel, term
+from ..jit import by_slot, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL
 from .event_location import flow_step
@@ -22,7 +22,7 @@ from .time_map import held_slope, time_at
 _MOST_STEPS = 5_000_000
 
 
-@term
+@by_slot
 def jump(tangent, slots, c, closes):
     """Let tangents jump where contact c opens or closes. Absent: there are none, or they are continuous in w."""
 

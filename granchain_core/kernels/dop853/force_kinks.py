@@ -12,7 +12,7 @@ from ..effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from ..effects.preload import overlap
 from ..effects.tension import NoTension, slacken
 from ..equations.motion import write_w
-from ..jit import kernel, part, term
+from ..jit import by_slot, inline_numba, kernel
 from ..simd.functions import root
 from .bracket import between, narrowed
 from .step import STAGES, dense_value, evaluate, prepare_dense
@@ -23,46 +23,46 @@ _NEAR = 1e-8
 _STILL = 1e-15
 
 
-@term
-def push(law, stiffness, d, rate):
+@by_slot
+def scaled_force(law, stiffness, d, rate):
     """F/g for d = [δ]_+ and δ̇ = rate. Absent: positive, an elastic contact never pulls."""
     return 1.0
 
 
-@push.of(LinearDashpot)
+@scaled_force.of(LinearDashpot)
 def _(law, stiffness, d, rate):
     return stiffness * d * root(d) / law.coefficient + rate
 
 
-@push.of(Tsuji)
+@scaled_force.of(Tsuji)
 def _(law, stiffness, d, rate):
     return stiffness * d * root(root(d)) / law.coefficient + rate
 
 
-@push.of(KuwabaraKono)
+@scaled_force.of(KuwabaraKono)
 def _(law, stiffness, d, rate):
     return stiffness * d / law.coefficient + rate
 
 
-@term
-def note_slack(tension, slots, beta, t, y, work):
+@by_slot
+def enter_force_free(tension, slots, beta, t, y, work):
     """Note which contacts are slack at the start of a step, whose account then has another slope. Absent: none is."""
 
 
-@note_slack.of(NoTension)
+@enter_force_free.of(NoTension)
 def _(tension, slots, beta, t, y, work):
     found = False
     for c in range(tension.slack.size):
         d, rate = overlap(slots.preload, y, c), work.k[0, c] - work.k[0, c + 1]
-        if d > 0.0 and push(slots.dissipation, slots.chain.stiffness[c], d, rate) < -_STILL * work.scale[1]:
+        if d > 0.0 and scaled_force(slots.dissipation, slots.chain.stiffness[c], d, rate) < -_STILL * work.scale[1]:
             slacken(tension, slots, y, c)
             found = True
     if found:
         evaluate(slots, beta, t, y, work.k[0], work.forces)
 
 
-@term
-def leave_slack(tension, slots, y, dy, forces):
+@by_slot
+def leave_force_free(tension, slots, y, dy, forces):
     """End a step's slack at its end: the velocities in dy stay, w and the account go over to the law's own G.
 
     Returns whether anything changed, and the slope with it. Absent: no contact is slack.
@@ -70,7 +70,7 @@ def leave_slack(tension, slots, y, dy, forces):
     return False
 
 
-@leave_slack.of(NoTension)
+@leave_force_free.of(NoTension)
 def _(tension, slots, y, dy, forces):
     found = False
     for c in range(tension.slack.size):
@@ -86,23 +86,23 @@ def _(tension, slots, y, dy, forces):
 
 
 @kernel
-def push_in_step(slots, beta, t, h, y, work, c, x):
+def scaled_force_in_step(slots, beta, t, h, y, work, c, x):
     """F/g of contact c at fraction x of the step, on the dense output."""
     for i in range(y.size):
         work.probe[i] = dense_value(work.dense, y[i], x, i)
     evaluate(slots, beta, t + x * h, work.probe, work.slope, work.forces)
     d = positive_part(overlap(slots.preload, work.probe, c))
-    return push(slots.dissipation, slots.chain.stiffness[c], d, work.slope[c] - work.slope[c + 1])
+    return scaled_force(slots.dissipation, slots.chain.stiffness[c], d, work.slope[c] - work.slope[c + 1])
 
 
-@part
-def push_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
+@inline_numba
+def scaled_force_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
     """Fraction between `low` and `high` where F of contact c changes sign."""
     x, side = high, 0
     for _ in range(60):
         before = x
         x = between(low, high, f_low, f_high)
-        f = push_in_step(slots, beta, t, h, y, work, c, x)
+        f = scaled_force_in_step(slots, beta, t, h, y, work, c, x)
         counts[1] += 1
         if abs(x - before) < 0.1 * _NEAR:
             break
@@ -110,7 +110,7 @@ def push_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
     return x
 
 
-@term
+@by_slot
 def first_kink(tension, slots, beta, t, h, y, work, until, counts, again):
     """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
 
@@ -130,8 +130,8 @@ def _(tension, slots, beta, t, h, y, work, until, counts, again):
             continue
         slack, stiffness = tension.slack[c] != 0, slots.chain.stiffness[c]
         d1 = positive_part(overlap(slots.preload, work.end, c))
-        f0 = push(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
-        f1 = push(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
+        f0 = scaled_force(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
+        f1 = scaled_force(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
         if max(abs(f0), abs(f1)) < still or (until == 1.0 and slack != (f1 > 0.0)):
             continue
         if not ready:
@@ -139,13 +139,13 @@ def _(tension, slots, beta, t, h, y, work, until, counts, again):
             counts[1] += 3
             ready = True
         if until < 1.0:
-            f1 = push_in_step(slots, beta, t, h, y, work, c, until)
+            f1 = scaled_force_in_step(slots, beta, t, h, y, work, c, until)
             counts[1] += 1
             if abs(f1) < still or slack != (f1 > 0.0):
                 continue
         x = 0.0
         if f0 * f1 < 0.0:  # else F is rounding at the start
-            x = push_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
+            x = scaled_force_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
         if x * h > _NEAR:
             if x < first and x * h < until * h - _NEAR:
                 first = x

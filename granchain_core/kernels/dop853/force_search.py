@@ -14,7 +14,7 @@ from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import OUTPUT
-from ..jit import kernel, part
+from ..jit import inline_numba, kernel
 from ..simd.functions import root
 from .step import dense_value, evaluate, prepare_dense
 from .tableau import STAGES
@@ -70,7 +70,7 @@ def slopes_of(slots, y, dy, work):
     return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
 
 
-@part
+@inline_numba
 def top_in_step(slots, beta, t, h, y, work, q, counts):
     """Largest value of force number q inside the step."""
     low, high = 0.0, 1.0

@@ -15,11 +15,11 @@ from ..effects.preload import overlap
 from ..effects.tension import NoTension
 from ..equations.motion import copy
 from ..forces.largest import note_closings
-from ..jit import kernel, part, term
+from ..jit import by_slot, inline_numba, kernel
 from ..samples import first_not_finite, keep
 from ..status import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL
 from .bracket import between, narrowed
-from .force_kinks import first_kink, leave_slack, note_slack
+from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
 from .step import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
 
@@ -47,7 +47,7 @@ def overlap_in_step(slots, beta, t, h, y, work, c, x):
     return overlap(slots.preload, probe, c)
 
 
-@part
+@inline_numba
 def overlap_root(slots, beta, t, h, y, work, c, low, high):
     """Fraction between `low` and `high` where δ_c changes sign."""
     f_low = overlap_in_step(slots, beta, t, h, y, work, c, low)
@@ -63,7 +63,7 @@ def overlap_root(slots, beta, t, h, y, work, c, low, high):
     return x
 
 
-@part
+@inline_numba
 def inner_extremum(slots, beta, t, h, y, work, c, sign):
     """Fraction at which sign·δ_c is largest inside the step, by golden section on the dense output."""
     ratio = 0.6180339887498949
@@ -83,7 +83,7 @@ def inner_extremum(slots, beta, t, h, y, work, c, sign):
     return 0.5 * (low + high)
 
 
-@part
+@inline_numba
 def may_turn(d0, s0, d1, s1, sign):
     """Whether a contact with the same sign at both ends may cross zero in between.
 
@@ -96,7 +96,7 @@ def may_turn(d0, s0, d1, s1, sign):
     return reach > 0.0
 
 
-@part
+@inline_numba
 def first_event(slots, beta, t, h, y, work, counts):
     """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
@@ -127,19 +127,19 @@ def first_event(slots, beta, t, h, y, work, counts):
     return contact, first
 
 
-@term
-def landing(tension):
+@by_slot
+def event_tolerance(tension):
     """How far behind an event a step is to end, and within how many times that. Absent: as exactly as can be."""
     return _BEHIND, _NEAR
 
 
-@landing.of(NoTension)
+@event_tolerance.of(NoTension)
 def _(tension):
     return _BEHIND_CUT, _NEAR_CUT
 
 
-@part
-def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
+@inline_numba
+def locate_event(method, slots, beta, t, h, limit, y, work, c, counts):
     """Shorten or lengthen a step so that it ends just behind the event of contact c; returns its size.
 
     An event that turns out to lie behind `limit` is left to the next step, and so is one that is approached so slowly
@@ -147,7 +147,7 @@ def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
     """
     longest = min(limit - t, _LONGER * h)
     before = overlap(slots.preload, y, c) > 0.0
-    behind, near = landing(slots.tension)
+    behind, near = event_tolerance(slots.tension)
     behind *= max(1.0, work.scale[0])
     target = -behind if before else behind
     for _ in range(6):
@@ -165,14 +165,14 @@ def land_behind(method, slots, beta, t, h, limit, y, work, c, counts):
     return h
 
 
-@part
+@inline_numba
 def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     """One accepted step from y at local time t, at most to `limit`; the result is work.end.
 
     Returns (status, step taken, contact that changed at its end or −1); `clock[0]` is the next step to try.
     """
     h = min(clock[0], method.largest_step, limit - t)
-    note_slack(slots.tension, slots, beta, t, y, work)
+    enter_force_free(slots.tension, slots, beta, t, y, work)
     aimed, kinked, again, factor = -1, False, False, 1.0
     while True:
         error = attempt(method, slots, beta, t, h, y, work)
@@ -203,7 +203,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
             break
         h *= x
     if aimed >= 0:
-        h = land_behind(method, slots, beta, t, h, limit, y, work, aimed, counts)
+        h = locate_event(method, slots, beta, t, h, limit, y, work, aimed, counts)
         clock[0] = min(clock[0], 2.0 * method.tolerance**0.4)
         counts[2] += 1
     elif kinked:
@@ -214,7 +214,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     return DONE, h, aimed
 
 
-@part
+@inline_numba
 def look_inside(slots, beta, t, h, at, y, work):
     """The state at local time `at` inside the accepted step from t, in work.probe, and its slope in work.slope."""
     x = min(1.0, (at - t) / h)
@@ -271,7 +271,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
         copy(work.end, y)
         copy(work.k[STAGES], work.k[0])
         add_to_account(slots.balance, y, 0.0, lost)
-        changed = leave_slack(slots.tension, slots, y, work.k[0], work.forces)
+        changed = leave_force_free(slots.tension, slots, y, work.k[0], work.forces)
         new_scale(y, work, m)
         t = end
         if end == period:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..equations.motion import copy
-from ..jit import kernel, part
+from ..jit import inline_numba, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, DONE, NOT_FINITE
 from .force_search import follow_step
@@ -36,7 +36,7 @@ class OrbitRecord(NamedTuple):
     peaks: np.ndarray
 
 
-@part
+@inline_numba
 def follow_turns(slots, beta, t, h, y, work, since, record, row):
     """Keep the turning points of all overlaps inside the step; returns the next free row.
 

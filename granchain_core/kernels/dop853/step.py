@@ -9,7 +9,7 @@ import numpy as np
 
 from ..effects.driver import driver_displacement, driver_velocity
 from ..equations.motion import motion
-from ..jit import kernel, part
+from ..jit import inline_numba, kernel
 from .tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
 
 
@@ -66,7 +66,7 @@ def attempt(method, slots, beta, t, h, y, work):
     return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
 
 
-@part
+@inline_numba
 def error_norm(tolerance, h, y, work, m):
     """The method's combined error of orders 5 and 3 in units of the tolerance, root mean square over the beads."""
     k = work.k
@@ -98,7 +98,7 @@ def prepare_dense(slots, beta, t, h, y, work):
     dense_coefficients(h, y, work)
 
 
-@part
+@inline_numba
 def dense_coefficients(h, y, work):
     """Fill work.dense from the step's end and all its slopes."""
     k, dense = work.k, work.dense

@@ -17,9 +17,9 @@ from typing import NamedTuple
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji, keep_primitive, velocity
 from ..effects.driver import driver_displacement, driver_velocity
-from ..effects.foundation import pull_back
+from ..effects.foundation import add_foundation_force
 from ..effects.preload import overlap
-from ..jit import kernel, part, term
+from ..jit import by_slot, inline_numba, kernel
 from .step import combine, dense_coefficients
 from .tableau import ALL_STAGES, STAGES, C
 
@@ -37,7 +37,7 @@ class Time(NamedTuple):
     power: int
 
 
-@term
+@by_slot
 def smooth_power(dissipation):
     """The power p in which motion and tangents beside an event are smooth."""
     return 2
@@ -112,7 +112,7 @@ def held_slope(slots, beta, t, closed, y, dy, forces):
         keep_primitive(slots.dissipation, G, c, d)
     for i in range(1, m - 1):
         dy[i] = velocity(slots.dissipation, inverse_mass, y[m + i], G, i)
-        dy[m + i] = inverse_mass[i] * pull_back(slots.foundation, e[i - 1] - e[i], y[i])
+        dy[m + i] = inverse_mass[i] * add_foundation_force(slots.foundation, e[i - 1] - e[i], y[i])
 
 
 @kernel
@@ -124,7 +124,7 @@ def slope_in_x(slots, beta, time, x, closed, state, row, work):
         work.k[row, i] = rate * work.slope[i]
 
 
-@part
+@inline_numba
 def prepare_dense_in_time(slots, beta, time, h, closed, y, work):
     """Fill work.dense for the step of size h in x from y to work.end; work.slope is again that of the end."""
     for s in range(STAGES + 1, ALL_STAGES):

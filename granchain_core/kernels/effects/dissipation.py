@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import term
+from ..jit import by_slot
 from ..simd.functions import gate, root
 from ..simd.vector import load
 
@@ -40,7 +40,7 @@ LAWS = (LinearDashpot, Tsuji, KuwabaraKono)
 SMOOTH_LAWS = (Tsuji, KuwabaraKono)
 
 
-@term
+@by_slot
 def damping(law, d):
     """Force per speed of approach g(d) for d = [δ]_+; 0 where the contact is open."""
     return 0.0
@@ -61,7 +61,7 @@ def _(law, d):
     return law.coefficient * root(d)
 
 
-@term
+@by_slot
 def damping_slope(law, d):
     """g'(d) for d = [δ]_+; 0 where the contact is open, though the last two have an infinite slope there."""
     return 0.0
@@ -82,7 +82,7 @@ def _(law, d):
     return gate(d, 0.5 * law.coefficient / root(d))
 
 
-@term
+@by_slot
 def primitive(law, d):
     """G(d) with G' = g and G(0) = 0."""
     return 0.0
@@ -103,55 +103,55 @@ def _(law, d):
     return 2.0 / 3.0 * law.coefficient * d * root(d)
 
 
-@term
+@by_slot
 def keep_primitive(law, G, c, d):
     """Store G of contact c; without dissipation there is no array to store it in."""
 
 
-@term
+@by_slot
 def put_primitive(law, G, c, value):
     """Store another value for G of contact c; without dissipation there is no array to store it in."""
 
 
-@term
-def hand_primitive(law, G, source, target):
+@by_slot
+def put_prescribed_primitive(law, G, source, target):
     """G of one contact is that of another too; without dissipation there is none."""
 
 
-@term
+@by_slot
 def velocity(law, inverse_mass, w, G, i):
     """v_i = w_i + (G_{i-1} − G_i)/m_i, the inverse of the change of variables."""
     return w
 
 
-@term
+@by_slot
 def shifted(law, inverse_mass, v, G, i):
     """w_i = v_i − (G_{i-1} − G_i)/m_i."""
     return v
 
 
-@term
-def lane_values(law):
+@by_slot
+def batch_values(law):
     """The law with the values of all lanes, read from its (1, 8) arrays; what multiplies `shape` in the first."""
     return None
 
 
-@lane_values.of(LinearDashpot)
+@batch_values.of(LinearDashpot)
 def _(law):
     return LinearDashpot(load(law.coefficient, 0))
 
 
-@lane_values.of(Tsuji)
+@batch_values.of(Tsuji)
 def _(law):
     return Tsuji(load(law.coefficient, 0))
 
 
-@lane_values.of(KuwabaraKono)
+@batch_values.of(KuwabaraKono)
 def _(law):
     return KuwabaraKono(load(law.coefficient, 0))
 
 
-@term
+@by_slot
 def shape(law, d, r):
     """G over its coefficient, from d and r = √d."""
     return 0.0
@@ -182,7 +182,7 @@ for _law in LAWS:
     def _(law, G, c, value):
         G[c] = value
 
-    @hand_primitive.of(_law)
+    @put_prescribed_primitive.of(_law)
     def _(law, G, source, target):
         G[target] = G[source]
 

@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import term
-from .dissipation import hand_primitive
+from ..jit import by_slot
+from .dissipation import put_prescribed_primitive
 from .driver import FAR, Harmonic, driver_acceleration, driver_displacement, driver_velocity
 
 
@@ -30,7 +30,7 @@ class Sampled(NamedTuple):
     piece: np.ndarray
 
 
-class Echo(NamedTuple):
+class ObserverCoupling(NamedTuple):
     """Slot of the harmonic driver of a chain whose input force also acts in contact `contact`, on its observer."""
 
     amplitude: float
@@ -55,57 +55,57 @@ def _(driver, u0):
     return 0.0
 
 
-@driver_displacement.of(Echo)
+@driver_displacement.of(ObserverCoupling)
 def _(driver, theta):
     return driver.amplitude * sin(theta)
 
 
-@driver_velocity.of(Echo)
+@driver_velocity.of(ObserverCoupling)
 def _(driver, theta):
     return driver.amplitude * driver.beta * cos(theta)
 
 
-@driver_acceleration.of(Echo)
+@driver_acceleration.of(ObserverCoupling)
 def _(driver, u0):
     return -driver.beta * driver.beta * u0
 
 
-@term
-def hand_on_primitive(driver, slots, y, G):
+@by_slot
+def prescribe_primitive(driver, slots, y, G):
     """Put the input force's G where it pushes another chain. Absent: nothing."""
 
 
-@hand_on_primitive.of(Harmonic)
+@prescribe_primitive.of(Harmonic)
 def _(driver, slots, y, G):
     pass
 
 
-@hand_on_primitive.of(Sampled)
+@prescribe_primitive.of(Sampled)
 def _(driver, slots, y, G):
     pass
 
 
-@hand_on_primitive.of(Echo)
+@prescribe_primitive.of(ObserverCoupling)
 def _(driver, slots, y, G):
-    hand_primitive(slots.dissipation, G, 0, driver.contact)
+    put_prescribed_primitive(slots.dissipation, G, 0, driver.contact)
 
 
-@term
-def hand_on_force(driver, dy, e):
+@by_slot
+def prescribe_force(driver, dy, e):
     """Put the given force into the contact it acts in. Absent: nothing."""
 
 
-@hand_on_force.of(Harmonic)
+@prescribe_force.of(Harmonic)
 def _(driver, dy, e):
     pass
 
 
-@hand_on_force.of(Sampled)
+@prescribe_force.of(Sampled)
 def _(driver, dy, e):
     e[0] = dy[0]
     dy[0] = 0.0
 
 
-@hand_on_force.of(Echo)
+@prescribe_force.of(ObserverCoupling)
 def _(driver, dy, e):
     e[driver.contact] = e[0]

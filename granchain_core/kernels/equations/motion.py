@@ -18,8 +18,8 @@ from ..effects.balance import account
 from ..effects.contact import elastic_energy, elastic_force, positive_part
 from ..effects.dissipation import damping, keep_primitive, shifted, velocity
 from ..effects.driver import driver_displacement, driver_velocity
-from ..effects.foundation import foundation_energy, pull_back
-from ..effects.given_force import hand_on_force, hand_on_primitive
+from ..effects.foundation import add_foundation_force, foundation_energy
+from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
 from ..effects.tension import cut_tension, keep_slack_primitive, unless_slack
 from ..jit import kernel
@@ -57,13 +57,13 @@ def motion(slots, u0, v0, y, dy, forces):
         e[c] = elastic_force(stiffness[c], d)
         keep_primitive(slots.dissipation, G, c, d)
     keep_slack_primitive(slots.tension, slots, y, G)
-    hand_on_primitive(slots.driver, slots, y, G)
+    prescribe_primitive(slots.driver, slots, y, G)
     for i in range(1, m - 1):
         dy[i] = velocity(slots.dissipation, inverse_mass, y[m + i], G, i)
     cut_tension(slots.tension, slots, y, dy, e)
-    hand_on_force(slots.driver, dy, e)
+    prescribe_force(slots.driver, dy, e)
     for i in range(1, m - 1):
-        dy[m + i] = inverse_mass[i] * pull_back(slots.foundation, e[i - 1] - e[i], y[i])
+        dy[m + i] = inverse_mass[i] * add_foundation_force(slots.foundation, e[i - 1] - e[i], y[i])
     account(slots.balance, slots, y, dy, e)
 
 
@@ -87,7 +87,7 @@ def write_w(slots, y, dy, forces):
     m = slots.chain.inverse_mass.size
     for c in range(m - 1):
         keep_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
-    hand_on_primitive(slots.driver, slots, y, forces.G)
+    prescribe_primitive(slots.driver, slots, y, forces.G)
     for i in range(1, m - 1):
         y[m + i] = shifted(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
 

@@ -22,7 +22,7 @@ from ..effects.contact import positive_part
 from ..effects.dissipation import damping
 from ..effects.foundation import foundation_pull
 from ..effects.preload import overlap
-from ..jit import inlined, kernel, part, term
+from ..jit import by_slot, inline_llvm, inline_numba, kernel
 from ..simd.vector import blank, load, store
 
 
@@ -57,7 +57,7 @@ def _(tangent, slots, state, stage):
     stage_gaps(slots, state, stage, tangent.gaps)
 
 
-@term
+@by_slot
 def carry(tangent, slots, time, h, path):
     """Carry the tangents through the accepted step of size h; returns its share of ∫ trace. Absent: there are none."""
     return 0.0
@@ -75,7 +75,7 @@ def _(tangent, slots, time, h, path):
     return share
 
 
-@part
+@inline_numba
 def linearise(slots, time, h, path, tangent):
     """Tangent stiffness s and damping g of every contact in every stage, times dt/dx; returns ∫ trace over the step.
 
@@ -96,7 +96,7 @@ def linearise(slots, time, h, path, tangent):
     return trace
 
 
-@inlined
+@inline_llvm
 def stage_value(tangent, stage, i, first):
     """Row i of the block that begins at `first`, where slope `stage` of the step is taken."""
     value, base = load(tangent.matrix, first + i), i * STAGES
@@ -105,7 +105,7 @@ def stage_value(tangent, stage, i, first):
     return value
 
 
-@inlined
+@inline_llvm
 def block_slope(slots, tangent, stage, rate):
     """Slope of a block at its stage state."""
     inverse_mass, s, g = slots.chain.inverse_mass, tangent.stiffness, tangent.damping
@@ -123,7 +123,7 @@ def block_slope(slots, tangent, stage, rate):
         here, left = ahead, right
 
 
-@part
+@inline_numba
 def carry_block(slots, time, h, tangent, first):
     """Carry eight columns, whose rows begin at `first`, through the step."""
     rows = tangent.state.shape[0]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import damping
-from ..effects.foundation import pull_back
+from ..effects.foundation import add_foundation_force
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import end_overlaps, watch_crossings
@@ -46,7 +46,7 @@ def naive_motion(slots, u0, v0, y, dy, forces):
         force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped)
         forces.e[c] = force - damped
         if c > 0:
-            dy[m + c] = inverse_mass[c] * pull_back(slots.foundation, left - force, y[c])
+            dy[m + c] = inverse_mass[c] * add_foundation_force(slots.foundation, left - force, y[c])
         left = force
 
 

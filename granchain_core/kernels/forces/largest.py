@@ -18,11 +18,11 @@ import numpy as np
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import SMOOTH_LAWS, LinearDashpot, damping, damping_slope
 from ..effects.driver import driver_acceleration
-from ..effects.foundation import pull_back
+from ..effects.foundation import add_foundation_force
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..equations.motion import contact_force
-from ..jit import inlined, kernel, part, term
+from ..jit import by_slot, inline_llvm, inline_numba, kernel
 from ..rk4.contact_events import GAP, RATE, TINY, hermite_turn
 from ..simd.functions import clip, root
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
@@ -81,7 +81,7 @@ def acceleration(slots, y, dy, e, i, event, closed):
     if slots.chain.inverse_mass[i] == 0.0:
         return 0.0
     force = force_beside(slots, y, dy, e, i - 1, event, closed) - force_beside(slots, y, dy, e, i, event, closed)
-    return slots.chain.inverse_mass[i] * pull_back(slots.foundation, force, y[i])
+    return slots.chain.inverse_mass[i] * add_foundation_force(slots.foundation, force, y[i])
 
 
 @kernel
@@ -134,7 +134,7 @@ def watch_beside(slots, y, dy, e, h, event, closed, log):
     follow(log, 2, value, slope, h)
 
 
-@part
+@inline_llvm
 def watch_state(slots, y, dy, e, h, log):
     """The same where no contact changes; three values where none of them can be part of a top."""
     last, peaks = e.size - 1, log.peaks
@@ -157,9 +157,9 @@ def watch_event(slots, y, dy, e, h, c, theta, log):
     note_closing(slots.dissipation, rate, c, e.size - 1, theta, log)
 
 
-@part
+@inline_numba
 def watch_ends(slots, ends, c, theta, log):
-    """Forces at the event of contact c, overlaps and rates in `ends` (contact_events.py), where they are not followed."""
+    """Raise the largest forces at the event of contact c; overlaps and rates are in `ends` (contact_events.py)."""
     last = slots.chain.stiffness.size - 1
     for q in range(2):
         contact = 0 if q == 0 else last
@@ -171,7 +171,7 @@ def watch_ends(slots, ends, c, theta, log):
     note_closing(slots.dissipation, ends[RATE, c], c, last, theta, log)
 
 
-@term
+@by_slot
 def note_closing(law, rate, c, last, theta, log):
     """Note the jump of contact c that closes at `rate` at drive phase θ. Absent, and where g(0) = 0: there is none."""
 
@@ -193,7 +193,7 @@ def _(law, rate, c, last, theta, log):
             row[0], row[1], row[2], row[3] = log.met[2], theta, c, force
 
 
-@term
+@by_slot
 def note_closings(law, slots, y, dy, end, end_slope, theta, dtheta, log):
     """Note the contacts that closed in a located step from y at drive phase θ to `end`. Absent: no force jumps there.
 
@@ -217,7 +217,7 @@ note_closing.absent_for(*SMOOTH_LAWS)
 note_closings.absent_for(*SMOOTH_LAWS)
 
 
-@inlined
+@inline_llvm
 def closing_rate(before, after, rate, open_rate, own, h):
     """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
 
@@ -238,7 +238,7 @@ def closing_rate(before, after, rate, open_rate, own, h):
     return s, there
 
 
-@inlined
+@inline_llvm
 def brief_touch(before, after, rate, rate_after, h):
     """λ = 1 times the jump of a touch within a step: √(2 a δ_max) for an overlap with constant acceleration −a.
 
@@ -250,7 +250,7 @@ def brief_touch(before, after, rate, rate_after, h):
     return root(clip(2.0 * fall * top))
 
 
-@term
+@by_slot
 def end_overlaps(law, slots, y, dy):
     """Overlap and rate of the first and the last contact at the start of a step. Absent: no force jumps there."""
     return 0.0
@@ -262,7 +262,7 @@ def _(law, slots, y, dy):
     return (overlap(slots.preload, y, 0), dy[0] - dy[1], overlap(slots.preload, y, last), dy[last] - dy[last + 1])
 
 
-@term
+@by_slot
 def watch_crossings(law, slots, before, y, dy, h, theta, dtheta, log):
     """Note which end contacts closed between two states a step apart, for methods that look for no events.
 
@@ -280,7 +280,7 @@ def _(law, slots, before, y, dy, h, theta, dtheta, log):
         watch_crossing(law, slots, last, last_before, last_rate, y, dy, h, theta, dtheta, log)
 
 
-@part
+@inline_llvm
 def watch_crossing(law, slots, c, before, rate, y, dy, h, theta, dtheta, log):
     """Note whether contact c, open at the start of the step, closed in it or touched."""
     after, rate_after = overlap(slots.preload, y, c), dy[c] - dy[c + 1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..jit import inlined, kernel
+from ..jit import inline_llvm, kernel
 from ..simd.functions import choose_peak, larger
 from ..simd.vector import load, positive_mask, store
 
@@ -62,7 +62,7 @@ def next_period(peaks):
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
 
 
-@inlined
+@inline_llvm
 def watch_lanes(peaks, row, value):
     """Follow one force in all lanes; its memory starts at row `row` of a (rows, 8) array."""
     d, c = load(peaks, row + 1), load(peaks, row + 2)

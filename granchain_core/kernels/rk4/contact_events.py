@@ -10,11 +10,11 @@ from __future__ import annotations
 from math import copysign, sqrt
 
 from ..effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
-from ..jit import kernel, part, term
+from ..jit import by_slot, inline_numba, kernel
 
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then what Simpson's rule gives
 #: too much of every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
-GAP, RATE, GAP_END, RATE_END, IMPULSE, PATH, ENDS = range(7)
+GAP, RATE, GAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
 #: More contacts than this many changing in one step: the rest of the step is taken whole.
 MOST_SPLITS = 64
 #: An overlap that is none but for its sign.
@@ -54,7 +54,7 @@ def hermite_turn(d0, s0, d1, s1):
     return s0 / (disc - b) if s0 > 0.0 else -s0 / (disc + b)
 
 
-@part
+@inline_numba
 def contact_root(d0, s0, d1, s1):
     """Fraction of a step at which one contact opens or closes; 2 if it does not."""
     if d0 == 0.0:  # beads that touch: pushed together they close here, and do not where they only part
@@ -88,15 +88,15 @@ def first_event(ends, contacts, h):
 
 
 @kernel
-def begin_split(ends):
+def reset_corrections(ends):
     """Nothing is given too much so far."""
     for c in range(ends.shape[1]):
-        ends[IMPULSE, c] = 0.0
-        ends[PATH, c] = 0.0
+        ends[MOMENTUM_ERROR, c] = 0.0
+        ends[DISPLACEMENT_ERROR, c] = 0.0
 
 
-@part
-def note_event(law, stiffness, ends, c, h, done):
+@inline_numba
+def add_quadrature_errors(law, stiffness, ends, c, h, done):
     """Contact c changes at the part `done` of a step of size h, at the rate in `ends`.
 
     Simpson's rule fails over the part of the step on the contact's closed side and over the whole steps beyond it.
@@ -104,8 +104,8 @@ def note_event(law, stiffness, ends, c, h, done):
     rate = ends[RATE, c]
     ends[GAP, c] = copysign(TINY, rate)  # what the cubic leaves of it is no second event
     speed, part = abs(rate), 1.0 - done if rate > 0.0 else done
-    ends[IMPULSE, c] += stiffness * speed * sqrt(speed) * h * h * sqrt(h) * three_halves_excess(part)
-    note_path(law, ends, c, speed, h, part)
+    ends[MOMENTUM_ERROR, c] += stiffness * speed * sqrt(speed) * h * h * sqrt(h) * three_halves_excess(part)
+    add_displacement_error(law, ends, c, speed, h, part)
 
 
 @kernel
@@ -119,7 +119,7 @@ def three_halves_excess(r):
     return (part + whole) / 6.0 - 0.4 * (r + 2.0) * e
 
 
-@part
+@inline_numba
 def five_quarters_excess(r):
     """The same for s^{5/4}."""
     a = r * sqrt(sqrt(r))
@@ -130,23 +130,23 @@ def five_quarters_excess(r):
     return (part + whole) / 6.0 - (4.0 / 9.0) * (r + 2.0) * e
 
 
-@term
-def note_path(law, ends, c, speed, h, part):
+@by_slot
+def add_displacement_error(law, ends, c, speed, h, part):
     """Note what Simpson's rule gives too much of ∫G dt. Absent, and where G is linear: nothing."""
 
 
-@note_path.of(LinearDashpot)
+@add_displacement_error.of(LinearDashpot)
 def _(law, ends, c, speed, h, part):
     pass
 
 
-@note_path.of(Tsuji)
+@add_displacement_error.of(Tsuji)
 def _(law, ends, c, speed, h, part):
     scale = 0.8 * law.coefficient * speed * sqrt(sqrt(speed)) * h * h * sqrt(sqrt(h))
-    ends[PATH, c] += scale * five_quarters_excess(part)
+    ends[DISPLACEMENT_ERROR, c] += scale * five_quarters_excess(part)
 
 
-@note_path.of(KuwabaraKono)
+@add_displacement_error.of(KuwabaraKono)
 def _(law, ends, c, speed, h, part):
     scale = 2.0 / 3.0 * law.coefficient * speed * sqrt(speed) * h * h * sqrt(h)
-    ends[PATH, c] += scale * three_halves_excess(part)
+    ends[DISPLACEMENT_ERROR, c] += scale * three_halves_excess(part)

@@ -13,15 +13,15 @@ import numpy as np
 
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import LAWS, damping, primitive
-from ..effects.foundation import pull_back
-from ..effects.preload import lane_overlap
+from ..effects.foundation import add_foundation_force
+from ..effects.preload import batch_overlap
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..jit import kernel, part, term
+from ..jit import by_slot, inline_numba, kernel
 from ..simd.vector import LANES, from_left, from_right, load, positive_mask, splat, store, with_first
 from .step import drive_displacement, drive_velocity
 
 
-class Along(NamedTuple):
+class LongChain(NamedTuple):
     """Workspace in blocks of eight bodies: states (2B, 8) hold B blocks of displacements, then B of w.
 
     Chain values are padded with zeros: inverse mass, stiffness and static overlap (B, 8). `gap`, `slope` and `elastic`
@@ -42,8 +42,8 @@ class Along(NamedTuple):
     signs: np.ndarray
 
 
-@part
-def smooth_steps(along, slots, drive, j, count, dtheta, h, y, peaks):
+@inline_numba
+def steps_without_events(along, slots, drive, j, count, dtheta, h, y, peaks):
     """Take up to `count` steps from half-step index 2j of the drive; how many were taken."""
     now, before, blocks = along.now, along.before, along.inverse_mass.shape[0]
     m = slots.chain.inverse_mass.size
@@ -74,7 +74,7 @@ def smooth_steps(along, slots, drive, j, count, dtheta, h, y, peaks):
         done += 1
 
 
-@part
+@inline_numba
 def first_stage(along, slots, u0, h):
     """The slope at the step's start: begins acc and the mid-step state; whether a contact changed since the last."""
     blocks, law, now = along.inverse_mass.shape[0], slots.dissipation, along.now
@@ -83,15 +83,15 @@ def first_stage(along, slots, u0, h):
     half, sixth = 0.5 * h, h / 6.0
     for b in range(blocks):
         ahead = load(now, b + 1) if b + 1 < blocks else splat(0.0)
-        gap = lane_overlap(along.preload, here, from_right(here, ahead), b)
+        gap = batch_overlap(along.preload, here, from_right(here, ahead), b)
         signs = positive_mask(gap)
         changed |= signs ^ along.signs[b]
         along.signs[b] = signs
         d = positive_part(gap)
         e, G = elastic_force(load(along.stiffness, b), d), primitive(law, d)
         inverse = load(along.inverse_mass, b)
-        du = along_velocity(law, load(now, blocks + b), inverse, G_before, G)
-        dw = inverse * pull_back(slots.foundation, from_left(e_before, e) - e, here)
+        du = long_chain_velocity(law, load(now, blocks + b), inverse, G_before, G)
+        dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
         store(along.gap, b, gap)
         store(along.slope, b, du)
         store(along.elastic, b, e)
@@ -112,31 +112,31 @@ def later_stage(along, slots, u0, y, out, h, forward, weight):
     reach, share = forward * h, weight * h
     for b in range(blocks):
         ahead = load(y, b + 1) if b + 1 < blocks else splat(0.0)
-        d = positive_part(lane_overlap(along.preload, here, from_right(here, ahead), b))
+        d = positive_part(batch_overlap(along.preload, here, from_right(here, ahead), b))
         e, G = elastic_force(load(along.stiffness, b), d), primitive(law, d)
         inverse = load(along.inverse_mass, b)
-        du = along_velocity(law, load(y, blocks + b), inverse, G_before, G)
-        dw = inverse * pull_back(slots.foundation, from_left(e_before, e) - e, here)
+        du = long_chain_velocity(law, load(y, blocks + b), inverse, G_before, G)
+        dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
         for row, slope in ((b, du), (blocks + b, dw)):
             store(out, row, load(now, row) + reach * slope)
             store(along.acc, row, load(along.acc, row) + share * slope)
         here, e_before, G_before = ahead, e, G
 
 
-@term
-def along_velocity(law, w, inverse_mass, before, G):
+@by_slot
+def long_chain_velocity(law, w, inverse_mass, before, G):
     """v = w + (G_{i-1} − G_i)/m for a block of bodies."""
     return w
 
 
 for _law in LAWS:
 
-    @along_velocity.of(_law)
+    @long_chain_velocity.of(_law)
     def _(law, w, inverse_mass, before, G):
         return w + inverse_mass * (from_left(before, G) - G)
 
 
-@part
+@inline_numba
 def comes_nearer(along, slots, v0):
     """Whether the overlaps of the first and of the last contact move towards zero at the last step's start."""
     last = slots.chain.stiffness.size - 1
@@ -157,7 +157,7 @@ def watch_ends(slots, along, v0, peaks):
     watch(peaks, OUTPUT_ELASTIC, elastic)
 
 
-@part
+@inline_numba
 def unpack(y, m, blocked, blocks):
     """Two rows of m bodies into two rows of blocks."""
     for row in range(2):

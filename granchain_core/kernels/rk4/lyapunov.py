@@ -14,7 +14,8 @@ from .step import step
 
 
 @kernel
-def run_shadowed(method, slots, drive, h, y, other, stages, shadow_stages, growth, strobes, forces, counts, stop):
+def run_two_trajectories(method, slots, drive, h, y, other, stages, shadow_stages, growth, strobes, forces, counts,
+                         stop):
     """Run y and `other` through growth.size periods, noting the log of each period's growth of their distance.
 
     Both start at phase 0 with their slopes in place; strobes (P, 2, N+2) are those of y. The forces of either go into

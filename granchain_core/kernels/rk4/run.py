@@ -9,16 +9,16 @@ from ..effects.preload import overlap
 from ..equations.motion import contact_force, copy, motion
 from ..forces.largest import watch_state
 from ..forces.peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
-from ..jit import inlined_term, kernel
+from ..jit import by_slot_inlined, kernel
 from ..samples import first_not_finite, keep, keep_strobe
 from ..status import CANCELLED, DONE, NOT_FINITE
-from .long_chain import Along, smooth_steps
-from .short_chain import Wide
-from .short_chain_steps import wide_steps
+from .long_chain import LongChain, steps_without_events
+from .short_chain import ShortChain
+from .short_chain_steps import run_short_chain
 from .step import PATIENCE, drive_displacement, drive_velocity, step
 
 
-@inlined_term
+@by_slot_inlined
 def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
 
@@ -31,16 +31,17 @@ def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, log, co
             break
 
 
-@advance.of(Wide)
+@advance.of(ShortChain)
 def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
-    wide_steps(along, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, log, counts, stop)
+    run_short_chain(along, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, log, counts, stop)
 
 
-@advance.of(Along)
+@advance.of(LongChain)
 def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     done = 0
     while done < count and stop[0] == 0:
-        smooth = smooth_steps(along, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y, log.peaks)
+        smooth = steps_without_events(along, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y,
+                                      log.peaks)
         if smooth > 0:
             done += smooth
             counts[0] += smooth

@@ -13,9 +13,9 @@ import numpy as np
 
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, shape
-from ..effects.foundation import pull_back
+from ..effects.foundation import add_foundation_force
 from ..effects.preload import row_overlap, row_values
-from ..jit import inlined, term
+from ..jit import by_slot, inline_llvm
 from ..simd.functions import root
 from ..simd.vector import blank, from_left, from_right, load, load16, load32, store, with_first
 from .contact_events import GAP, RATE
@@ -44,16 +44,16 @@ WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
 
 #: A step's beginning and its end in the workspace, and what is kept of each, one row a vector.
 BEGIN, END = 0, 1
-U, W, DU, PUSH, ELASTIC, KEPT = range(6)
+U, W, DU, NET_FORCE, ELASTIC, KEPT = range(6)
 #: Steps whose forces are looked through together.
 BLOCK = 32
 
 
-class Wide(NamedTuple):
+class ShortChain(NamedTuple):
     """Workspace of a chain of up to `width` bodies: values padded with zeros (1, width), `rows` (10, width) of states.
 
-    `ends` (6, width) are overlaps and rates at the ends of a step that is split (contact_events.py), `forces` (3, 32) input
-    force, output force and its elastic part of the last steps.
+    `ends` (6, width) are overlaps and rates at the ends of a step that is split (contact_events.py), `forces` (3, 32)
+    input force, output force and its elastic part of the last steps.
     """
 
     width: Any
@@ -65,7 +65,7 @@ class Wide(NamedTuple):
     forces: np.ndarray
 
 
-class Row(NamedTuple):
+class ChainValues(NamedTuple):
     """The chain's values as vectors, and its slots."""
 
     inverse_mass: Any
@@ -76,7 +76,7 @@ class Row(NamedTuple):
     preload: Any
 
 
-class At(NamedTuple):
+class ChainState(NamedTuple):
     """The chain at one instant: state, velocities, forces on the beads, overlaps, their rates, elastic forces."""
 
     u: Any
@@ -88,7 +88,7 @@ class At(NamedTuple):
     elastic: Any
 
 
-@term
+@by_slot
 def load_row(width, array, row):
     """One row of a (rows, width) array."""
     raise NotImplementedError
@@ -109,13 +109,13 @@ def _(width, array, row):
     return load32(array, row)
 
 
-@term
+@by_slot
 def over_masses(law, inverse_mass):
     """What multiplies differences of shapes of G: its coefficient over the masses. Absent: nothing does."""
     return None
 
 
-@term
+@by_slot
 def row_velocity(law, w, damping_over_mass, shapes):
     """v = w + (G_{i-1} − G_i)/m of all beads, from the shapes of G."""
     return w
@@ -132,16 +132,16 @@ for _law in LAWS:
         return w + damping_over_mass * (from_left(blank(shapes), shapes) - shapes)
 
 
-@inlined
+@inline_llvm
 def row_of(wide, slots):
     """The chain's values in registers."""
     width = wide.width
     inverse_mass = load_row(width, wide.inverse_mass, 0)
-    return Row(inverse_mass, over_masses(slots.dissipation, inverse_mass), load_row(width, wide.stiffness, 0),
+    return ChainValues(inverse_mass, over_masses(slots.dissipation, inverse_mass), load_row(width, wide.stiffness, 0),
                slots.dissipation, slots.foundation, row_values(wide.preload, load_row, width))
 
 
-@inlined
+@inline_llvm
 def row_slope(row, u0, u, w):
     """Overlaps, elastic forces, velocities and forces on the beads; the driver's own velocity is left at zero."""
     here = with_first(u, u0)
@@ -150,18 +150,18 @@ def row_slope(row, u0, u, w):
     r = root(d)
     e = row.stiffness * d * r
     du = row_velocity(row.dissipation, w, row.damping_over_mass, shape(row.dissipation, d, r))
-    return gap, e, du, pull_back(row.foundation, from_left(blank(e), e) - e, here)
+    return gap, e, du, add_foundation_force(row.foundation, from_left(blank(e), e) - e, here)
 
 
-@inlined
+@inline_llvm
 def row_at(row, u0, v0, u, w):
     """The chain in state (u, w) with the driver at u0, moving at v0."""
     gap, e, du, push = row_slope(row, u0, u, w)
     moving = with_first(du, v0)
-    return At(u, w, du, push, gap, moving - from_right(moving, blank(moving)), e)
+    return ChainState(u, w, du, push, gap, moving - from_right(moving, blank(moving)), e)
 
 
-@inlined
+@inline_llvm
 def row_step(row, ua, ub, vb, h, x, path, impulse):
     """One RK4 step from x; the driver at ua at mid-step, at ub, moving at vb, at the end.
 
@@ -176,29 +176,30 @@ def row_step(row, ua, ub, vb, h, x, path, impulse):
                   x.w + sixth_m * (x.push + push4 + 2.0 * (push2 + push3)) + impulse)
 
 
-@inlined
-def store_at(wide, end, x):
+@inline_llvm
+def store_state(wide, end, x):
     """Write the chain at a step's beginning or end into the workspace."""
     first = KEPT * end
     store(wide.rows, first + U, x.u)
     store(wide.rows, first + W, x.w)
     store(wide.rows, first + DU, x.du)
-    store(wide.rows, first + PUSH, x.push)
+    store(wide.rows, first + NET_FORCE, x.push)
     store(wide.rows, first + ELASTIC, x.elastic)
     store(wide.ends, 2 * end + GAP, x.gap)
     store(wide.ends, 2 * end + RATE, x.rate)
 
 
-@inlined
-def load_at(wide, end):
+@inline_llvm
+def load_state(wide, end):
     """The chain at a step's beginning or end from the workspace."""
     width, rows, first = wide.width, wide.rows, KEPT * end
-    return At(load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
-              load_row(width, rows, first + PUSH), load_row(width, wide.ends, 2 * end + GAP),
-              load_row(width, wide.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
+    return ChainState(
+        load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
+        load_row(width, rows, first + NET_FORCE), load_row(width, wide.ends, 2 * end + GAP),
+        load_row(width, wide.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
 
 
-@inlined
-def given_back(row, excess):
+@inline_llvm
+def row_correction(row, excess):
     """What the beads' displacements or w have too little of, from what Simpson's rule gives too much."""
     return row.inverse_mass * (excess - from_left(blank(excess), excess))

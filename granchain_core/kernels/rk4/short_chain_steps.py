@@ -9,59 +9,68 @@ from ..effects.dissipation import damping
 from ..effects.driver import driver_displacement, driver_velocity
 from ..forces.largest import watch_ends
 from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..jit import inlined, kernel, part
+from ..jit import inline_llvm, inline_numba, kernel
 from ..simd.functions import larger
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import at, blank, positive_mask, store
-from .contact_events import GAP, IMPULSE, MOST_SPLITS, PATH, RATE, begin_split, first_event, note_event
+from .contact_events import (
+    DISPLACEMENT_ERROR,
+    GAP,
+    MOMENTUM_ERROR,
+    MOST_SPLITS,
+    RATE,
+    add_quadrature_errors,
+    first_event,
+    reset_corrections,
+)
 from .short_chain import (
     BEGIN,
     BLOCK,
     DU,
     ELASTIC,
     END,
-    PUSH,
+    NET_FORCE,
     U,
     W,
-    given_back,
-    load_at,
     load_row,
+    load_state,
     row_at,
+    row_correction,
     row_of,
     row_step,
-    store_at,
+    store_state,
 )
 from .step import drive_displacement, drive_velocity
 
 
-@part
+@inline_numba
 def split_row(wide, slots, theta, dtheta, u_end, v_end, h, log, counts):
     """Repeat the step in the workspace from contact event to contact event; its end is written there anew."""
     ends, row, driver, done = wide.ends, row_of(wide, slots), slots.driver, 0.0
-    begin_split(ends)
+    reset_corrections(ends)
     for _ in range(MOST_SPLITS):
         first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
         if first > 1.0:
             return
         part = first * (1.0 - done)
         middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
-        start = load_at(wide, BEGIN)
+        start = load_state(wide, BEGIN)
         event = row_step(row, driver_displacement(driver, middle), driver_displacement(driver, there),
                          driver_velocity(driver, there), h * part, start, blank(start.u), blank(start.w))
-        store_at(wide, BEGIN, event)
+        store_state(wide, BEGIN, event)
         done += part
-        note_event(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
+        add_quadrature_errors(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
         watch_ends(slots, ends, contact, there, log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
-                       given_back(row, load_row(wide.width, ends, PATH)),
-                       given_back(row, load_row(wide.width, ends, IMPULSE)))
-        store_at(wide, END, end)
+                       row_correction(row, load_row(wide.width, ends, DISPLACEMENT_ERROR)),
+                       row_correction(row, load_row(wide.width, ends, MOMENTUM_ERROR)))
+        store_state(wide, END, end)
         counts[1] += 8
         counts[2] += 1
 
 
-@inlined
+@inline_llvm
 def keep_forces(wide, row, last, k, x):
     """Write input force, output force and its elastic part at step k of a block; returns them."""
     store(wide.ends, GAP, x.gap)
@@ -82,8 +91,8 @@ def watch_block(values, count, largest, peaks, first):
         watch(peaks, first, values[k])
 
 
-@part
-def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, counts, stop):
+@inline_numba
+def run_short_chain(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, counts, stop):
     """Take `count` steps from step index j of the period, slope dy and forces e at the end included.
 
     The stop flag leaves them incomplete.
@@ -106,10 +115,10 @@ def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, counts, s
             closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
             # another sign, or moved towards zero at first and away from it at last
             if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
-                store_at(wide, BEGIN, x)
-                store_at(wide, END, end)
+                store_state(wide, BEGIN, x)
+                store_state(wide, END, end)
                 split_row(wide, slots, (first + k) * dtheta, dtheta, ub, vb, h, log, counts)
-                end = load_at(wide, END)
+                end = load_state(wide, END)
                 closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
             x, closed, rising = end, closed_after, rising_after
             pushed, passed, elastic = keep_forces(wide, row, m - 2, k, x)
@@ -123,10 +132,10 @@ def wide_steps(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, counts, s
     restore_subnormals(before)
     counts[0] += count
     counts[1] += 4 * count
-    store_at(wide, BEGIN, x)
+    store_state(wide, BEGIN, x)
     for i in range(1, m - 1):
         y[i], y[m + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
-        dy[m + i] = wide.inverse_mass[0, i] * rows[PUSH, i]
+        dy[m + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
         e[i] = rows[ELASTIC, i]
     e[0] = rows[ELASTIC, 0]
     y[0] = drive_displacement(slots, drive, 2 * (j + count), dtheta)

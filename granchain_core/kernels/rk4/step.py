@@ -15,18 +15,18 @@ from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import copy, motion
 from ..forces.largest import end_overlaps, watch_crossings, watch_event
-from ..jit import inlined_term, kernel, part, term
+from ..jit import by_slot, by_slot_inlined, inline_numba, kernel
 from .contact_events import (
+    DISPLACEMENT_ERROR,
     GAP,
     GAP_END,
-    IMPULSE,
+    MOMENTUM_ERROR,
     MOST_SPLITS,
-    PATH,
     RATE,
     RATE_END,
-    begin_split,
+    add_quadrature_errors,
     first_event,
-    note_event,
+    reset_corrections,
 )
 
 
@@ -90,7 +90,7 @@ def rk4(slots, ua, va, ub, vb, h, y, stages):
         end[i] = y[i] + h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
 
 
-@part
+@inline_numba
 def may_change(slots, y, slope, end, end_slope):
     """Whether a contact may open or close within the step: its overlap has another sign at the end, or turned.
 
@@ -105,7 +105,7 @@ def may_change(slots, y, slope, end, end_slope):
 
 
 @kernel
-def keep_ends(slots, y, slope, ends, overlaps, rates):
+def keep_overlaps(slots, y, slope, ends, overlaps, rates):
     """Overlaps and their rates at one end of a step."""
     for c in range(slots.chain.stiffness.size):
         ends[overlaps, c] = overlap(slots.preload, y, c)
@@ -113,27 +113,27 @@ def keep_ends(slots, y, slope, ends, overlaps, rates):
 
 
 @kernel
-def give_back(slots, ends, v0, y):
+def correct_state(slots, ends, v0, y):
     """Take from y what Simpson's rule gave too much beside contact events; the driver moves at v0."""
     inverse_mass = slots.chain.inverse_mass
     m = inverse_mass.size
     for i in range(1, m - 1):
-        y[i] += inverse_mass[i] * (ends[PATH, i] - ends[PATH, i - 1])
-        y[m + i] += inverse_mass[i] * (ends[IMPULSE, i] - ends[IMPULSE, i - 1])
-    give_back_work(slots.balance, ends[IMPULSE, 0] * v0, y)
+        y[i] += inverse_mass[i] * (ends[DISPLACEMENT_ERROR, i] - ends[DISPLACEMENT_ERROR, i - 1])
+        y[m + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR, i] - ends[MOMENTUM_ERROR, i - 1])
+    correct_work(slots.balance, ends[MOMENTUM_ERROR, 0] * v0, y)
 
 
-@term
-def give_back_work(balance, excess, y):
+@by_slot
+def correct_work(balance, excess, y):
     """Take from the driver's work what its contact's impulse had too much. Absent: no work is kept."""
 
 
-@give_back_work.of(Balance)
+@correct_work.of(Balance)
 def _(balance, excess, y):
     y[y.size - 2] -= excess
 
 
-@inlined_term
+@by_slot_inlined
 def step(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     """Advance y by one step from half-step index 2j of the drive table; slope in stages.k[0] before and after.
 
@@ -185,11 +185,11 @@ def split(slots, theta, dtheta, u_end, v_end, h, y, stages, log, counts):
     Returns how far behind the last event the step ends.
     """
     ends, end, k = stages.ends, stages.end, stages.k
-    begin_split(ends)
-    keep_ends(slots, y, k[0], ends, GAP, RATE)
+    reset_corrections(ends)
+    keep_overlaps(slots, y, k[0], ends, GAP, RATE)
     done = 0.0
     for _ in range(MOST_SPLITS):
-        keep_ends(slots, end, k[3], ends, GAP_END, RATE_END)
+        keep_overlaps(slots, end, k[3], ends, GAP_END, RATE_END)
         first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
         if first > 1.0:
             break
@@ -201,13 +201,13 @@ def split(slots, theta, dtheta, u_end, v_end, h, y, stages, log, counts):
         copy(end, y)
         motion(slots, u, v, y, k[0], stages.forces)
         done += part
-        keep_ends(slots, y, k[0], ends, GAP, RATE)
+        keep_overlaps(slots, y, k[0], ends, GAP, RATE)
         watch_event(slots, y, k[0], stages.forces.e, h * part, contact, there, log)
-        note_event(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
+        add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
             u_end, v_end, h * (1.0 - done), y, stages)
-        give_back(slots, ends, v_end, end)
+        correct_state(slots, ends, v_end, end)
         motion(slots, u_end, v_end, end, k[3], stages.forces)
         counts[1] += 8
         counts[2] += 1

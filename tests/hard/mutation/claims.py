@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _SECTION, _REGIME, _SETTLE = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settle.py"
-_RUN, _STATED, _METHODS, _FAIL = "run.py", "stated.py", "integrate/methods.py", "integrate/failures.py"
+_RUN, _STATED, _METHODS, _FAIL = "run/run.py", "run/stated.py", "integrate/methods.py", "integrate/failures.py"
 
 STEADY = (
     Mutant("change-taken-for-distance", _SECTION, "distance = recent * rate / (1.0 - rate)", "distance = recent",
@@ -74,9 +74,9 @@ FAILING = (
            "engine.work.scale[:] = kept.control[1:]", "error control goes on with another step after a restart", k.CHECKPOINTS),
     Mutant("checkpoint-at-phase-0", "integrate/checkpoint.py", "engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed",
            "engine.elapsed = kept.elapsed", "a run that was cut inside a period goes on at its beginning", k.CHECKPOINTS),
-    Mutant("budget-of-one-computation", "budget.py", "steps, seconds = steps * often, seconds * often", "steps, seconds = 0.25 * steps, 0.25 * seconds",
+    Mutant("budget-of-one-computation", "run/budget.py", "steps, seconds = steps * often, seconds * often", "steps, seconds = 0.25 * steps, 0.25 * seconds",
            "the estimate of a run is a fraction of it", ("tests/hard/test_outcomes.py", "-k", "within_a_factor_of_two and (knobs0 or knobs3 or knobs6)")),
-    Mutant("budget-not-kept", "budget.py", "if found.seconds <= budget:", "if found.seconds <= 1e30 * budget:",
+    Mutant("budget-not-kept", "run/budget.py", "if found.seconds <= budget:", "if found.seconds <= 1e30 * budget:",
            "a run of years is begun", ("tests/hard/test_outcomes.py", "-k", "command_line_refuses or would_fit_fits")),
 )
 

@@ -17,7 +17,7 @@ SLACK = (
     Mutant("slack-of-kuwabara-kono", _SLACKENING, "return stiffness * d / law.coefficient",
            "return stiffness * root(d) / law.coefficient", "the instant at which Kuwabara and Kono's force ends is another one",
            k.UNLIKE),
-    Mutant("no-contact-is-slack", _SLACKENING, "if d > 0.0 and push(", "if d < 0.0 and push(",
+    Mutant("no-contact-is-slack", _SLACKENING, "if d > 0.0 and scaled_force(", "if d < 0.0 and push(",
            "a step that begins without force ends with a jump at δ = 0", k.CUT_ORDER),
     Mutant("later-kink-first", _SLACKENING, "if x < first and x * h < until * h - _NEAR:", "if x < 0.5 * first:",
            "the later of two kinks in a step is taken for the first", k.CUT_ORDER),

@@ -39,7 +39,7 @@ FLOW = (
            "a touch inside a step of the flow is not seen, nor is its share of the derivative", k.FLOW_TOUCH),
     Mutant("flow-driver-stands", _STEP, "beta * time_at(time, x * h)", "beta * time_at(time, h)",
            "the driver stands still while its contact is looked for", k.MONODROMY),
-    Mutant("flow-landing-loose", _LANDING, "_LANDED = 1e-14", "_LANDED = 1e-7",
+    Mutant("flow-event_tolerance-loose", _LANDING, "_LANDED = 1e-14", "_LANDED = 1e-7",
            "the flow's events are located to 1e-7", k.MONODROMY),
     Mutant("onset-of-last-period-kept", _FLOW, "onset -= period", "onset -= 0.0",
            "time behind an onset is counted from the wrong period", k.TWO_PERIODS),
