@@ -91,10 +91,20 @@ def top_in_step(slots, beta, t, h, y, work, q, counts):
 
 
 @kernel
+def is_monotone(f0, s0, f1, s1, h):
+    """Whether the cubic with values f0, f1 and slopes s0, s1 at the ends of a step of size h rises or falls throughout.
+
+    Sufficient: both slopes along the chord and at most three times as steep (Fritsch & Carlson 1980).
+    """
+    chord = 3.0 * (f1 - f0)
+    return chord * s0 >= 0.0 and chord * s1 >= 0.0 and h * max(abs(s0), abs(s1)) <= abs(chord)
+
+
+@kernel
 def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
     """Raise the largest forces to what the step from y holds; whether its dense output is prepared now.
 
-    work.k[0] and work.k[12] are its slopes at both ends.
+    work.k[0] and work.k[12] are its slopes at both ends. A force that rises or falls throughout is largest at an end.
     """
     start, end = forces_of(slots, y, work.k[0]), forces_of(slots, work.end, work.k[STAGES])
     bright = False
@@ -103,12 +113,16 @@ def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
         bright = bright or max(start[q], end[q]) > _FAINT * peaks[q * OUTPUT]
     if not bright:
         return ready
+    rises, falls = slopes_of(slots, y, work.k[0], work), slopes_of(slots, work.end, work.k[STAGES], work)
+    turns = False
+    for q in range(3):
+        turns = turns or not is_monotone(start[q], rises[q], end[q], falls[q], h)
+    if not turns:
+        return ready
     if not ready:
         prepare_dense(slots, beta, t, h, y, work)
         counts[1] += 3
     middle = forces_in_step(slots, beta, t, h, y, work, 0.5)
-    rises = slopes_of(slots, y, work.k[0], work)
-    falls = slopes_of(slots, work.end, work.k[STAGES], work)
     counts[1] += 1
     for q in range(3):
         peaks[q * OUTPUT] = max(peaks[q * OUTPUT], middle[q])
