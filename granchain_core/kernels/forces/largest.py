@@ -134,11 +134,7 @@ def watch_beside(slots, y, dy, e, h, event, closed, log):
     follow(log, 2, value, slope, h)
 
 
-<<<<<<< HEAD:granchain_core/kernels/forces/largest.py
 @inline_llvm
-=======
-@inlined
->>>>>>> main:granchain_core/kernels/largest_forces.py
 def watch_state(slots, y, dy, e, h, log):
     """The same where no contact changes; three values where none of them can be part of a top."""
     last, peaks = e.size - 1, log.peaks
@@ -284,11 +280,7 @@ def _(law, slots, before, y, dy, h, theta, dtheta, log):
         watch_crossing(law, slots, last, last_before, last_rate, y, dy, h, theta, dtheta, log)
 
 
-<<<<<<< HEAD:granchain_core/kernels/forces/largest.py
 @inline_llvm
-=======
-@inlined
->>>>>>> main:granchain_core/kernels/largest_forces.py
 def watch_crossing(law, slots, c, before, rate, y, dy, h, theta, dtheta, log):
     """Note whether contact c, open at the start of the step, closed in it or touched."""
     after, rate_after = overlap(slots.preload, y, c), dy[c] - dy[c + 1]
