@@ -41,6 +41,8 @@ KINDS = {"mul": "multiply", "add": "add", "sub": "add", "fmadd": "both", "fmsub"
          "fnmsub": "both", "sqrt": "root", "div": "divide", "rsqrt14": "root", "max": "choose", "min": "choose",
          "blendm": "choose", "and": "choose", "cmp": "compare", "permt2": "shuffle", "perm": "shuffle",
          "expand": "shuffle", "align": "shuffle", "shuf": "shuffle"}
+#: The number in a fused multiplication and addition says which register takes the result.
+_FORM = re.compile(r"(?<=^v)(fn?m(?:add|sub))(?:132|213|231)")
 _PACKED = re.compile(r"^v([a-z]+?(?:14)?)(?:\d{3})?(?:eq|lt|le|gt|ge|neq|nlt|nle|ngt|nge|ord|unord)?pd$")
 
 
@@ -66,7 +68,7 @@ def counts(kernel, arguments) -> dict:
             mnemonic, *operands = line.replace(",", " ").split()
             if mnemonic.startswith("vxorp") and operands[0] == operands[1]:
                 continue  # a zero, which is a matter of registers and no arithmetic
-            mnemonics[mnemonic] += 1
+            mnemonics[_FORM.sub(r"\1", mnemonic)] += 1
             packed = _PACKED.match(mnemonic)
             if packed and "xmm" not in line and packed.group(1) in KINDS:
                 kind = KINDS[packed.group(1)]
