@@ -37,7 +37,7 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
     if not on:
         return dict(effect.off)
     before = {**scene(shown.name).knobs, **remembered}
-    found = {}
+    found: dict[str, Any] = {}
     for knob in effect.knobs:
         # a knob that is not what switches the effect off still has its value
         values = [before[knob]] if knob in effect.off else [shown.knobs[knob], before[knob]]
