@@ -16,6 +16,7 @@ from .kernels.jit import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
 from .lower import lower
 from .scene import Scene
+from .scene.effects import effects_of
 from .steady.lyapunov import exponents, exponents_in_pairs
 
 #: What the pieces of one structure's kernels are for; each can be compiled in its own process. Those with the energy
@@ -25,11 +26,11 @@ PIECES = ("live", "certified", "curve", "live account", "certified account")
 
 def structure(shown: Scene) -> str:
     """Name of what picks the compiled kernels of a scene: its set of effects and the vectors its bodies fit into."""
-    law = shown.dissipation if shown.has_dissipation else "none"
     width = next((f"{lanes} lanes" for lanes in WIDTHS if lanes >= shown.N + 2), "long")
-    effects = (("cut", shown.cuts_tension), ("foundation", shown.k > 0), ("preload", shown.F0 > 0),
-               ("unequal beads", not is_uniform(lower(shown))))
-    return "+".join([law, *(name for name, present in effects if present)]) + f", {width}"
+    effects = [effect.key(shown) for effect in effects_of(shown)]
+    law = [] if shown.has_dissipation else ["none"]
+    beads = [] if is_uniform(lower(shown)) else ["unequal beads"]
+    return "+".join([*law, *effects, *beads]) + f", {width}"
 
 
 def is_warm(shown: Scene, pieces: Iterable[str] = ("live", "certified")) -> bool:

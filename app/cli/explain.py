@@ -5,19 +5,17 @@ from __future__ import annotations
 from granchain_core.integrate.methods import METHODS, method_for, setting_of
 from granchain_core.lower import lower
 from granchain_core.scene import Scene
+from granchain_core.scene.effects import ACCOUNT, ALWAYS, EFFECTS
 from granchain_core.warm import structure
 
-_SLOTS = {
-    "chain": "Hertz contact", "dissipation": "dissipation law", "tension": "tension cut", "foundation": "foundation",
-    "preload": "preload", "driver": "driver", "balance": "energy account",
-}
+_TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
 
 
 def slots_of(scene: Scene, balance: bool) -> list[tuple[str, str, str | None]]:
     """Every slot of the scene's kernel: name, title, and the type compiled into it or None where it is absent."""
     slots = lower(scene, balance=balance).slots
-    found = ((name, title, getattr(slots, name)) for name, title in _SLOTS.items())
-    return [(name, title, None if slot is None else type(slot).__name__) for name, title, slot in found]
+    found = zip(slots._fields, slots, strict=True)
+    return [(name, _TITLES[name], None if slot is None else type(slot).__name__) for name, slot in found]
 
 
 def explanation(scene: Scene, method: str | None) -> str:

@@ -11,8 +11,8 @@ from ..page.session import slider_range
 from ..pages.effects.foundation import beside_kappa, foundation_words
 from .component import Component, text
 
-MAIN = ("f", "A0", "D", "k", "kappa", "accuracy")
-MORE = ("N", "F0", "wall", "dissipation", "tension")
+MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
+MORE = tuple(name for name in QUANTITIES if name not in MAIN)
 
 _SHOWN_IN = {"A0": (1e-6, "µm")}
 """Quantities that are read in another unit than SI: factor and unit."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import Engine, Setting
-from ..kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from ..laws import LAWS
 from ..run.run import run
 from ..scene import Scene, scene
 from .case import Figure, Picture, Trace
@@ -51,13 +51,10 @@ def strong_damping_picture() -> Picture:
 
 # --- restitution ------------------------------------------------------------------------------------------
 
-_LAWS = {"linear": LinearDashpot, "tsuji": Tsuji, "kuwabara-kono": KuwabaraKono}
-
-
 def bounce(law: str, strength: float, cut: bool, speed: float = 1.0) -> float:
     """Restitution of a bead thrown against the wall."""
     time = 4.0 * contact_time(speed, 1.0) * (1.0 + 3.0 * strength)
-    bench = Bench(1, time, 4, _LAWS[law](strength), ends=(0.0, 1.0), cut=cut, tolerance=1e-15)
+    bench = Bench(1, time, 4, LAWS[law].slot(strength), ends=(0.0, 1.0), cut=cut, tolerance=1e-15)
     bench.throw([speed])
     return float(-bench.record().velocity[-1, 0]) / speed
 
@@ -74,7 +71,7 @@ def restitutions(quick: bool) -> list[Figure]:
     exact = max(abs(bounce("tsuji", tsuji_strength(e), False, v) - e)
                 for e in (0.95, 0.7, 0.3) for v in ((1.0,) if quick else (0.01, 1.0, 10.0)))
     found = [Figure("Tsuji, tension allowed, closed form", exact, 1e-8)]
-    for law in _LAWS:
+    for law in LAWS:
         for cut in (False, True):
             worst = max(abs(bounce(law, s, cut) - restitution(law, s, cut)) for s in strengths)
             found.append(Figure(f"{law}, tension {'cut' if cut else 'allowed'}, quadrature", worst, 1e-8))

@@ -14,6 +14,7 @@ from ..kernels.batch.run import LANES
 from ..kernels.effects.unequal import Unequal
 from ..kernels.equations.motion import place
 from ..kernels.forces.peaks import PEAKS
+from ..kernels.jit import all_in_simd_kernels
 from ..kernels.simd.vector import aligned
 from ..kernels.status import CANCELLED
 from ..kernels.strobes.extrapolation import ORBITS
@@ -29,8 +30,8 @@ _WAIT, _FEWEST = 16, 2
 
 
 def can_share_batch(scene: Scene) -> bool:
-    """Whether lanes can run this scene: the tension cut needs all velocities before the forces, which lanes lack."""
-    return not scene.cuts_tension
+    """Whether lanes can run this scene, with every effect it has (the tension cut needs velocities before forces)."""
+    return all_in_simd_kernels(lower(scene).slots)
 
 
 def is_uniform(lowered: Lowered) -> bool:

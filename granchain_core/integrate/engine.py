@@ -8,11 +8,11 @@ import numpy as np
 
 from ..kernels.dop853.located import run_certified
 from ..kernels.dop853.step import ALL_STAGES, Dop853, Work
-from ..kernels.effects.driver import Harmonic
 from ..kernels.equations.motion import place
 from ..kernels.equations.velocity_form import Rk4Naive, VerletNaive, naive_motion
 from ..kernels.forces.largest import new_log
 from ..kernels.forces.peaks import MEMORY, ROWS, forget, next_period
+from ..kernels.jit import all_in_simd_kernels
 from ..kernels.rk4.contact_events import ENDS
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import run_periods, run_samples
@@ -81,11 +81,9 @@ class Engine:
         self.grid = n
 
     def new_simd_workspace(self) -> LongChain | ShortChain | None:
-        """The workspace of SIMD steps: neither tension cut nor energy account in the equations, and one chain."""
+        """The workspace of SIMD steps: a driven chain with no effect that they do not know."""
         lo, slots = self.lowered, self.lowered.slots
-        if self.setting.method != "rk4-split" or slots.tension is not None or slots.balance is not None:
-            return None
-        if not isinstance(slots.driver, Harmonic):
+        if self.setting.method != "rk4-split" or not all_in_simd_kernels(slots) or slots.driver is None:
             return None
         width = next((lanes for lanes in WIDTHS if lo.row <= lanes), 0)
         if width:

@@ -11,6 +11,7 @@ from ..integrate import Engine, Setting
 from ..kernels.dop853.event_step import Path
 from ..kernels.dop853.flow import run_flow
 from ..kernels.dop853.tableau import STAGES
+from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.equations.tangent import Tangent
 from ..kernels.saltation import VelocityTangent
@@ -59,6 +60,8 @@ class StroboscopicMap:
         row = self.engine.lowered.row
         self._path = Path(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
                           np.zeros((_EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))
+        held = self.engine.work.forces._replace(held=Held(self._path.closed))
+        self._work = self.engine.work._replace(forces=held)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
@@ -110,7 +113,7 @@ class StroboscopicMap:
         lo = engine.lowered
         engine.clock[0] = min(0.1, lo.period / STAGES)
         status, done, trace = run_flow(engine.method, lo.slots, lo.beta, lo.period, self.periods, engine.y,
-                                       engine.work, self._path, engine.clock, tangent, engine.counts.array,
+                                       self._work, self._path, engine.clock, tangent, engine.counts.array,
                                        engine.stop)
         engine.raise_for(status, done)
         return float(trace)

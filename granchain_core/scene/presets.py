@@ -10,7 +10,8 @@ from typing import Any
 
 from ..errors import BadInput, unknown_name
 from ..quantities import QUANTITIES
-from .description import Bead, Scene
+from .description import Bead
+from .model import Scene
 
 ASSETS = Path(__file__).resolve().parents[2] / "assets"
 _SECTIONS = {"parent", "title", "look_at", "paper", "order", "chain", "knobs", "ranges"}

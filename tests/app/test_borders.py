@@ -103,7 +103,7 @@ def test_explain_names_present_and_absent_effects_and_the_method(capsys):
     assert main(["run", "sec2", *SHORT, "--explain"]) == 0
     said = capsys.readouterr().out
     present, absent = said.splitlines()[:2]
-    assert "Hertz contact" in present and "dissipation law (LinearDashpot)" in present and "driver" in present
+    assert "Hertz contact" in present and "contact damping (LinearDashpot)" in present and "driver" in present
     assert all(name in absent for name in ("foundation", "preload", "tension cut"))
     assert "method:" in said and "accuracy of 1e-06" in said
 

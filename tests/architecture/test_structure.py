@@ -12,8 +12,9 @@ CORE = sorted((ROOT / "granchain_core").rglob("*.py"))
 ALL = [*CORE, *sorted((ROOT / "app").rglob("*.py"))]
 #: Each layer with those it may import, besides itself; what stands higher knows what stands lower, never back.
 LAYERS = {
-    "errors": set(), "quantities": {"errors"}, "kernels": set(), "scene": {"errors", "quantities"},
-    "lower": {"errors", "scene", "kernels"}, "integrate": {"errors", "scene", "kernels", "lower"},
+    "errors": set(), "kernels": set(), "laws": {"kernels"}, "quantities": {"errors", "laws"},
+    "scene": {"errors", "laws", "quantities"}, "lower": {"errors", "laws", "scene", "kernels"},
+    "integrate": {"errors", "scene", "kernels", "lower"},
     "result": {"scene", "kernels", "integrate", "steady.regime"},
     "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
     "run": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady"},
@@ -22,7 +23,7 @@ LAYERS = {
     "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "warm"},
     "diagram": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits"},
     "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
-    "hard": {"errors", "scene", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
+    "hard": {"errors", "laws", "scene", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
     "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", ""},
 }

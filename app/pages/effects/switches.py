@@ -1,55 +1,30 @@
-"""The effects one can switch: what each is, which knobs that moves, and the two kernels that show its cost."""
+"""The effects one can switch: which knobs that moves, and the two kernels that show what an effect costs."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from granchain_core import BadInput, Scene, scene
 from granchain_core.accuracy.effect_cost import Variant
+from granchain_core.scene import effects as table
+from granchain_core.scene.effects import Effect
 
-ACCOUNT = "account"
+ACCOUNT = table.ACCOUNT.name
 """The one effect that is no knob of the scene: it changes nothing in the motion."""
 
-
-@dataclass(frozen=True)
-class Effect:
-    """An effect as the page lists it."""
-
-    name: str
-    title: str
-    meaning: str
-
-
-EFFECTS: dict[str, Effect] = {
-    e.name: e
-    for e in (
-        Effect("dashpot", "contact damping", "A contact loses energy while it is pressed."),
-        Effect("tension", "tension cut", "A damped contact may not pull while it opens."),
-        Effect("foundation", "foundation", "A spring from every bead to the ground."),
-        Effect("preload", "preload", "A static force presses the chain together; without it: sonic vacuum."),
-        Effect(ACCOUNT, "energy account",
-               "Work, loss and stored energy are integrated along: how well they close is told in the badge."),
-    )
-}
-#: What an effect is switched on with where neither the visitor nor the scene has said.
-_USUAL: dict[str, Any] = {"dissipation": "linear", "D": 100.0, "kappa": 0.001, "F0": 1.0}
-
-_OFF: dict[str, dict[str, Any]] = {"dashpot": {"dissipation": "none"}, "foundation": {"k": 0.0}, "preload": {"F0": 0.0}}
+EFFECTS: dict[str, Effect] = {effect.name: effect for effect in (*table.EFFECTS, table.ACCOUNT)}
+"""The effects in the order in which the page lists them."""
 
 
 def present(name: str, shown: Scene, account: bool) -> bool:
     """Whether the effect is in the kernels of this scene."""
-    return {"dashpot": shown.has_dissipation, "tension": shown.has_dissipation and shown.tension == "cut",
-            "foundation": shown.k > 0.0, "preload": shown.F0 > 0.0, ACCOUNT: account}[name]
+    return account if name == ACCOUNT else EFFECTS[name].present(shown)
 
 
 def refusal(name: str, shown: Scene) -> str:
     """Why the effect cannot be switched for this scene; empty where it can."""
-    if name == "tension" and not shown.has_dissipation:
-        return "Without contact damping no contact can pull: switch that on first."
-    return ""
+    return "" if EFFECTS[name].possible(shown) else EFFECTS[name].refusal
 
 
 def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
@@ -58,17 +33,17 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
         raise BadInput(f"There is no effect {str(name)[:40]!r} that a knob switches.")
     if refused := refusal(name, shown):
         raise BadInput(refused)
-    if name == "tension":
-        return {"tension": "cut" if on else "allowed"}
+    effect = EFFECTS[name]
     if not on:
-        return dict(_OFF[name])
+        return dict(effect.off)
     before = {**scene(shown.name).knobs, **remembered}
-    if name == "dashpot":
-        law = before["dissipation"] if before["dissipation"] != "none" else _USUAL["dissipation"]
-        return {"dissipation": law, "D": shown.D or before["D"] or _USUAL["D"]}
-    if name == "foundation":
-        return {"k": before["k"]} if before["k"] > 0.0 else {"kappa": _USUAL["kappa"]}
-    return {"F0": before["F0"] or _USUAL["F0"]}
+    found: dict[str, Any] = {}
+    for knob in effect.knobs:
+        # a knob that is not what switches the effect off still has its value
+        values = [before[knob]] if knob in effect.off else [shown.knobs[knob], before[knob]]
+        found.update([(knob, value) for value in values if value != effect.off.get(knob, 0.0)][:1])
+    missing = set(effect.knobs) - set(found)
+    return found | {knob: value for knob, value in effect.usual.items() if missing and knob not in found}
 
 
 def variants(name: str, shown: Scene) -> tuple[Variant, Variant] | None:

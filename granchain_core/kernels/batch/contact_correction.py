@@ -3,7 +3,7 @@
 Over a contact that is closed for a part r of a step, at its beginning or at its end, an overlap that grows or falls as
 v s has its force and its damping integrated by Simpson's rule through the kink. What that gives too much is known:
 
-    impulse  K v^{3/2} h^{5/2} (S_{3/2}(r) + E(r)),   path  c v^p h^{p+1} S_p(r)   for G = c δ^p
+    impulse  K v^{3/2} h^{5/2} (S_{3/2}(r) + E(r)),   path  c v^p h^{p+1} S_p(r)   for G = c δ^p, p = 1 + a
     S_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1),   E: the same of s^{3/2} over the whole step on the closed side
 
 and with it RK4 in lanes goes from order 2 to about 3 (docs/model.md).
@@ -11,24 +11,13 @@ and with it RK4 in lanes goes from order 2 to about 3 (docs/model.md).
 
 from __future__ import annotations
 
-from ..effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from ..effects.contact import three_halves
+from ..effects.dissipation import LAWS, exponent, primitive_factor, primitive_power
 from ..effects.preload import batch_overlap
 from ..effects.unequal import over_mass, times_stiffness
 from ..jit import by_slot, inline_llvm
-from ..simd.functions import clip, gate, larger, root
+from ..simd.functions import clip, gate, larger
 from ..simd.vector import blank, load, positive_mask, store
-
-
-@inline_llvm
-def three_halves(r):
-    """r^{3/2}."""
-    return r * root(r)
-
-
-@inline_llvm
-def five_quarters(r):
-    """r^{5/4}."""
-    return r * root(root(r))
 
 
 @inline_llvm
@@ -42,27 +31,16 @@ def momentum_error(r, power, half_power):
 
 
 @by_slot
-def displacement_error(law, r, half, power, half_power, speed, h):
-    """c v^p h^{p+1} S_p(r) over the coefficient c's lanes; `power` and `half_power` are 3/2. Absent: nothing."""
+def displacement_error(law, r, half, speed, h):
+    """c v^p h^{p+1} S_p(r) in all lanes; `half` is [r − 1/2]_+. Absent: nothing."""
     return None
 
 
-@displacement_error.of(LinearDashpot)
-def _(law, r, half, power, half_power, speed, h):
-    return law.coefficient * speed * h * h * ((r + 4.0 * half) * (1.0 / 6.0) - 0.5 * r * r)
-
-
-@displacement_error.of(Tsuji)
-def _(law, r, half, power, half_power, speed, h):
-    q = five_quarters(r)
-    inside = (q + 4.0 * five_quarters(half)) * (1.0 / 6.0) - (4.0 / 9.0) * r * q
-    return 0.8 * law.coefficient * h * five_quarters(speed * h) * inside
-
-
-@displacement_error.of(KuwabaraKono)
-def _(law, r, half, power, half_power, speed, h):
-    inside = (power + 4.0 * half_power) * (1.0 / 6.0) - 0.4 * r * power
-    return 2.0 / 3.0 * law.coefficient * h * three_halves(speed * h) * inside
+@displacement_error.of(*LAWS)
+def _(law, r, half, speed, h):
+    here = primitive_power(law, r)
+    inside = (here + 4.0 * primitive_power(law, half)) * (1.0 / 6.0) - 1.0 / (2.0 + exponent(law)) * r * here
+    return primitive_factor(law) * law.coefficient * h * primitive_power(law, speed * h) * inside
 
 
 @by_slot
@@ -70,11 +48,9 @@ def correct_displacement(law, values, y, c, changed, path):
     """Take the path's excess from the displacements on both sides of contact c. Absent: there is none."""
 
 
-for _law in (LinearDashpot, Tsuji, KuwabaraKono):
-
-    @correct_displacement.of(_law)
-    def _(law, values, y, c, changed, path):
-        correct_state(values, y, c, 0, gate(changed, path))
+@correct_displacement.of(*LAWS)
+def _(law, values, y, c, changed, path):
+    correct_state(values, y, c, 0, gate(changed, path))
 
 
 @inline_llvm
@@ -105,7 +81,7 @@ def correct_contacts(values, y, gaps, h, u0):
             power, half_power = three_halves(r), three_halves(half)
             impulse = h * three_halves(speed * h) * momentum_error(r, power, half_power)
             impulse = times_stiffness(values.unequal, values.wall, c, values.last, impulse)
-            path = displacement_error(values.law, r, half, power, half_power, speed, h)
+            path = displacement_error(values.law, r, half, speed, h)
             correct_state(values, y, c, m, gate(changed, impulse))
             correct_displacement(values.law, values, y, c, changed, path)
             right = load(y, c + 1)

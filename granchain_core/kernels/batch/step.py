@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..effects.contact import positive_part
-from ..effects.dissipation import LAWS, SMOOTH_LAWS, LinearDashpot, damping, shape
+from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, damping, shape
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..effects.unequal import over_mass, times_stiffness
@@ -78,11 +78,9 @@ def batch_velocity(law, unequal, i, w, difference):
     return w
 
 
-for _law in LAWS:
-
-    @batch_velocity.of(_law)
-    def _(law, unequal, i, w, difference):
-        return w + over_mass(unequal, i, law.coefficient * difference)
+@batch_velocity.of(*LAWS)
+def _(law, unequal, i, w, difference):
+    return w + over_mass(unequal, i, law.coefficient * difference)
 
 
 class Ends(NamedTuple):
@@ -165,7 +163,7 @@ def watch_jumps(law, values, h, gap_first, rate_first, gap_last, rate_last, befo
     """Follow the jumps of both end contacts over the last step. Absent, and where g(0) = 0: forces have none."""
 
 
-@watch_jumps.of(LinearDashpot)
+@watch_jumps.of(*JUMP_LAWS)
 def _(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks):
     first, last = over_mass(values.unequal, 1, law.coefficient), over_mass(values.unequal, values.last, law.coefficient)
     watch_jump(law.coefficient, first, h, gap_first, rate_first, before, 0, peaks, INPUT_JUMP)

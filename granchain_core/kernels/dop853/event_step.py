@@ -1,9 +1,9 @@
 """One attempt of the flow's step: Dormand–Prince 8 in the time in which the motion is smooth, and what changes in it.
 
-Which contacts are closed is kept beside the state and does not change within a step, so that neither the motion's nor
-the tangents' slopes jump there. An onset is met from in front of it, where nothing is singular yet; a release is aimed
-at: its time is guessed, the step ends there in the time that goes with the root of the distance, and Newton's method
-on the overlap found corrects the guess.
+Which contacts are closed is kept beside the state (`Held` in the workspace's forces) and does not change within a step,
+so that neither the motion's nor the tangents' slopes jump there. An onset is met from in front of it, where nothing is
+singular yet; a release is aimed at: its time is guessed, the step ends there in the time that goes with the root of the
+distance, and Newton's method on the overlap found corrects the guess.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def attempt_in_time(method, slots, beta, time, h, y, work, path, tangent):
     keep_gaps(tangent, slots, y, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, work.k, s, work.end)
-        slope_in_x(slots, beta, time, C[s] * h, path.closed, work.end, s, work)
+        slope_in_x(slots, beta, time, C[s] * h, work.end, s, work)
         keep_gaps(tangent, slots, work.end, s)
     return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
 
@@ -118,7 +118,7 @@ def first_change(slots, beta, time, h, y, work, path, counts, but):
         if not (crossed or may_turn(d0, s0, d1, s1, sign)):
             continue
         if not ready:
-            prepare_dense_in_time(slots, beta, time, h, path.closed, y, work)
+            prepare_dense_in_time(slots, beta, time, h, y, work)
             counts[1] += 4
             ready = True
         low, high = 0.0, 1.0

@@ -15,8 +15,8 @@ from ..jit import by_slot, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL
 from .event_location import flow_step
-from .step import new_scale
-from .time_map import held_slope, time_at
+from .step import evaluate, new_scale
+from .time_map import time_at
 
 #: Steps in one period after which it is given up.
 _MOST_STEPS = 5_000_000
@@ -68,7 +68,7 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
                 return CANCELLED, p, trace
             if steps > _MOST_STEPS:
                 return STEP_TOO_SMALL, p, trace
-            held_slope(slots, beta, t, path.closed, y, path.first, work.forces)
+            evaluate(slots, beta, t, y, path.first, work.forces)
             status, time, h, contact = flow_step(method, slots, beta, t, period, onset, y, work, path, clock, tangent,
                                                  counts)
             if status != DONE:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from ..effects.balance import add_to_account, ends_of
 from ..effects.contact import positive_part
-from ..effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from ..effects.dissipation import LAWS, power
 from ..effects.preload import overlap
 from ..effects.tension import NoTension, slacken
 from ..equations.motion import write_w
 from ..jit import by_slot, inline_numba, kernel
-from ..simd.functions import root
+from ..simd.functions import gate, root
 from .bracket import between, narrowed
 from .step import STAGES, dense_value, evaluate, prepare_dense
 
@@ -29,19 +29,10 @@ def scaled_force(law, stiffness, d, rate):
     return 1.0
 
 
-@scaled_force.of(LinearDashpot)
+@scaled_force.of(*LAWS)
 def _(law, stiffness, d, rate):
-    return stiffness * d * root(d) / law.coefficient + rate
-
-
-@scaled_force.of(Tsuji)
-def _(law, stiffness, d, rate):
-    return stiffness * d * root(root(d)) / law.coefficient + rate
-
-
-@scaled_force.of(KuwabaraKono)
-def _(law, stiffness, d, rate):
-    return stiffness * d / law.coefficient + rate
+    r = root(d)
+    return gate(d, stiffness * d * (r / power(law, d, r)) / law.coefficient) + rate
 
 
 @by_slot

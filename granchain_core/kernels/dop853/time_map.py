@@ -5,8 +5,9 @@ motion has no Taylor series in t there; in s it has one, where
 
     t = t_e + s^p  behind an onset,    t = t_e − s^p  before a release,    p = 2
 
-and p = 4 for Tsuji's damping, whose G goes with the power 5/4. One step of Dormand and Prince then reaches from an
-event as far as anywhere else, motion and tangents alike, where error control in t would creep away from it.
+and p = 4 for damping ∝ δ^{1/4} or δ^{3/4}, whose G goes with the power 5/4 or 7/4. One step of Dormand and Prince then
+reaches from an event as far as anywhere else, motion and tangents alike, where error control in t would creep away from
+it.
 """
 
 from __future__ import annotations
@@ -14,13 +15,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from ..effects.contact import elastic_force, positive_part
-from ..effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji, keep_primitive, velocity
-from ..effects.driver import driver_displacement, driver_velocity
-from ..effects.foundation import add_foundation_force
-from ..effects.preload import overlap
+from ..effects.dissipation import LAWS, exponent
 from ..jit import by_slot, inline_numba, kernel
-from .step import combine, dense_coefficients
+from .step import combine, dense_coefficients, evaluate
 from .tableau import ALL_STAGES, STAGES, C
 
 #: Kinds of time: behind an onset, plain, before a release.
@@ -43,15 +40,10 @@ def smooth_power(dissipation):
     return 2
 
 
-@smooth_power.of(LinearDashpot)
-@smooth_power.of(KuwabaraKono)
+@smooth_power.of(*LAWS)
 def _(dissipation):
-    return 2
-
-
-@smooth_power.of(Tsuji)
-def _(dissipation):
-    return 4
+    twice = 2.0 * exponent(dissipation)
+    return 2 if twice == int(twice) else 4
 
 
 @kernel
@@ -99,36 +91,19 @@ def size_of(time, dt):
 
 
 @kernel
-def held_slope(slots, beta, t, closed, y, dy, forces):
-    """Slope in t of the motion in which contacts that are open stay open, with a smooth continuation past an onset."""
-    inverse_mass, stiffness = slots.chain.inverse_mass, slots.chain.stiffness
-    e, G = forces.e, forces.G
-    m = inverse_mass.size
-    y[0] = driver_displacement(slots.driver, beta * t)
-    dy[0] = driver_velocity(slots.driver, beta * t)
-    for c in range(m - 1):
-        d = positive_part(overlap(slots.preload, y, c)) if closed[c] != 0 else 0.0
-        e[c] = elastic_force(stiffness[c], d)
-        keep_primitive(slots.dissipation, G, c, d)
-    for i in range(1, m - 1):
-        dy[i] = velocity(slots.dissipation, inverse_mass, y[m + i], G, i)
-        dy[m + i] = inverse_mass[i] * add_foundation_force(slots.foundation, e[i - 1] - e[i], y[i])
-
-
-@kernel
-def slope_in_x(slots, beta, time, x, closed, state, row, work):
+def slope_in_x(slots, beta, time, x, state, row, work):
     """Slope `row` in x, at `state`; the slope in t is left in work.slope."""
-    held_slope(slots, beta, time_at(time, x), closed, state, work.slope, work.forces)
+    evaluate(slots, beta, time_at(time, x), state, work.slope, work.forces)
     rate = rate_at(time, x)
     for i in range(state.size):
         work.k[row, i] = rate * work.slope[i]
 
 
 @inline_numba
-def prepare_dense_in_time(slots, beta, time, h, closed, y, work):
+def prepare_dense_in_time(slots, beta, time, h, y, work):
     """Fill work.dense for the step of size h in x from y to work.end; work.slope is again that of the end."""
     for s in range(STAGES + 1, ALL_STAGES):
         combine(y, h, work.k, s, work.stage)
-        slope_in_x(slots, beta, time, C[s] * h, closed, work.stage, s, work)
+        slope_in_x(slots, beta, time, C[s] * h, work.stage, s, work)
     dense_coefficients(h, y, work)
-    held_slope(slots, beta, time_at(time, h), closed, work.end, work.slope, work.forces)
+    evaluate(slots, beta, time_at(time, h), work.end, work.slope, work.forces)

@@ -11,12 +11,13 @@ from __future__ import annotations
 from math import cos, sin
 from typing import NamedTuple
 
-from ..jit import by_slot
+from ..jit import by_slot, in_simd_kernels
 
 #: Where an absent driver or wall stands, in length units: too far to touch, near enough not to overflow.
 FAR = 1e30
 
 
+@in_simd_kernels
 class Harmonic(NamedTuple):
     """Slot of the harmonic driver."""
 

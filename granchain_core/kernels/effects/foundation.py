@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import by_slot
+from ..jit import by_slot, in_simd_kernels
 from ..simd.vector import load
 
 
+@in_simd_kernels
 class Foundation(NamedTuple):
     """Slot of the foundation spring."""
 

@@ -10,10 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import by_slot
+from ..jit import by_slot, in_simd_kernels
 from ..simd.vector import load
 
 
+@in_simd_kernels
 class Preload(NamedTuple):
     """Slot of the static overlaps."""
 

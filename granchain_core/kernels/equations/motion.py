@@ -15,14 +15,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..effects.balance import account
-from ..effects.contact import elastic_energy, elastic_force, positive_part
+from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
 from ..effects.dissipation import damping, keep_primitive, shifted, velocity
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.foundation import add_foundation_force, foundation_energy
 from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
 from ..effects.tension import cut_tension, keep_slack_primitive, unless_slack
-from ..jit import kernel
+from ..jit import check_effects, kernel
 
 
 class Slots(NamedTuple):
@@ -38,10 +38,17 @@ class Slots(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """Workspace of one evaluation: elastic forces e (N+1,) and primitives G (N+1,), None without dissipation."""
+    """Workspace of one evaluation: elastic forces e (N+1,) and primitives G (N+1,), None without dissipation.
+
+    `held` is None, or says which contacts stay open whatever their overlap.
+    """
 
     e: np.ndarray
     G: Any
+    held: Any = None
+
+
+check_effects("granchain_core.kernels.effects")
 
 
 @kernel
@@ -53,7 +60,7 @@ def motion(slots, u0, v0, y, dy, forces):
     y[0] = u0
     dy[0] = v0
     for c in range(m - 1):
-        d = positive_part(overlap(slots.preload, y, c))
+        d = pressed(forces.held, c, overlap(slots.preload, y, c))
         e[c] = elastic_force(stiffness[c], d)
         keep_primitive(slots.dissipation, G, c, d)
     keep_slack_primitive(slots.tension, slots, y, G)

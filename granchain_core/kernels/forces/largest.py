@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..effects.contact import elastic_force, positive_part
-from ..effects.dissipation import SMOOTH_LAWS, LinearDashpot, damping, damping_slope
+from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, damping, damping_slope
 from ..effects.driver import driver_acceleration
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import overlap
@@ -176,7 +176,7 @@ def note_closing(law, rate, c, last, theta, log):
     """Note the jump of contact c that closes at `rate` at drive phase θ. Absent, and where g(0) = 0: there is none."""
 
 
-@note_closing.of(LinearDashpot)
+@note_closing.of(*JUMP_LAWS)
 def _(law, rate, c, last, theta, log):
     if rate > 0.0:
         force = law.coefficient * rate
@@ -201,7 +201,7 @@ def note_closings(law, slots, y, dy, end, end_slope, theta, dtheta, log):
     """
 
 
-@note_closings.of(LinearDashpot)
+@note_closings.of(*JUMP_LAWS)
 def _(law, slots, y, dy, end, end_slope, theta, dtheta, log):
     last = slots.chain.stiffness.size - 1
     for c in range(last + 1):
@@ -256,7 +256,7 @@ def end_overlaps(law, slots, y, dy):
     return 0.0
 
 
-@end_overlaps.of(LinearDashpot)
+@end_overlaps.of(*JUMP_LAWS)
 def _(law, slots, y, dy):
     last = slots.chain.stiffness.size - 1
     return (overlap(slots.preload, y, 0), dy[0] - dy[1], overlap(slots.preload, y, last), dy[last] - dy[last + 1])
@@ -270,7 +270,7 @@ def watch_crossings(law, slots, before, y, dy, h, theta, dtheta, log):
     """
 
 
-@watch_crossings.of(LinearDashpot)
+@watch_crossings.of(*JUMP_LAWS)
 def _(law, slots, before, y, dy, h, theta, dtheta, log):
     last = slots.chain.stiffness.size - 1
     first_before, first_rate, last_before, last_rate = before

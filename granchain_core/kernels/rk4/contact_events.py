@@ -2,15 +2,16 @@
 
 An overlap is a cubic in between, from its values and rates at the step's two ends. Behind an onset at s = 0 the
 elastic force grows like s^{3/2}, whose integral Simpson's rule (and RK4 with it) misses by a part of h^{5/2}: that
-part is known, because the speed is, and is taken back. So is the same of G ∝ δ^p, p no whole number, in the path.
+part is known, because the speed is, and is taken back. So is the same of G ∝ δ^{1+a}, a > 0, in the path.
 """
 
 from __future__ import annotations
 
 from math import copysign, sqrt
 
-from ..effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
-from ..jit import by_slot, inline_numba, kernel
+from ..effects.contact import three_halves
+from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power
+from ..jit import by_slot, inline_llvm, inline_numba, kernel
 
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then what Simpson's rule gives
 #: too much of every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
@@ -108,26 +109,31 @@ def add_quadrature_errors(law, stiffness, ends, c, h, done):
     add_displacement_error(law, ends, c, speed, h, part)
 
 
+@inline_llvm
+def simpson_excess(r, p, half, one, inner, middle, far):
+    """What Simpson's rule gives too much for s^p over a part r of a step from 0 and over the two steps after it.
+
+    `half` is 2^{−p}; `one`, `middle` and `far` are s^p at r, r + 1 and r + 2, `inner` its sum at r + 1/2 and r + 3/2.
+    """
+    part = r * (one + 4.0 * half * one)
+    whole = one + 4.0 * inner + 2.0 * middle + far
+    return (part + whole) / 6.0 - 1.0 / (p + 1.0) * (r + 2.0) * far
+
+
 @kernel
 def three_halves_excess(r):
-    """What Simpson's rule gives too much for s^{3/2} over a part r of a step from 0 and over the two steps after it."""
-    a = r * sqrt(r)
-    e = (r + 2.0) * sqrt(r + 2.0)
-    inner = (r + 0.5) * sqrt(r + 0.5) + (r + 1.5) * sqrt(r + 1.5)
-    part = r * (a + 4.0 * 0.35355339059327373 * a)
-    whole = a + 4.0 * inner + 2.0 * (r + 1.0) * sqrt(r + 1.0) + e
-    return (part + whole) / 6.0 - 0.4 * (r + 2.0) * e
+    """`simpson_excess` of s^{3/2}."""
+    inner = three_halves(r + 0.5) + three_halves(r + 1.5)
+    return simpson_excess(r, 1.5, three_halves(0.5), three_halves(r), inner, three_halves(r + 1.0),
+                          three_halves(r + 2.0))
 
 
-@inline_numba
-def five_quarters_excess(r):
-    """The same for s^{5/4}."""
-    a = r * sqrt(sqrt(r))
-    e = (r + 2.0) * sqrt(sqrt(r + 2.0))
-    inner = (r + 0.5) * sqrt(sqrt(r + 0.5)) + (r + 1.5) * sqrt(sqrt(r + 1.5))
-    part = r * (a + 4.0 * 0.42044820762685725 * a)
-    whole = a + 4.0 * inner + 2.0 * (r + 1.0) * sqrt(sqrt(r + 1.0)) + e
-    return (part + whole) / 6.0 - (4.0 / 9.0) * (r + 2.0) * e
+@inline_llvm
+def primitive_excess(law, r):
+    """`simpson_excess` of s^{1+a}."""
+    inner = primitive_power(law, r + 0.5) + primitive_power(law, r + 1.5)
+    return simpson_excess(r, 1.0 + exponent(law), primitive_power(law, 0.5), primitive_power(law, r), inner,
+                          primitive_power(law, r + 1.0), primitive_power(law, r + 2.0))
 
 
 @by_slot
@@ -135,18 +141,10 @@ def add_displacement_error(law, ends, c, speed, h, part):
     """Note what Simpson's rule gives too much of ∫G dt. Absent, and where G is linear: nothing."""
 
 
-@add_displacement_error.of(LinearDashpot)
+add_displacement_error.absent_for(*JUMP_LAWS)
+
+
+@add_displacement_error.of(*SMOOTH_LAWS)
 def _(law, ends, c, speed, h, part):
-    pass
-
-
-@add_displacement_error.of(Tsuji)
-def _(law, ends, c, speed, h, part):
-    scale = 0.8 * law.coefficient * speed * sqrt(sqrt(speed)) * h * h * sqrt(sqrt(h))
-    ends[DISPLACEMENT_ERROR, c] += scale * five_quarters_excess(part)
-
-
-@add_displacement_error.of(KuwabaraKono)
-def _(law, ends, c, speed, h, part):
-    scale = 2.0 / 3.0 * law.coefficient * speed * sqrt(speed) * h * h * sqrt(h)
-    ends[DISPLACEMENT_ERROR, c] += scale * three_halves_excess(part)
+    scale = primitive_factor(law) * law.coefficient * primitive_power(law, speed) * h * primitive_power(law, h)
+    ends[DISPLACEMENT_ERROR, c] += scale * primitive_excess(law, part)

@@ -129,11 +129,9 @@ def long_chain_velocity(law, w, inverse_mass, before, G):
     return w
 
 
-for _law in LAWS:
-
-    @long_chain_velocity.of(_law)
-    def _(law, w, inverse_mass, before, G):
-        return w + inverse_mass * (from_left(before, G) - G)
+@long_chain_velocity.of(*LAWS)
+def _(law, w, inverse_mass, before, G):
+    return w + inverse_mass * (from_left(before, G) - G)
 
 
 @inline_numba

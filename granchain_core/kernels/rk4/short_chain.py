@@ -115,21 +115,20 @@ def over_masses(law, inverse_mass):
     return None
 
 
+@over_masses.of(*LAWS)
+def _(law, inverse_mass):
+    return law.coefficient * inverse_mass
+
+
 @by_slot
 def row_velocity(law, w, damping_over_mass, shapes):
     """v = w + (G_{i-1} − G_i)/m of all beads, from the shapes of G."""
     return w
 
 
-for _law in LAWS:
-
-    @over_masses.of(_law)
-    def _(law, inverse_mass):
-        return law.coefficient * inverse_mass
-
-    @row_velocity.of(_law)
-    def _(law, w, damping_over_mass, shapes):
-        return w + damping_over_mass * (from_left(blank(shapes), shapes) - shapes)
+@row_velocity.of(*LAWS)
+def _(law, w, damping_over_mass, shapes):
+    return w + damping_over_mass * (from_left(blank(shapes), shapes) - shapes)
 
 
 @inline_llvm

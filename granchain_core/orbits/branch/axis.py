@@ -15,7 +15,7 @@ from ...quantities import QUANTITIES
 from ...scene import Scene
 
 #: Knobs that move a chain continuously; N and the laws jump, `accuracy` changes no chain.
-CONTINUOUS = ("f", "A0", "D", "k", "kappa", "F0")
+CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
 #: Length of a factor e in a logarithmic knob, and of the whole range of a linear one. The state changes by about its
 #: own size where f changes by a tenth.
 _LOGARITHMIC, _LINEAR = 10.0, 20.0

@@ -27,13 +27,14 @@ def _(tangent, slots, c, closes):
 """
 
 FLOW = (
-    Mutant("tsuji-in-square-root-time", _TIME, "    return 4\n", "    return 2\n",
+    Mutant("tsuji-in-square-root-time", _TIME, "return 2 if twice == int(twice) else 4", "return 2",
            "beside an event of Tsuji's law nothing is smooth in the flow's time", k.MONODROMY_TSUJI),
     Mutant("rate-of-root-time", _TIME, "return 2.0 * s if time.power == 2", "return 1.9 * s if time.power == 2",
            "dt/ds is not the derivative of t(s)", k.ROUTES),
-    Mutant("flow-without-last-contact", _TIME, "for c in range(m - 1):", "for c in range(m - 2):",
+    Mutant("flow-without-last-contact", "kernels/effects/contact.py", "if held.closed[c] != 0 else 0.0",
+           "if c < held.closed.size - 1 and held.closed[c] != 0 else 0.0",
            "the flow does not feel the wall", k.MONODROMY),
-    Mutant("open-contacts-close-by-themselves", _TIME, "if closed[c] != 0 else 0.0", "if closed[c] < 2 else 0.0",
+    Mutant("open-contacts-close-by-themselves", "kernels/effects/contact.py", "if held.closed[c] != 0 else 0.0", "if held.closed[c] < 2 else 0.0",
            "the flow's slope has a kink inside its steps", k.MONODROMY),
     Mutant("flow-steps-over-a-touch", _STEP, "if not (crossed or may_turn(d0, s0, d1, s1, sign)):", "if not crossed:",
            "a touch inside a step of the flow is not seen, nor is its share of the derivative", k.FLOW_TOUCH),
