@@ -8,8 +8,8 @@ from granchain_core import Scene, scene
 from granchain_core.quantities import QUANTITIES
 
 from ..page.session import slider_range
-from ..pages.effects.foundation import beside_kappa, foundation_words
 from .component import Component, text
+from .foundation import beside_kappa, foundation_words
 
 MAIN = ("f", "A0", "D", "k", "kappa", "accuracy")
 MORE = ("N", "F0", "wall", "dissipation", "tension")
