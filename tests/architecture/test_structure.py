@@ -12,7 +12,7 @@ CORE = sorted((ROOT / "granchain_core").rglob("*.py"))
 ALL = [*CORE, *sorted((ROOT / "app").rglob("*.py"))]
 #: Each layer with those it may import, besides itself; what stands higher knows what stands lower, never back.
 LAYERS = {
-    "errors": set(), "quantities": {"errors"}, "kernels": set(), "scene": {"errors", "quantities"},
+    "errors": set(), "version": set(), "quantities": {"errors"}, "kernels": set(), "scene": {"errors", "quantities"},
     "lower": {"errors", "scene", "kernels"}, "integrate": {"errors", "scene", "kernels", "lower"},
     "result": {"scene", "kernels", "integrate", "steady.regime"},
     "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
@@ -24,7 +24,7 @@ LAYERS = {
     "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
     "hard": {"errors", "scene", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
-    "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", ""},
+    "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", "version"},
 }
 
 
