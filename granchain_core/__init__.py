@@ -19,8 +19,7 @@ from .scene import Scene, scene, scene_names
 from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
 from .steady.regime import Regime
 from .steady.settle import Settled, settled, settling
-
-__version__ = "0.1.0"
+from .version import __version__
 
 if TYPE_CHECKING:
     from .accuracy import work_precision
@@ -33,8 +32,8 @@ _LATER = {"work_precision": "accuracy", "continue_branch": "orbits", "periodic_o
 
 __all__ = [
     "BadInput", "Cancelled", "Cost", "Curve", "CurvePoint", "LiveChain", "NumbersFailed", "Regime", "Run", "Scene",
-    "Settled", "State", "continue_branch", "iter_curve", "load", "observe", "periodic_orbit", "resonance_curve", "run",
-    "save", "scene", "scene_names", "settled", "settling", "work_precision",
+    "Settled", "State", "__version__", "continue_branch", "iter_curve", "load", "observe", "periodic_orbit",
+    "resonance_curve", "run", "save", "scene", "scene_names", "settled", "settling", "work_precision",
 ]
 
 

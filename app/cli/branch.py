@@ -12,8 +12,8 @@ from granchain_core import BadInput, Cancelled
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
 
-from ..pages.effects.foundation import kept_along
 from .commands import chosen_scene, in_background, say, say_if
+from .foundation import kept_along
 
 #: Points between two words on progress.
 _EVERY = 25

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from granchain_core import BadInput, Scene, scene, scene_names
 
-from ..pages.effects.foundation import kept_spring
+from .foundation import kept_spring
 
 T = TypeVar("T")
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from app.cli.commands import chosen_scene, in_background, say, say_if
-from app.pages.effects.foundation import kept_along
+from app.cli.foundation import kept_along
 from granchain_core import BadInput, Cancelled
 from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
 from granchain_core.diagram.blocks import Blocks, folder_of

@@ -3,71 +3,69 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from bokeh.document import Document
 
-from granchain_core import BadInput, NumbersFailed, Run, Scene, Settled, State, settling
+from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
 
 from ..pages.accuracy.page import AccuracyPage
 from ..pages.branches.page import BranchesPage
 from ..pages.check.page import HardPage
 from ..pages.curve.page import Curves
-from ..pages.effects.foundation import beside_kappa, foundation_words
 from ..pages.effects.page import EffectsPanel
 from ..pages.map.page import MapTab
 from ..pages.observer.page import ObserverPage
 from ..pages.stability.page import StabilityPage
+from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
-from ..serve.compiler import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
-from ..serve.pacing import Painter
-from ..serve.queues import LatestWins, Stop
-from ..serve.websocket import in_its_turn, in_one_go, send_at_once
-from .energy_residual import with_account
+from ..serve.websocket import in_its_turn, send_at_once
 from .exchange import Exchange
-from .frames import samples_for
+from .job_list import Activity, account_activity, picture_activities
 from .layout import Views
-from .live import LivePicture, LiveRun
+from .live import LiveRun
+from .pictures import Pictures
 from .playback import Transport
 from .session import SPEEDS, Session, presets, slider_range
-from .show import show_live, show_settled
+from .show import show_regime
 from .theme import Looks
 
 log = logging.getLogger("granchain")
 
 
 class Controller:
-    """One page: its session, its views, its jobs. Everything here runs in the document's turn."""
+    """One dashboard: its session, its pictures, its pages, and the way of every message to one of them.
+
+    It is the `Host` of its pages. Everything here runs in the document's turn.
+    """
 
     def __init__(self, document: Document, session: Session) -> None:
         self._document = document
         self.session = session
-        self.views = Views(self.received, partial(self._guarded, self._choose_frequency))
-        self.jobs = LatestWins(partial(self.later, self._arrived), partial(self.later, self.failed))
-        self._painter: Painter[Settled | LivePicture] = Painter(self._send, self.idle)
-        self.live: LiveRun | None = None
-        self.curves = Curves(self.views, self.later, self.after, lambda: self.busy)
-        self.exchange = Exchange(self)
-        self.looks = Looks(self)
-        self.observer = ObserverPage(self)
-        self.accuracy = AccuracyPage(self)
-        self.branches = BranchesPage(self)
-        self.effects = EffectsPanel(self)
-        self.hard = HardPage(self)
-        self.stability = StabilityPage(self)
-        self.map = MapTab(self)
-        self.parts = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
-        self.covered = False
+        self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
+        self.pictures = Pictures(document, self, views, self.note, self._arrived)
+        self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
+        self.looks = Looks(session, views, self.curves)
+        self.observer = ObserverPage(self, views.observer)
+        self.accuracy = AccuracyPage(self, views.accuracy)
+        self.branches = BranchesPage(self, views.branches)
+        self.effects = EffectsPanel(self, views.corner, self._activities)
+        self.hard = HardPage(self, views.hard)
+        self.stability = StabilityPage(self, views.stability)
+        self.map = MapTab(self, views.corner)
+        self.pages = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
+        self._covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "ping": lambda _: self.views.chain.tell(type="pong"),
-            "ready": self._ready, "visible": lambda _: self._painter.restart(),
-            "painted": lambda m: self._painter.painted(m.get("number")),
+            "ping": lambda _: views.chain.tell(type="pong"),
+            "ready": self._ready, "visible": lambda _: self.pictures.restart(),
+            "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood, "cover": self._cover,
-            **Transport(self).actions, **self.exchange.actions, **self.looks.actions,
-            **{name: action for part in self.parts for name, action in part.actions.items()},
+            **Transport(session, self.pictures, self._compute, self._header, self.say).actions,
+            **Exchange(session, views, self.curves, self.pictures).actions, **self.looks.actions,
+            **{name: action for page in self.pages for name, action in page.actions.items()},
         }
 
     # Coming in and going out
@@ -91,9 +89,9 @@ class Controller:
         """Do something in the document's turn; callable from any thread."""
         self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
 
-    def after(self, milliseconds: int, action: Callable[..., None], *arguments: Any) -> None:
+    def after(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
         """Do something a little later."""
-        self._document.add_timeout_callback(partial(self._guarded, action, *arguments), milliseconds)
+        self._document.add_timeout_callback(partial(self._guarded, action, *arguments), round(1e3 * seconds))
 
     def say(self, sentence: str) -> None:
         """One sentence for the visitor, until the next valid action; an empty one takes it away."""
@@ -121,86 +119,49 @@ class Controller:
 
     def close(self, session_context: object) -> None:
         """The visitor left."""
-        for part in (self.jobs, self.curves, *self.parts):
-            part.close()
+        for one in (self.pictures, self.curves, *self.pages):
+            one.close()
+
+    # What the pages ask for
 
     @property
     def busy(self) -> bool:
-        """Whether a picture is being computed; what can wait, waits."""
-        return self.jobs.busy
+        """Whether a picture is being computed."""
+        return self.pictures.busy
 
     @property
     def unsettled(self) -> bool:
-        """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
-        return self.jobs.busy and self.live is None
+        """Whether a knob has moved and its steady picture is not there yet."""
+        return self.pictures.unsettled
 
-    # Computing and painting
+    @property
+    def curve_computing(self) -> bool:
+        """Whether a resonance curve is being computed."""
+        return self.curves.computing
 
-    def compute(self, start: State | None = None) -> None:
-        """A new picture for the knobs as they are now, from `start` or from where the visitor chose."""
-        self.stability.moved()
-        if self.session.mode == "live":
-            if self.live is not None:
-                self.live.change(self.session.scene)
-            self.idle()
-        else:
-            self.jobs.submit(partial(self._settled, self.session.scene, start))
+    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+        """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose."""
+        self.session.set_mode(mode)
+        self.session.scene = scene
+        if mode == "settled":
+            self.pictures.live = None
+        elif state is not None or self.pictures.live is None:
+            self.pictures.live = LiveRun(scene, state)
+        self._header()
+        self._echo()
+        self._turned(state)
 
-    def _settled(self, scene: Scene, start: State | None, stop: Stop) -> Iterator[Settled]:
-        """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
-        self._await_live_kernels(scene, stop)
-        self.session.began = start or self.session.previous_state()
-        pictures = settling(scene, start=self.session.began, samples=samples_for(scene), stop=stop)
-        yield next(pictures)
-        if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
-            for picture in pictures:
-                yield picture
-                if picture.final and self.session.account:
-                    yield with_account(picture, stop)
+    def _activities(self) -> list[Activity]:
+        """Everything that is computed for this visitor, or could be."""
+        return [
+            *picture_activities(self.session, self.busy, self._covered), *self.curves.activities(),
+            account_activity(self.session, self.busy), self.accuracy.activity, self.stability.activity,
+            self.hard.activity, self.effects.activity,
+        ]
 
-    def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
-        if not COMPILER.has(scene, LIVE):
-            self.later(self.note, SENTENCE)
-            for piece in (LIVE, CERTIFIED, CURVE):
-                COMPILER.ask(scene, piece)
-            COMPILER.await_piece(scene, LIVE, stop)
-
-    def live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
-        """One step of the live run: so many samples, or as many as viewing time asks for."""
-        live = self.live
-        if live is not None:
-            self._await_live_kernels(self.session.scene, stop)
-            yield live.advance(samples) if samples else live.step(self.session.speed)
-
-    def _arrived(self, picture: Settled | LivePicture) -> None:
-        live = isinstance(picture, LivePicture)
-        if live != (self.session.mode == "live") or picture.run.scene.name != self.session.scene.name:
-            return
-        if isinstance(picture, Settled):
-            self.session.picture = picture
-            self.accuracy.describe()
-            self.stability.arrived(picture)
-        if self.session.notice:
-            self.note("")
-        self._painter.offer(picture)
-
-    def shown_run(self) -> Run | None:
-        """What is on the screen, as a run."""
-        if self.live is not None:
-            return self.live.window_run()
-        return None if self.session.picture is None else self.session.picture.run
-
-    def _send(self, number: int, picture: Settled | LivePicture) -> None:
-        with in_one_go(self._document):
-            if isinstance(picture, Settled):
-                show_settled(self.views, number, picture)
-            else:
-                show_live(self.views, number, picture, self.session.playing)
-
-    def idle(self) -> None:
-        """The browser has painted everything: in live mode that asks for the next step."""
-        if self.session.mode == "live" and self.session.playing and not self._painter.waits:
-            self.jobs.submit(partial(self.live_step, None))
+    def _arrived(self, picture: Settled) -> None:
+        self.accuracy.describe()
+        self.stability.arrived(picture)
 
     # What the visitor does
 
@@ -214,14 +175,18 @@ class Controller:
         scene = self.session.scene
         self.views.knobs.state = knob_state(scene)
         self.views.corner.display(look_at=scene.look_at, paper=scene.paper)
-        self.header()
+        self._header()
         self._describe()
         self.curves.open(scene)
         if self.session.mode == "live":
-            self.live = LiveRun(scene)
-        self.compute()
+            self.pictures.live = LiveRun(scene)
+        self._compute()
 
-    def header(self) -> None:
+    def _compute(self, start: State | None = None) -> None:
+        self.stability.moved()
+        self.pictures.compute(start)
+
+    def _header(self) -> None:
         session = self.session
         self.views.header.display(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, look=session.look,
@@ -241,44 +206,30 @@ class Controller:
         name = str(message.get("name"))
         try:
             self.session.change(name, message.get("value"))
-            self._turned(name)
+            self._turned()
         finally:
             self._echo(message.get("seq"))
 
     def _restore(self, message: dict[str, Any]) -> None:
         self.session.restore(str(message.get("name")))
         self._echo(message.get("seq"))
-        self._turned(str(message.get("name")))
+        self._turned()
 
     def _echo(self, seq: object = None) -> None:
         scene = self.session.scene
         self.views.knobs.tell(type="values", seq=seq, values=dict(scene.knobs),
                               foundation=foundation_words(scene), kept=beside_kappa(scene), query=self.session.link)
 
-    def _turned(self, name: str) -> None:
-        self.compute()
+    def _turned(self, start: State | None = None) -> None:
+        self._compute(start)
         if self.session.sentence:
             self.say("")
         self._describe()
-        if name != "f":
-            self.curves.moved(self.session.scene)
-
-    def switched(self, name: str, on: bool) -> None:
-        """Switch an effect; the knobs follow."""
-        self.session.switch(name, on)
-        self._echo()
-        self._turned(name)
-
-    def turn_to(self, scene: Scene, start: State) -> None:
-        """The same chain with several knobs turned at once, from a given state."""
-        self.session.scene = scene
-        self._echo()
-        self._describe()
-        self.compute(start)
+        self.curves.moved(self.session.scene)
 
     def _cover(self, message: dict[str, Any]) -> None:
         """A page over the pictures was opened or closed."""
-        self.covered = message.get("name") is not None
+        self._covered = message.get("name") is not None
         if message.get("name") == "accuracy":
             self.accuracy.open()
 
@@ -286,7 +237,7 @@ class Controller:
         low, high = slider_range(self.session.scene, "f")
         self.session.change("f", round(min(max(frequency, low), high), 1))
         self._echo()
-        self._turned("f")
+        self._turned()
 
     def _scene(self, message: dict[str, Any]) -> None:
         self.session.choose(message.get("name"))

@@ -14,7 +14,7 @@ from granchain_core import Settled
 from ..pages.accuracy.view import Accuracy
 from ..pages.branches.view import Branches
 from ..pages.check.view import Hard, described_cases
-from ..pages.curve.view import REGIMES, Curve
+from ..pages.curve.view import Curve
 from ..pages.observer.view import Observer, first_state
 from ..pages.stability.view import Stability
 from ..parts.badge import Badge
@@ -26,6 +26,7 @@ from ..parts.equation import Equation
 from ..parts.figures import BOTTOM, GAP, TOP, pane
 from ..parts.header import Header
 from ..parts.knobs import Knobs
+from ..parts.regimes import REGIMES
 from ..parts.trains import Trains
 
 #: Pages over the pictures; each has its place in page.html.

@@ -101,6 +101,11 @@ def slider_range(current: Scene, name: str) -> tuple[float, float]:
     return QUANTITIES[name].low, QUANTITIES[name].high
 
 
+def without_frequency(current: Scene) -> Scene:
+    """What a curve or a branch over f belongs to: moving f costs nothing on it."""
+    return current.evolve(f=slider_range(current, "f")[0])
+
+
 def rig_beads() -> tuple[Bead, ...]:
     """The beads of the paper's experiment: what it states about its rig is drawn over scenes that have them."""
     return scene("rig").pattern

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from .session import LOOKS
-
-if TYPE_CHECKING:
-    from .controller import Controller
+from ..pages.curve.page import Curves
+from .layout import Views
+from .session import LOOKS, Session
 
 _INK = {"light": ("#14181f", 1.0), "dark": ("#eef1f6", 1.0), "projector": ("#000000", 1.5)}
 
@@ -16,11 +15,13 @@ _INK = {"light": ("#14181f", 1.0), "dark": ("#eef1f6", 1.0), "projector": ("#000
 class Looks:
     """The visitor's choices that compute nothing but, perhaps, another curve."""
 
-    def __init__(self, page: Controller) -> None:
-        self._page = page
+    def __init__(self, session: Session, views: Views, curves: Curves) -> None:
+        self._session = session
+        self._views = views
+        self._curves = curves
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "look": self.choose, "lock": self._lock, "curve": self._curve, "curve-stop": lambda _: page.curves.stop(),
-            "curve-visible": lambda m: page.curves.visible(bool(m.get("value")), page.session.scene),
+            "look": self.choose, "lock": self._lock, "curve": self._curve, "curve-stop": lambda _: curves.stop(),
+            "curve-visible": lambda m: curves.visible(bool(m.get("value")), session.scene),
         }
 
     def choose(self, message: dict[str, Any]) -> None:
@@ -28,11 +29,11 @@ class Looks:
         look = message.get("value")
         if look in LOOKS:
             ink, thick = _INK[str(look)]
-            self._page.views.curve.ink(ink, thick)
-            self._page.views.trains.thicken(thick)
+            self._views.curve.ink(ink, thick)
+            self._views.trains.thicken(thick)
 
     def _lock(self, message: dict[str, Any]) -> None:
-        self._page.views.energy.locked = bool(message.get("value"))
+        self._views.energy.locked = bool(message.get("value"))
 
     def _curve(self, message: dict[str, Any]) -> None:
-        self._page.curves.choose(str(message.get("name")), bool(message.get("value")), self._page.session.scene)
+        self._curves.choose(str(message.get("name")), bool(message.get("value")), self._session.scene)

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import param
-from bokeh.document import Document
-from bokeh.events import Event
 from panel.custom import JSComponent
-from panel.io.state import set_curdoc
+
+from ..serve.websocket import PromptEvents
 
 _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
 
@@ -20,7 +19,7 @@ def text(name: str) -> str:
     return _FILES[name].read_text(encoding="utf-8")
 
 
-class Component(JSComponent):
+class Component(PromptEvents, JSComponent):
     """A part of the page: `state` goes down and is kept, messages go both ways and are not.
 
     Messages are used for what the visitor does because Panel holds property changes for 50 ms before it acts
@@ -44,11 +43,6 @@ class Component(JSComponent):
         merged = {**self.state, **changes}
         if merged != self.state:
             self.state = merged
-
-    def _process_bokeh_event(self, doc: Document, event: Event) -> None:
-        # Panel's own goes through its busy indicator, which this page does not show: 2 ms of 5 for an event.
-        with set_curdoc(doc):
-            self._process_event(event)
 
     def _handle_msg(self, data: Any) -> None:
         if self._received is not None and isinstance(data, dict):

@@ -8,8 +8,8 @@ from granchain_core import Scene, scene
 from granchain_core.quantities import QUANTITIES
 
 from ..page.session import slider_range
-from ..pages.effects.foundation import beside_kappa, foundation_words
 from .component import Component, text
+from .foundation import beside_kappa, foundation_words
 
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)

@@ -10,21 +10,19 @@ import json
 import subprocess
 import sys
 import threading
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, wait
 from pathlib import Path
 
 from granchain_core import Scene
 from granchain_core.pieces import compile_piece
 from granchain_core.warm import is_warm, structure
 
-from .queues import BACKGROUND, Stop
+from .queues import COMPILATIONS, CURVES, Stop
+from .waiting import STOP_LOOK
 
 LIVE, CERTIFIED, CURVE = "live", "certified", "curve"
 SENTENCE = ("Compiling the kernels for this set of effects: about 10 s, only the first time on this computer; "
             "the picture follows by itself.")
-_LOOK = 0.05
-"""Seconds between looks at the stop flag while a compilation is awaited."""
-
 
 _ROOT = Path(__file__).resolve().parents[2]
 
@@ -44,9 +42,9 @@ class Compiler:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._pool = ThreadPoolExecutor(2, thread_name_prefix="compile")
         self._asked: dict[tuple[str, str], Future[None]] = {}
         self._known: set[tuple[str, str]] = set()
+        self._loaded: set[tuple[str, str]] = set()
 
     def has(self, scene: Scene, *pieces: str) -> bool:
         """Whether these kernels of the scene's structure only need to be loaded."""
@@ -61,7 +59,7 @@ class Compiler:
         key = structure(scene), piece
         with self._lock:
             if key not in self._asked:
-                self._asked[key] = self._pool.submit(_compile, scene, piece)
+                self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
             return self._asked[key]
 
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
@@ -69,24 +67,31 @@ class Compiler:
         if self.has(scene, piece):
             return True
         compilation = self.ask(scene, piece)
-        while not wait([compilation], timeout=_LOOK).done:
+        while not wait([compilation], timeout=STOP_LOOK).done:
             if stop[0]:
                 return False
         compilation.result()
         return True
+
+    def load(self, scene: Scene, piece: str) -> None:
+        """Have kernels that are compiled in this process, too: the first call of each would load them."""
+        key = structure(scene), piece
+        if key not in self._loaded:
+            compile_piece(scene, piece)
+            self._loaded.add(key)
 
     def prepare(self, scene: Scene) -> None:
         """Have this scene's kernels ready in this process before the first visitor asks."""
         for piece in (LIVE, CERTIFIED, CURVE):
             if not self.has(scene, piece):
                 self.ask(scene, piece)
-        BACKGROUND.submit(self._load, scene)
+        CURVES.submit(self._load_all, scene)
 
-    def _load(self, scene: Scene) -> None:
+    def _load_all(self, scene: Scene) -> None:
         for piece in (LIVE, CERTIFIED, CURVE):
             if not self.has(scene, piece):
                 self.ask(scene, piece).result()
-            compile_piece(scene, piece)
+            self.load(scene, piece)
 
 
 COMPILER = Compiler()

@@ -1,7 +1,7 @@
-"""Where computations of the dashboard run: worker threads for the process, one latest-wins job a session.
+"""Where computations of the dashboard run: named queues for all visitors, one latest-wins job a page.
 
-Kernels release the GIL, so threads are enough. Pictures and curves have pools of their own because a curve
-lasts seconds and a picture must never wait for one.
+Kernels release the GIL, so threads are enough. What lasts has queues of its own, because a picture must never wait
+for it.
 """
 
 from __future__ import annotations
@@ -9,38 +9,73 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future
+from queue import SimpleQueue
+from typing import TypeVar
 
 import numpy as np
 
 from granchain_core import Cancelled
+from granchain_core.integrate.engine import new_stop
 
-_CORES = os.cpu_count() or 1
-
-PICTURES = ThreadPoolExecutor(max_workers=4 * max(2, _CORES), thread_name_prefix="picture")
-"""More than cores: a job that waits for the compiler keeps its thread, and must not keep other visitors waiting."""
-BACKGROUND = ThreadPoolExecutor(max_workers=max(1, _CORES // 2), thread_name_prefix="background")
-ANALYSES = ThreadPoolExecutor(max_workers=max(2, _CORES), thread_name_prefix="analysis")
-"""What follows a picture while the knobs rest: short, and given up when a knob moves."""
-
-MEASUREMENTS = ThreadPoolExecutor(max_workers=1, thread_name_prefix="measurement")
-"""What measures times, one after the other for all visitors: two at once would measure each other."""
-
-_MAPS = threading.BoundedSemaphore(2)
-
-
-def in_thread(work: Callable[..., None], *arguments: object) -> None:
-    """Do something that lasts, such as a diagram or a search, two at a time; the process does not wait for its end."""
-
-    def run() -> None:
-        with _MAPS:
-            work(*arguments)
-
-    threading.Thread(target=run, daemon=True, name="map").start()
-
+Result = TypeVar("Result")
 
 Stop = np.ndarray
 """A flag of one byte that running kernels look at."""
+
+
+class Queue:
+    """Work of one kind, first come, first served, on at most so many threads.
+
+    The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it.
+    """
+
+    def __init__(self, name: str, workers: int) -> None:
+        self.name = name
+        self._workers = workers
+        self._waiting: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._threads: list[threading.Thread] = []
+        self._lock = threading.Lock()
+
+    def submit(self, work: Callable[..., Result], *arguments: object) -> Future[Result]:
+        """Do this as soon as a thread is free; the future has what it returns or raises."""
+        future: Future[Result] = Future()
+
+        def do() -> None:
+            try:
+                future.set_result(work(*arguments))
+            except BaseException as error:
+                future.set_exception(error)
+
+        self._waiting.put(do)
+        with self._lock:
+            if len(self._threads) < self._workers:
+                thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {len(self._threads)}")
+                self._threads.append(thread)
+                thread.start()
+        return future
+
+    def _serve(self) -> None:
+        while True:
+            self._waiting.get()()
+
+
+_CORES = os.cpu_count() or 1
+
+#: More threads than cores: a picture that waits for the compiler keeps its thread, and must not keep other visitors
+#: waiting.
+PICTURES = Queue("pictures", 4 * max(2, _CORES))
+#: What follows a picture while the knobs rest: short, and given up when a knob moves.
+ANALYSES = Queue("analyses", max(2, _CORES))
+#: Resonance curves, and loading kernels before a visitor asks. Maps and branches wait for a curve that is under way,
+#: so curves cannot share their queue.
+CURVES = Queue("curves", max(1, _CORES // 2))
+#: What lasts minutes: maps, searches for attractors, branches.
+LONG = Queue("long", 2)
+#: What measures times, one after the other for all visitors: two at once would measure each other.
+MEASUREMENTS = Queue("measurements", 1)
+#: Waiting for processes that compile.
+COMPILATIONS = Queue("compilations", 2)
 
 Work = Callable[[Stop], Iterator[object]]
 
@@ -53,17 +88,15 @@ class LatestWins:
     repainted during a drag.
     """
 
-    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
-                 pool: ThreadPoolExecutor = PICTURES) -> None:
+    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None]) -> None:
         self._deliver = deliver
         self._fail = fail
-        self._pool = pool
         self._lock = threading.Lock()
         self._waiting: Work | None = None
         self._running = False
         self._refining = False
         self._closed = False
-        self._stop = np.zeros(1, dtype=np.uint8)
+        self._stop = new_stop()
 
     @property
     def busy(self) -> bool:
@@ -81,7 +114,7 @@ class LatestWins:
             if self._running:
                 return
             self._running = True
-        self._pool.submit(self._drain)
+        PICTURES.submit(self._drain)
 
     def close(self) -> None:
         """Give up: nothing more is computed or delivered."""
@@ -95,7 +128,8 @@ class LatestWins:
             work, self._waiting = self._waiting, None
             self._running = work is not None
             self._refining = False
-            self._stop = np.array([self._closed], dtype=np.uint8)
+            self._stop = new_stop()
+            self._stop[0] = self._closed
             return work
 
     def _drain(self) -> None:

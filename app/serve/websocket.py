@@ -1,32 +1,43 @@
-"""How messages travel: a picture's all in one go, and at once; the page's when they can be answered."""
+"""How messages travel: a picture's all in one go, and at once; the page's when they can be answered.
+
+All that granchain uses of the private attributes of Tornado, Bokeh and Panel stands in this file. Each buys some
+milliseconds or a message that would be lost; where a release has it no more, the public way is taken.
+"""
 
 from __future__ import annotations
 
 import socket
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 import panel as pn
 from bokeh.document import Document
+from bokeh.events import Event
+from panel.io.state import set_curdoc
 from tornado.iostream import IOStream
 
 
+def _session(document: Document) -> Any:
+    return getattr(document.session_context, "session", None)
+
+
 def _streams(document: Document) -> list[IOStream]:
-    """The streams of this page's websockets; neither Bokeh nor Panel has a public way to them."""
-    session = getattr(document.session_context, "session", None)
-    connections = getattr(session, "_subscribed_connections", ())
-    streams = [getattr(connection._socket.ws_connection, "stream", None) for connection in connections]
+    """The streams of this page's websockets; none where the way to them is another one."""
+    connections = getattr(_session(document), "_subscribed_connections", ())
+    sockets = [getattr(getattr(connection, "_socket", None), "ws_connection", None) for connection in connections]
+    streams = [getattr(one, "stream", None) for one in sockets]
     return [stream for stream in streams if isinstance(stream, IOStream) and not stream.closed()]
 
 
 def has_turn(document: Document) -> bool:
-    """Whether it is the document's turn, in which alone it may be changed.
+    """Whether it is known to be the document's turn, in which alone it may be changed.
 
     Bokeh keeps a list of what is to be written while it is. A message can arrive outside of it, while an earlier one's
     answers are still being written; Bokeh refuses every change then.
     """
-    session = getattr(document.session_context, "session", None)
-    return getattr(session, "_pending_writes", ()) is not None
+    session = _session(document)
+    return session is None or getattr(session, "_pending_writes", None) is not None
 
 
 def in_its_turn(document: Document, action: Callable[[], None]) -> None:
@@ -54,9 +65,10 @@ def in_one_go(document: Document) -> Iterator[None]:
     """The messages written in this block are handed to the network together when it ends.
 
     A picture is a score of small messages, and each of them would cost 0.3 ms here and a wake-up in the browser.
-    Tornado collects what is written until its buffer is emptied; in the block, emptying waits.
+    Tornado collects what is written until its buffer is emptied; in the block, emptying waits. Where Tornado empties it
+    in another way, each message goes by itself.
     """
-    streams = _streams(document)
+    streams = [stream for stream in _streams(document) if hasattr(stream, "_handle_write")]
     for stream in streams:
         stream._handle_write = _wait  # type: ignore[method-assign]
     try:
@@ -70,3 +82,18 @@ def in_one_go(document: Document) -> Iterator[None]:
 
 def _wait() -> None:
     """What emptying a stream's buffer is while a picture is being written."""
+
+
+class PromptEvents:
+    """A Panel component whose events skip Panel's busy indicator, 2 ms of 5 for an event: this page does not show it.
+
+    Panel calls `_process_bokeh_event`; a release that calls something else goes its own way, indicator and all.
+    """
+
+    def _process_bokeh_event(self, doc: Document, event: Event) -> None:
+        handle = getattr(self, "_process_event", None)
+        if handle is None:
+            super()._process_bokeh_event(doc, event)  # type: ignore[misc]
+            return
+        with set_curdoc(doc):
+            handle(event)

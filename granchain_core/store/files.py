@@ -32,6 +32,7 @@ from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..steady.curve import Curve
 from ..steady.regime import Regime
+from ..version import __version__
 
 SCHEMA = 1
 _RUN = {  # name: (dimensions, unit, meaning)
@@ -167,8 +168,6 @@ def _or_none(value: float) -> float | None:
 
 
 def _provenance(file: h5py.File, scene: Scene, method: str, reached: float | None) -> None:
-    from .. import __version__
-
     file.attrs.update({
         "Conventions": "CF-1.10", "granchain_schema": SCHEMA, "granchain_version": __version__,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),

@@ -7,7 +7,8 @@ import math
 import pytest
 
 from app.cli import main
-from app.pages.effects.foundation import beside_kappa, kept_along, kept_spring
+from app.cli.foundation import kept_along, kept_spring
+from app.parts.foundation import beside_kappa
 from granchain_core import scene, settled
 
 RIG = scene("rig")

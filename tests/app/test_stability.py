@@ -146,7 +146,9 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
 
 
 class Page:
-    """The rest of the page: what is asked to be done later is done when the test says so."""
+    """The host of the page: what is asked to be done later is done when the test says so."""
+
+    busy = unsettled = curve_computing = False
 
     def __init__(self, mode: str = "settled") -> None:
         self.session = SimpleNamespace(mode=mode, began=None, scene=scene("sec2"))
@@ -154,13 +156,13 @@ class Page:
         self.queue: list[Any] = []
         self.failures: list[Exception] = []
         view = SimpleNamespace(state={}, display=lambda **changes: view.state.update(changes), tell=lambda **message: self.told.append(message))
-        self.views = SimpleNamespace(stability=view)
+        self.view = view
 
     def later(self, action: Any, *arguments: Any) -> None:
         """From any thread."""
         self.queue.append((action, arguments))
 
-    def after(self, milliseconds: int, action: Any, *arguments: Any) -> None:
+    def after(self, seconds: float, action: Any, *arguments: Any) -> None:
         """The quiet time passes when the queue is worked off."""
         self.later(action, *arguments)
 
@@ -182,7 +184,7 @@ class Page:
     @property
     def state(self) -> dict[str, Any]:
         """What the view shows."""
-        return dict(self.views.stability.state)
+        return dict(self.view.state)
 
 
 @pytest.fixture
@@ -193,14 +195,14 @@ def page() -> Page:
 
 def opened(page: Page) -> StabilityPage:
     """The view, on the screen."""
-    view = StabilityPage(page)  # type: ignore[arg-type]
+    view = StabilityPage(page, page.view)  # type: ignore[arg-type]
     view.actions["stability-visible"]({"value": True})
     return view
 
 
 def test_nothing_is_computed_while_nobody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "analyse", lambda *_: pytest.fail("computed"))
-    view = StabilityPage(page)  # type: ignore[arg-type]
+    view = StabilityPage(page, page.view)  # type: ignore[arg-type]
     view.arrived(picture())
     page.work(lambda: not page.queue)
     assert view.activity[1] == "off" and "marks" not in page.state

@@ -12,7 +12,7 @@ CORE = sorted((ROOT / "granchain_core").rglob("*.py"))
 ALL = [*CORE, *sorted((ROOT / "app").rglob("*.py"))]
 #: Each layer with those it may import, besides itself; what stands higher knows what stands lower, never back.
 LAYERS = {
-    "errors": set(), "kernels": set(), "laws": {"kernels"}, "quantities": {"errors", "laws"},
+    "errors": set(), "version": set(), "kernels": set(), "laws": {"kernels"}, "quantities": {"errors", "laws"},
     "scene": {"errors", "laws", "quantities"}, "lower": {"errors", "laws", "scene", "kernels"},
     "integrate": {"errors", "scene", "kernels", "lower"},
     "result": {"scene", "kernels", "integrate", "steady.regime"},
@@ -25,7 +25,7 @@ LAYERS = {
     "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
     "hard": {"errors", "laws", "scene", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
     "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
-    "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", ""},
+    "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", "version"},
 }
 
 

@@ -2,29 +2,24 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
 from panel.io import unlocked
 
-from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
+from granchain_core import Scene
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.accuracy.compiled import METHODS_PIECE
-from granchain_core.integrate.engine import new_stop
 
 from ...page.active_setting import locate, page_setting
-from ...page.background import Background
 from ...page.format import duration, short_error
+from ...page.host import Host
+from ...page.job_list import IDLE, OFF, RUNNING, Activity
+from ...page.task import Job, Task
 from ...serve.compiler import CERTIFIED, LIVE
-from ...serve.queues import MEASUREMENTS, Stop
-from .view import described_reference, described_rows, described_ways, lesson_message
-
-if TYPE_CHECKING:
-    from ...page.controller import Controller
-
-_PATIENCE = 0.01
-"""Seconds between looks whether the picture in front is done; nothing is measured while a knob moves."""
+from ...serve.queues import MEASUREMENTS
+from .view import Accuracy, described_reference, described_rows, described_ways, lesson_message
 
 
 def measured_for(scene: Scene) -> str:
@@ -32,13 +27,13 @@ def measured_for(scene: Scene) -> str:
     return scene.evolve(accuracy=1e-6).digest
 
 
-class AccuracyPage(Background):
+class AccuracyPage:
     """One measurement at a time; it goes on in the background until it is done, cancelled or the visitor leaves."""
 
-    def __init__(self, page: Controller) -> None:
-        self._page = page
-        self._view = page.views.accuracy
-        self._stop: Stop = new_stop()
+    def __init__(self, host: Host, view: Accuracy) -> None:
+        self._host = host
+        self._view = view
+        self._task = Task(host, MEASUREMENTS, self._say, "The measurement")
         self._measured = ""
         self._lesson: Lesson | None = None
         self.rows: list[Row] = []
@@ -52,16 +47,17 @@ class AccuracyPage(Background):
     @property
     def running(self) -> bool:
         """Whether a measurement is under way or waits for its turn."""
-        return self.status in ("waiting", "compiling", "measuring")
+        return self._task.running
 
     @property
-    def progress_words(self) -> str:
-        """How far the measurement is."""
-        return f"{len(self.rows)} settings measured" if self.rows or self.running else "its page was not opened yet"
+    def activity(self) -> Activity:
+        """Name, state and detail for the list of what is computed now."""
+        words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page was not opened yet"
+        return "accuracy of all methods", RUNNING if self.running else IDLE if self.rows else OFF, words
 
     def describe(self) -> None:
         """Tell what follows from the knobs and the picture: asked, cheapest, now, and whether the rows still hold."""
-        scene, session = self._page.session.scene, self._page.session
+        scene, session = self._host.session.scene, self._host.session
         now = locate(page_setting(scene, session.picture, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)
         stale = bool(self._measured) and self._measured != measured_for(scene)
@@ -73,13 +69,12 @@ class AccuracyPage(Background):
 
     def cancel(self) -> None:
         """Stop; the rows that are there stay."""
-        self._stop[0] = 1
-        if self.running:
+        if self._task.cancel():
             self._say("cancelled")
 
     def close(self) -> None:
         """The visitor left."""
-        self._stop[0] = 1
+        self._task.cancel()
 
     def open(self) -> None:
         """The page or its small version came on the screen: what was never measured is measured now."""
@@ -89,39 +84,25 @@ class AccuracyPage(Background):
         self.describe()
 
     def _measure(self) -> None:
-        self._stop[0] = 1
-        self._stop = stop = new_stop()
-        scene = self._page.session.scene
+        self._task.cancel()
+        scene = self._host.session.scene
         self._measured, self.rows, self._lesson, self.done = measured_for(scene), [], None, 0.0
         self._view.display(rows=[], agreement=None, agreement_words="", reference="", second="")
         self._view.tell(type="no-lesson")
         self._say("waiting")
         self.describe()
-        MEASUREMENTS.submit(self._work, scene, stop)
+        self._task.start(partial(self._work, scene))
 
-    def _work(self, scene: Scene, stop: Stop) -> None:
+    def _work(self, scene: Scene, job: Job) -> None:
         """In the measuring thread: the kernels first, then one row after the other."""
-        try:
-            if not self._compiled(scene, (LIVE, CERTIFIED, METHODS_PIECE), stop, self._say):
-                return
-            self._later(stop, self._say, "measuring")
-            work_precision(scene, stop, report=lambda found: self._report(found, stop), pause=lambda: self._pause(stop),
-                           progress=lambda done: self._later(stop, self._progress, done))
-            self._later(stop, self._say, "done")
-        except Cancelled:
-            pass
-        except (NumbersFailed, BadInput) as problem:
-            self._later(stop, self._say, "failed", str(problem))
-        except Exception as error:
-            self._later(stop, self._say, "failed", "The measurement stopped by a fault inside granchain.")
-            self._page.later(self._page.failed, error)
 
-    def _pause(self, stop: Stop) -> None:
-        while self._page.unsettled and not stop[0]:
-            time.sleep(_PATIENCE)
+        def report(found: WorkPrecision) -> None:
+            job.later(self._show, list(found.rows), found.lesson, described_reference(found))
 
-    def _report(self, found: WorkPrecision, stop: Stop) -> None:
-        self._later(stop, self._show, list(found.rows), found.lesson, described_reference(found))
+        job.compile(scene, LIVE, CERTIFIED, METHODS_PIECE)
+        job.say("measuring")
+        work_precision(scene, job.stop, report=report, pause=job.give_way,
+                       progress=lambda done: job.later(self._progress, done))
 
     def _show(self, rows: list[Row], lesson: Lesson | None, reference: dict[str, Any]) -> None:
         self.rows = rows
@@ -141,7 +122,7 @@ class AccuracyPage(Background):
         self._view.display(status=status, failure=sentence, done=self.done)
 
     def _sentence(self, best: Row | None) -> str:
-        asked = short_error(self._page.session.scene.accuracy)
+        asked = short_error(self._host.session.scene.accuracy)
         if best is not None:
             return (f"The cheapest way to {asked} is {best.method}, {best.setting}: {duration(best.wall_s)}, "
                     f"error {short_error(best.error)}.")

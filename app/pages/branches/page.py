@@ -2,38 +2,27 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from panel.io import unlocked
 
-from granchain_core import BadInput, Cancelled, NumbersFailed, Scene, State
-from granchain_core.integrate.engine import new_stop
+from granchain_core import BadInput, Scene
 from granchain_core.orbits import Arm, Branch, BranchPoint, Continuation, begin_branch, switch_to_doubled
 from granchain_core.orbits.compiled import BRANCH_PIECE
 
-from ...page.background import Background
-from ...page.live import LiveRun
-from ...page.session import slider_range
+from ...page.host import Host
+from ...page.session import slider_range, without_frequency
+from ...page.task import Job, Task
 from ...serve.compiler import CERTIFIED, LIVE
-from ...serve.queues import Stop
-from ..curve.sweep import without_frequency
-from .view import described_orbit, described_special, drawn_orbits
+from ...serve.queues import LONG, Stop
+from ...serve.waiting import BRANCH_EVERY
+from .view import Branches, described_orbit, described_special, drawn_orbits
 
-if TYPE_CHECKING:
-    from ...page.controller import Controller
-
-_PATIENCE = 0.01
-"""Seconds between looks whether the picture in front is done."""
-_OFTEN = 0.08
-"""Seconds between two messages to a page on which a branch grows."""
+#: Drive periods of an orbit that can be asked for here.
 _LONGEST_PERIOD = 8
-"""Drive periods of an orbit that can be asked for here."""
-_TURNS = threading.Semaphore(2)
-"""So many branches are followed at once, for all visitors."""
 
 
 @dataclass
@@ -47,13 +36,13 @@ class _Drawn:
     orbits: list[BranchPoint] = field(default_factory=list)
 
 
-class BranchesPage(Background):
+class BranchesPage:
     """Branches of one chain: the first from the orbit on the screen, others from its period doublings."""
 
-    def __init__(self, page: Controller) -> None:
-        self._page = page
-        self._view = page.views.branches
-        self._stop: Stop = new_stop()
+    def __init__(self, host: Host, view: Branches) -> None:
+        self._host = host
+        self._view = view
+        self._task = Task(host, LONG, self._say, "Following the branch")
         self._followed: list[Continuation] = []
         self._drawn: list[_Drawn] = []
         self._special: list[tuple[Branch, Any]] = []
@@ -65,27 +54,21 @@ class BranchesPage(Background):
             "branches-double": self._double,
         }
 
-    @property
-    def running(self) -> bool:
-        """Whether a branch is being followed or waits for its turn."""
-        return self.status in ("waiting", "compiling", "settling", "following")
-
     def describe(self) -> None:
         """Tell whether the branches still belong to the chain on the screen."""
-        now = self._page.session.scene
+        now = self._host.session.scene
         stale = bool(self._followed) and \
             without_frequency(self._followed[0].branch.axis.scene) != without_frequency(now)
         self._view.display(now=now.f, stale=stale)
 
     def cancel(self) -> None:
         """Stop; what there is stays and can be gone on with."""
-        self._stop[0] = 1
-        if self.running:
+        if self._task.cancel():
             self._say("cancelled")
 
     def close(self) -> None:
         """The visitor left."""
-        self._stop[0] = 1
+        self._task.cancel()
 
     # What the visitor does
 
@@ -94,7 +77,7 @@ class BranchesPage(Background):
         if period is not None and period not in range(1, _LONGEST_PERIOD + 1):
             raise BadInput(f"The period of a branch must be from 1 to {_LONGEST_PERIOD} drive periods here; "
                            "the nearest valid value is 1.")
-        scene, picture = self._page.session.scene, self._page.session.picture
+        scene, picture = self._host.session.scene, self._host.session.picture
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)
         seed = None
@@ -105,7 +88,7 @@ class BranchesPage(Background):
         self._submit(lambda stop: [begin_branch(scene, "f", *axis, period, seed, both=True, stop=stop)], scene)
 
     def _continue(self) -> None:
-        if self._followed and not self.running:
+        if self._followed and not self._task.running:
             scene = self._followed[0].branch.axis.scene
             left = [one.branch for one in self._followed]
             self._clear()
@@ -113,7 +96,7 @@ class BranchesPage(Background):
 
     def _double(self, message: dict[str, Any]) -> None:
         place = message.get("place")
-        if self.running or not isinstance(place, int) or not 0 <= place < len(self._special):
+        if self._task.running or not isinstance(place, int) or not 0 <= place < len(self._special):
             return
         branch, special = self._special[place]
         self._submit(lambda stop: [switch_to_doubled(branch, special, stop)], branch.axis.scene)
@@ -127,62 +110,37 @@ class BranchesPage(Background):
         if not isinstance(place, int) or not 0 <= place < len(drawn.orbits):
             return
         point = drawn.orbits[place]
-        self._show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point), point.stable)
-
-    def _show(self, scene: Scene, state: State, stable: bool) -> None:
-        page = self._page
-        other = without_frequency(scene) != without_frequency(page.session.scene)
-        page.session.set_mode("settled" if stable else "live")
-        page.live = None if stable else LiveRun(scene, state)
-        page.header()
-        page.turn_to(scene, state)
-        if other:
-            page.curves.changed(scene)
+        self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
+                        "settled" if point.stable else "live")
 
     # Following, in a thread of its own
 
     def _clear(self) -> None:
-        self._stop[0] = 1
+        self._task.cancel()
         self._followed, self._drawn, self._special = [], [], []
         self._view.tell(type="clear")
 
     def _submit(self, begin: Callable[[Stop], list[Branch]], scene: Scene) -> None:
-        self._stop[0] = 1
-        self._stop = stop = new_stop()
+        self._task.cancel()
         self._say("waiting")
-        # a daemon: a branch lasts minutes, and a server that ends does not wait for it
-        threading.Thread(target=self._work, args=(begin, scene, stop), name="branch", daemon=True).start()
+        self._task.start(lambda job: self._follow(begin, scene, job))
 
-    def _work(self, begin: Callable[[Stop], list[Branch]], scene: Scene, stop: Stop) -> None:
-        try:
-            with _TURNS:
-                self._follow(begin, scene, stop)
-        except Cancelled:
-            pass
-        except (NumbersFailed, BadInput) as problem:
-            self._later(stop, self._say, "failed", str(problem))
-        except Exception as error:
-            self._later(stop, self._say, "failed", "Following the branch stopped by a fault inside granchain.")
-            self._page.later(self._page.failed, error)
-
-    def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, stop: Stop) -> None:
-        if stop[0] or not self._compiled(scene, (LIVE, CERTIFIED, BRANCH_PIECE), stop, self._say):
-            return
-        self._later(stop, self._say, "settling")
-        for branch in begin(stop):
-            continuation = Continuation(branch, stop)
-            self._later(stop, self._add, continuation)
+    def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
+        job.compile(scene, LIVE, CERTIFIED, BRANCH_PIECE)
+        job.say("settling")
+        for branch in begin(job.stop):
+            continuation = Continuation(branch, job.stop)
+            job.later(self._add, continuation)
             for _ in continuation:
-                self._grown(stop)
-        self._later(stop, self._finish)
+                self._grown(job)
+        job.later(self._draw)
 
-    def _grown(self, stop: Stop) -> None:
+    def _grown(self, job: Job) -> None:
         """An orbit more: the page is told now and then; the picture in front comes first."""
-        if time.monotonic() - self._sent > _OFTEN:
+        if time.monotonic() - self._sent > BRANCH_EVERY:
             self._sent = time.monotonic()
-            self._later(stop, self._draw)
-        while self._page.unsettled and not stop[0]:
-            time.sleep(_PATIENCE)
+            job.later(self._draw)
+        job.give_way()
 
     # In the document's turn
 
@@ -209,10 +167,6 @@ class BranchesPage(Background):
                 self._view.tell(type="orbits", arm=number, period=drawn.branch.period,
                                 orbits=[described_orbit(point) for point in orbits], special=marks)
             self._say(self.status if self.status in ("cancelled", "done") else "following")
-
-    def _finish(self) -> None:
-        self._draw()
-        self._say("done")
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status

@@ -2,37 +2,30 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
-from granchain_core import BadInput, Cancelled
+from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Picture
-from granchain_core.integrate.engine import new_stop
 
-from ...page.background import Background
-from ...serve.queues import Stop
-from .view import described, picture_message, summary
+from ...page.host import Host
+from ...page.job_list import IDLE, OFF, RUNNING, Activity
+from ...page.task import Job, Task
+from ...serve.queues import MEASUREMENTS
+from .view import Hard, described, picture_message, summary
 from .work import CaseProcess, Ended, case_of
 
-if TYPE_CHECKING:
-    from ...page.controller import Controller
-
-_TURN = threading.Lock()
-"""One case at a time, for all visitors."""
-_LOOK = 0.05
-"""Seconds between looks at the stop flag while another visitor's case is measured."""
 _FAULT = "The process that measures it ended by a fault inside granchain; run it again, and please report it."
 
 
-class HardPage(Background):
+class HardPage:
     """Cases wait for their turn and are measured one after the other; results stay until a case is run again."""
 
-    def __init__(self, page: Controller) -> None:
-        self._page = page
-        self._view = page.views.hard
+    def __init__(self, host: Host, view: Hard) -> None:
+        self._view = view
         self._process = CaseProcess()
-        self._stop: Stop = new_stop()
+        self._task = Task(host, MEASUREMENTS, self._end, "The case")
         self._shown: dict[str, dict[str, Any]] = {}
         self._asked = 0
         self.rows: dict[str, list[Check]] = {}
@@ -43,11 +36,11 @@ class HardPage(Background):
         }
 
     @property
-    def activity(self) -> tuple[str, str, str]:
+    def activity(self) -> Activity:
         """Name, state and detail for the list of what is computed now."""
         if self.waiting:
-            return "hard cases", "computing", self.waiting[0]
-        return "hard cases", "there" if self.rows else "off", f"{len(self.rows)} of {len(CASES)} run"
+            return "hard cases", RUNNING, self.waiting[0]
+        return "hard cases", IDLE if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
 
     def cancel(self) -> None:
         """Stop the case under way and forget those that wait; what was found stays."""
@@ -62,9 +55,9 @@ class HardPage(Background):
         self._give_up()
 
     def _give_up(self) -> None:
-        self._stop[0] = 1
+        self._task.cancel()
         self._process.close()
-        self._stop, self._process = new_stop(), CaseProcess()
+        self._process = CaseProcess()
 
     # What the visitor does
 
@@ -88,29 +81,21 @@ class HardPage(Background):
         self._show()
 
     def _begin_next(self) -> None:
-        # a daemon: a server that ends does not wait for it
-        wanted = case_of(self.waiting[0]), self._process, self._stop
-        threading.Thread(target=self._work, args=wanted, name="hard cases", daemon=True).start()
+        case = case_of(self.waiting[0])
+        if case is None:
+            raise LookupError(self.waiting[0])
+        self._task.start(partial(self._work, case, self._process))
 
     # In the measuring thread
 
-    def _work(self, case: Case, process: CaseProcess, stop: Stop) -> None:
-        while not _TURN.acquire(timeout=_LOOK):
-            if stop[0]:
-                return
+    def _work(self, case: Case, process: CaseProcess, job: Job) -> None:
+        job.later(self._change, case.name, status="running")
         try:
-            self._later(stop, self._change, case.name, status="running")
-            answers = process.measure(case, stop)
-            self._later(stop, self._measured, case.name, next(answers))
-            self._later(stop, self._draw, case.name, next(answers))
-        except Cancelled:
-            pass
+            answers = process.measure(case, job.stop)
+            job.later(self._measured, case.name, next(answers))
+            job.later(self._draw, case.name, next(answers))
         except Ended:
-            self._later(stop, self._finish, case.name, status="failed", failure=_FAULT)
-        else:
-            self._later(stop, self._finish, case.name, status="done")
-        finally:
-            _TURN.release()
+            raise NumbersFailed(_FAULT, "failed") from None
 
     # In the document's turn
 
@@ -122,14 +107,15 @@ class HardPage(Background):
         if picture is not None:
             self._view.tell(**picture_message(name, picture))
 
-    def _finish(self, name: str, **outcome: str) -> None:
-        self.waiting.remove(name)
+    def _end(self, status: str, sentence: str) -> None:
+        """The case in front is measured, or failed; the next one's turn comes."""
+        name = self.waiting.pop(0)
         if self.waiting:
             self._begin_next()
         else:
             self._process.close()
             self._process = CaseProcess()
-        self._change(name, **outcome)
+        self._change(name, status=status, failure=sentence)
 
     def _put(self, name: str, **changes: Any) -> None:
         self._shown = {**self._shown, name: {**self._shown.get(name, {}), **changes}}

@@ -14,11 +14,10 @@ from granchain_core import Cancelled
 from granchain_core.hard import CASES, Case, Check, Picture, run_case
 
 from ...serve.queues import Stop
+from ...serve.waiting import STOP_LOOK
 
-_LOOK = 0.05
-"""Seconds between looks at the stop flag while a case is measured."""
+#: The pictures of the page come first where there are fewer cores than work.
 _NICE = 5
-"""The pictures of the page come first where there are fewer cores than work."""
 
 
 class Ended(Exception):
@@ -68,7 +67,7 @@ class CaseProcess:
         try:
             asked.send(case.name)
             for _ in range(2):
-                while not asked.poll(_LOOK):
+                while not asked.poll(STOP_LOOK):
                     if stop[0]:
                         raise Cancelled
                 yield asked.recv()

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from granchain_core import CurvePoint, Scene, iter_curve
+from granchain_core import Cancelled, CurvePoint, Scene, iter_curve
 
 from ...page.session import slider_range
-from ...serve.queues import BACKGROUND
+from ...page.task import Job
 
 DIRECTIONS = ("rest", "up", "down")
 COARSE, _SWEEP = 75, 150
 _PASSES = 2
-_PATIENCE = 0.01
-"""Seconds between looks whether the picture in front is done; a curve never competes with a moving knob."""
 
 
 @dataclass
@@ -29,11 +26,6 @@ class Progress:
     done: float
     complete: bool = False
     covers: bool = False
-
-
-def without_frequency(scene: Scene) -> Scene:
-    """What a curve belongs to: moving f costs nothing on it."""
-    return scene.evolve(f=slider_range(scene, "f")[0])
 
 
 def grid(scene: Scene, points: int) -> np.ndarray:
@@ -57,64 +49,52 @@ def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
     return (0.5 * (frequency[:-1] + frequency[1:]))[needed]
 
 
-@dataclass
+@dataclass(frozen=True)
 class Sweep:
-    """The curves of one scene; `start` replaces whatever was being computed."""
+    """The work of one request on a worker thread: some directions of one scene, one after the other.
 
+    While `busy` says so, it waits.
+    """
+
+    scene: Scene
+    directions: list[str]
     report: Callable[[Progress], None]
-    fail: Callable[[Exception], None]
     busy: Callable[[], bool]
-    _stop: threading.Event = field(default_factory=threading.Event)
 
-    def start(self, scene: Scene, directions: list[str]) -> None:
-        """Compute these directions in the background, one after the other."""
-        self.cancel()
-        self._stop = stop = threading.Event()
-        if directions:
-            BACKGROUND.submit(self._work, scene, directions, stop)
+    def __call__(self, job: Job) -> None:
+        """Compute everything, reporting as it comes; what was reported stays when the job is cancelled."""
+        for direction in self.directions:
+            (self._from_rest if direction == "rest" else self._carried)(direction, job)
 
-    def cancel(self) -> None:
-        """Stop; what was reported stays."""
-        self._stop.set()
-
-    def _work(self, scene: Scene, directions: list[str], stop: threading.Event) -> None:
-        try:
-            for direction in directions:
-                passes = self._from_rest if direction == "rest" else self._carried
-                passes(scene, direction, stop)
-        except Exception as error:
-            if not stop.is_set():
-                self.fail(error)
-
-    def _from_rest(self, scene: Scene, direction: str, stop: threading.Event) -> None:
+    def _from_rest(self, direction: str, job: Job) -> None:
         found: list[CurvePoint] = []
-        frequencies = grid(scene, COARSE)
+        frequencies = grid(self.scene, COARSE)
         finest = 0.26 * float(frequencies[1] - frequencies[0])
         for number in range(_PASSES + 1):
             low, high = number / (_PASSES + 1), (number + 1) / (_PASSES + 1)
-            found += self._points(scene, frequencies, direction, stop, low, high)
-            if stop.is_set():
-                return
+            found += self._points(frequencies, direction, job, low, high)
             self.report(Progress(direction, [], high, complete=number == _PASSES, covers=True))
             frequencies = midpoints(found, finest)
 
-    def _carried(self, scene: Scene, direction: str, stop: threading.Event) -> None:
-        self._points(scene, grid(scene, _SWEEP), direction, stop, 0.0, 1.0)
-        if not stop.is_set():
-            self.report(Progress(direction, [], 1.0, complete=True, covers=True))
+    def _carried(self, direction: str, job: Job) -> None:
+        self._points(grid(self.scene, _SWEEP), direction, job, 0.0, 1.0)
+        self.report(Progress(direction, [], 1.0, complete=True, covers=True))
 
-    def _points(self, scene: Scene, frequencies: np.ndarray, direction: str, stop: threading.Event,
-                low: float, high: float) -> list[CurvePoint]:
-        """Compute `frequencies`, reporting as they come; their share of the progress is `low` to `high`."""
+    def _points(self, frequencies: np.ndarray, direction: str, job: Job, low: float, high: float) -> list[CurvePoint]:
+        """Compute `frequencies`, reporting as they come; their share of the progress is `low` to `high`.
+
+        Raises `Cancelled`.
+        """
         found: list[CurvePoint] = []
         if not len(frequencies):
             return found
-        for point in iter_curve(scene, frequencies, start=direction, stop=stop.is_set):
-            if stop.is_set():
-                break
+        for point in iter_curve(self.scene, frequencies, start=direction, stop=lambda: bool(job.stop[0])):
+            if job.stop[0]:
+                raise Cancelled
             found.append(point)
             done = low + (high - low) * len(found) / len(frequencies)
             self.report(Progress(direction, [point], done))
-            while self.busy() and not stop.wait(_PATIENCE):
-                pass
+            job.give_way(self.busy)
+        if job.stop[0]:
+            raise Cancelled
         return found

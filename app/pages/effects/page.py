@@ -4,36 +4,36 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
-from granchain_core import BadInput, Cancelled, Scene
+from granchain_core import BadInput, Scene
 from granchain_core.accuracy.compiled import ACCOUNT_PIECE, COST_PIECE
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
-from granchain_core.integrate.engine import new_stop
 from granchain_core.warm import structure
 
 from ...cli.explain import slots_of
-from ...page.job_list import activities
+from ...page.host import Host
+from ...page.job_list import IDLE, RUNNING, Activity
+from ...page.task import Job, Task
+from ...parts.corner import Corner
 from ...serve.compiler import CERTIFIED, COMPILER, CURVE, LIVE
-from ...serve.queues import MEASUREMENTS, Stop
+from ...serve.queues import MEASUREMENTS
+from ...serve.waiting import ACTIVITIES_EVERY, COST_QUIET
 from .switches import EFFECTS, present, refusal, variants
-
-if TYPE_CHECKING:
-    from ...page.controller import Controller
-
-_REFRESH = 400
-"""Milliseconds between looks at what is going on, while the panel is on the screen."""
-_QUIET = 0.7
-"""Seconds without a movement of a knob before anything is measured."""
-_PATIENCE = 0.005
 
 
 class EffectsPanel:
-    """While it is on the screen it looks at the jobs, and has the cost of one effect after the other measured."""
+    """While it is on the screen it looks at the jobs, and has the cost of one effect after the other measured.
 
-    def __init__(self, page: Controller) -> None:
-        self._page = page
-        self._stop: Stop = new_stop()
+    `activities` lists everything that is computed for this visitor.
+    """
+
+    def __init__(self, host: Host, view: Corner, activities: Callable[[], list[Activity]]) -> None:
+        self._host = host
+        self._view = view
+        self._activities = activities
+        self._task = Task(host, MEASUREMENTS, self._ended, "Timing it")
         self._open = False
         self._turn = 0
         self._moved = 0.0
@@ -47,23 +47,27 @@ class EffectsPanel:
         }
 
     @property
-    def progress_words(self) -> str:
-        """How far the measuring of costs is."""
+    def activity(self) -> Activity:
+        """Name, state and detail for the list of what is computed now."""
+        return "cost of effects", RUNNING if self.measuring else IDLE, self._progress_words
+
+    @property
+    def _progress_words(self) -> str:
         if self._compiling:
             return f"compiling a kernel for {EFFECTS[self._compiling].title}"
         if self.measuring:
             return f"timing {EFFECTS[self.measuring].title}"
-        possible = sum(variants(name, self._page.session.scene) is not None for name in EFFECTS)
+        possible = sum(variants(name, self._host.session.scene) is not None for name in EFFECTS)
         return f"{len(self._costs)} of {possible} effects measured"
 
     def changed(self) -> None:
         """A knob has moved: nothing is measured for a while, and what belongs to another kernel is forgotten."""
         self._moved = time.monotonic()
-        scene = self._page.session.scene
+        scene = self._host.session.scene
         key = (structure(scene), scene.knobs["N"])
         if key != self._key:
             self._key = key
-            self._stop[0] = 1
+            self._task.cancel()
             self._costs, self._failed, self._compiling, self.measuring = {}, {}, "", ""
         if self._open:
             self._show()
@@ -71,7 +75,7 @@ class EffectsPanel:
     def close(self) -> None:
         """The visitor left."""
         self._open = False
-        self._stop[0] = 1
+        self._task.cancel()
 
     def _visible(self, message: dict[str, Any]) -> None:
         self._open = bool(message.get("value"))
@@ -84,7 +88,9 @@ class EffectsPanel:
         if not isinstance(name, str) or name not in EFFECTS or not isinstance(on, bool):
             raise BadInput(f"There is no effect {str(name)[:40]!r} to switch.")
         try:
-            self._page.switched(name, on)
+            session = self._host.session
+            session.switch(name, on)
+            self._host.show(session.scene, mode=session.mode)
         finally:
             self._show()
 
@@ -94,13 +100,13 @@ class EffectsPanel:
             return
         self._next()
         self._show()
-        self._page.after(_REFRESH, self._look, turn)
+        self._host.after(ACTIVITIES_EVERY, self._look, turn)
 
     def _next(self) -> None:
         """Begin what is to be done next: compile for one effect, or time it."""
-        scene = self._page.session.scene
-        busy = self.measuring or self._page.unsettled or self._page.curves.computing
-        if busy or time.monotonic() - self._moved < _QUIET:
+        scene = self._host.session.scene
+        busy = self.measuring or self._host.unsettled or self._host.curve_computing
+        if busy or time.monotonic() - self._moved < COST_QUIET:
             return
         if not COMPILER.has(scene, LIVE, CERTIFIED, CURVE):  # the picture's own kernels come first
             return
@@ -128,45 +134,33 @@ class EffectsPanel:
 
     def _measure(self, name: str, pair: tuple[Variant, Variant]) -> None:
         self.measuring = name
-        self._stop = stop = new_stop()
-        MEASUREMENTS.submit(self._work, name, pair, stop)
+        self._task.start(partial(self._work, name, pair))
 
-    def _work(self, name: str, pair: tuple[Variant, Variant], stop: Stop) -> None:
+    def _work(self, name: str, pair: tuple[Variant, Variant], job: Job) -> None:
         """In the measuring thread; a moving knob holds it up."""
-        try:
-            for method in (CODE, MOTION):
-                cost = effect_cost(*pair, method, stop, lambda: self._pause(stop))
-                self._page.later(self._measured, name, method, cost, stop)
-        except Cancelled:
-            return
-        except Exception as error:
-            self._page.later(self._not_measured, name, error, stop)
+        for method in (CODE, MOTION):
+            cost = effect_cost(*pair, method, job.stop, job.give_way)
+            job.later(self._measured, name, method, cost)
 
-    def _pause(self, stop: Stop) -> None:
-        while self._page.unsettled and not stop[0]:
-            time.sleep(_PATIENCE)
-
-    def _measured(self, name: str, method: str, cost: EffectCost, stop: Stop) -> None:
-        if stop[0]:
-            return
+    def _measured(self, name: str, method: str, cost: EffectCost) -> None:
         self._costs.setdefault(name, {})[method] = cost
-        if method == MOTION:
-            self.measuring = ""
         self._show()
 
-    def _not_measured(self, name: str, error: Exception, stop: Stop) -> None:
-        if not stop[0]:
-            self._failed[name], self.measuring = str(error)[:120], ""
+    def _ended(self, status: str, sentence: str) -> None:
+        if status == "failed":
+            self._failed[self.measuring] = sentence[:120]
+        self.measuring = ""
+        self._show()
 
     def _show(self) -> None:
-        session = self._page.session
-        self._page.views.corner.display(panel={
+        session = self._host.session
+        self._view.display(panel={
             "effects": [self._effect(name, session.scene) for name in EFFECTS],
             "slots": [{"slot": name, "title": title, "type": kind}
                       for name, title, kind in slots_of(session.scene, session.account)],
             "structure": structure(session.scene),
             "step": self._step(session.scene),
-            "activities": [{"name": n, "state": s, "detail": d} for n, s, d in activities(self._page)],
+            "activities": [{"name": n, "state": s, "detail": d} for n, s, d in self._activities()],
         })
 
     def _effect(self, name: str, scene: Scene) -> dict[str, Any]:
@@ -174,12 +168,12 @@ class EffectsPanel:
         refused = refusal(name, scene)
         return {
             "name": name, "title": effect.title, "meaning": effect.meaning, "refused": refused,
-            "on": present(name, scene, self._page.session.account),
+            "on": present(name, scene, self._host.session.account),
             "code": _words(costs.get(CODE)), "motion": _words(costs.get(MOTION)),
             "state": refused or self._failed.get(name) or (
                 "compiling its kernel …" if name == self._compiling else
                 "being timed …" if name == self.measuring else
-                "not measured yet, waits for the curve" if self._page.curves.computing else "not measured yet"),
+                "not measured yet, waits for the curve" if self._host.curve_computing else "not measured yet"),
         }
 
     def _step(self, scene: Scene) -> dict[str, float]:

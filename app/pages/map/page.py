@@ -5,35 +5,31 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from panel.io import unlocked
 
-from granchain_core import BadInput, Cancelled, NumbersFailed, Scene, Settled, settling
+from granchain_core import BadInput, Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
 from granchain_core.diagram.cells import cell_of, empty_cells
-from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits.compiled import ORBIT_PIECE
 
-from ...page.background import Background
-from ...page.frames import samples_for
+from ...page.host import Host
 from ...page.session import slider_range
+from ...page.task import Job, Task
+from ...parts.corner import Corner
 from ...serve.compiler import CERTIFIED, CURVE, LIVE
-from ...serve.queues import Stop, in_thread
+from ...serve.queues import LONG, Stop
+from ...serve.waiting import CELLS_EVERY, MAP_QUIET
 from .view import cells_message, described, head_message
 
-if TYPE_CHECKING:
-    from ...page.controller import Controller
-
+#: Cells over f and over A0: coarse enough to be there in some ten seconds on one core.
 COLUMNS, ROWS = 60, 40
-"""Cells over f and over A0: coarse enough to be there in some ten seconds on one core."""
-_QUIET = 700
-"""Milliseconds without a movement of another knob before a new diagram is begun."""
-_BATCH, _PATIENCE = 0.25, 0.01
-"""Seconds between two lots of cells, and between looks whether the picture in front is done."""
-_RANDOM_STATES, _FEW = 64, 12
-"""Random states of a search, and those of a scene that has to be settled without lanes."""
+#: Random states from which attractors are looked for.
+_RANDOM_STATES = 64
+#: The same for a scene that has to be settled without lanes.
+_FEW_RANDOM_STATES = 12
 
 
 def page_grid(scene: Scene) -> Grid:
@@ -43,14 +39,15 @@ def page_grid(scene: Scene) -> Grid:
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
 
 
-class MapTab(Background):
+class MapTab:
     """While the tab is on the screen its diagram is computed; nothing is while it is not."""
 
-    def __init__(self, page: Controller) -> None:
-        self._page = page
+    def __init__(self, host: Host, view: Corner) -> None:
+        self._host = host
+        self._view = view
         self._visible = False
-        self._stop: Stop = new_stop()
-        self._search: Stop = new_stop()
+        self._diagram = Task(host, LONG, self._say, "The diagram")
+        self._search = Task(host, LONG, self._say_search, "The search")
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
         self._shown: list[dict[str, Any]] = []
@@ -66,23 +63,24 @@ class MapTab(Background):
     def close(self) -> None:
         """The visitor left."""
         self._visible = False
-        self._stop[0] = self._search[0] = 1
+        self._diagram.cancel()
+        self._search.cancel()
 
     def moved(self) -> None:
         """A knob has moved: another knob than f and A0 makes another diagram, any makes other attractors."""
         if not self._visible:
             return
         self._tell_now()
-        if self._found and self._found_at != self._page.session.scene.digest:
+        if self._found and self._found_at != self._host.session.scene.digest:
             self._forget_attractors()
         if self._stale():
-            self._stop[0] = 1
+            self._give_up()
             self._tell(type="map-stale")
             self._due += 1
-            self._page.after(_QUIET, self._begin_if_last, self._due)
+            self._host.after(MAP_QUIET, self._begin_if_last, self._due)
 
     def _stale(self) -> bool:
-        return self._grid is None or self._grid.digest != page_grid(self._page.session.scene).digest
+        return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
 
     def _look(self, message: dict[str, Any]) -> None:
         self._visible = bool(message.get("value"))
@@ -104,51 +102,46 @@ class MapTab(Background):
 
     def _begin(self) -> None:
         """Compute what is missing of the present diagram, or a new one."""
-        self._stop[0] = 1
-        self._stop = stop = new_stop()
+        self._diagram.cancel()
         if self._grid is None or self._stale():
-            self._grid = page_grid(self._page.session.scene)
+            self._grid = page_grid(self._host.session.scene)
             self._cells = empty_cells(self._grid)
         self._send_all()
         self._say("waiting")
-        in_thread(self._work, self._grid, self._missing(), stop)
+        self._diagram.start(partial(self._work, self._grid, self._missing()))
 
     def _missing(self) -> list[int]:
         return [int(number) for number in np.flatnonzero(self._cells["regime"] < 0)]
 
+    def _give_up(self) -> bool:
+        """Nothing more of this diagram is computed; says whether something was."""
+        if not self._diagram.cancel():
+            return False
+        self.status = "cancelled"
+        return True
+
     def _cancel(self) -> None:
-        self._stop[0] = 1
-        if self.status in ("waiting", "compiling", "computing"):
+        if self._give_up():
             self._say("cancelled")
 
-    def _work(self, grid: Grid, missing: list[int], stop: Stop) -> None:
+    def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
         """In a thread of its own; a moving knob holds it up."""
-        try:
-            if not self._compiled(grid.scene, (LIVE, CERTIFIED, CURVE), stop, self._say):
-                return
-            self._later(stop, self._say, "computing")
-            for rows in _batches(grid, missing, stop, partial(self._pause, stop)):
-                self._later(stop, self._show, rows)
-            self._later(stop, self._say, "done")
-        except (BadInput, NumbersFailed) as problem:
-            self._later(stop, self._say, "failed", str(problem))
-        except Cancelled:
-            return
-        except Exception as error:
-            self._later(stop, self._say, "failed", "The diagram stopped by a fault inside granchain.")
-            self._page.later(self._page.failed, error)
+        job.compile(grid.scene, LIVE, CERTIFIED, CURVE)
+        job.say("computing")
+        for rows in _batches(grid, missing, job.stop, partial(job.give_way, self._in_front)):
+            job.later(self._show, rows)
 
-    def _pause(self, stop: Stop) -> None:
-        while (self._page.unsettled or self._page.curves.computing) and not stop[0]:
-            time.sleep(_PATIENCE)
+    def _in_front(self) -> bool:
+        """Whether the picture or the curve is being computed, which come first."""
+        return self._host.unsettled or self._host.curve_computing
 
     # To the browser
 
     def _tell(self, **message: Any) -> None:
-        self._page.views.corner.tell(**message)
+        self._view.tell(**message)
 
     def _tell_now(self) -> None:
-        scene = self._page.session.scene
+        scene = self._host.session.scene
         self._tell(type="map-now", x=scene.f, y=scene.A0)
 
     def _say(self, status: str, sentence: str = "") -> None:
@@ -169,42 +162,36 @@ class MapTab(Background):
 
     def _choose(self, message: dict[str, Any]) -> None:
         """A place of the diagram was clicked: f and A0 go there."""
-        self._page.session.change("f", message.get("x"))
-        self._page.received({"do": "set", "name": "A0", "value": message.get("y")})
+        session = self._host.session
+        self._host.show(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
 
     # Attractors
 
     def _find(self) -> None:
-        self._search[0] = 1
-        self._search = stop = new_stop()
+        self._search.cancel()
         self._found = []
         self._show_attractors("searching")
-        in_thread(self._search_work, self._page.session.scene, stop)
+        self._search.start(partial(self._search_work, self._host.session.scene))
 
-    def _search_work(self, scene: Scene, stop: Stop) -> None:
-        try:
-            pieces = (LIVE, CERTIFIED, CURVE) if scene.cuts_tension else (LIVE, CERTIFIED, CURVE, ORBIT_PIECE)
-            if self._compiled(scene, pieces, stop, self._show_attractors):
-                self._later(stop, self._show_attractors, "searching")
-                found = attractors(scene, _FEW if scene.cuts_tension else _RANDOM_STATES, stop=lambda: bool(stop[0]))
-                shown = [described(one) for one in found]
-                self._later(stop, self._arrived, scene, found, shown)
-        except (BadInput, NumbersFailed) as problem:
-            self._later(stop, self._show_attractors, "failed", str(problem))
-        except Exception as error:
-            self._later(stop, self._show_attractors, "failed", "The search stopped by a fault inside granchain.")
-            self._page.later(self._page.failed, error)
+    def _search_work(self, scene: Scene, job: Job) -> None:
+        job.compile(scene, LIVE, CERTIFIED, CURVE, *(() if scene.cuts_tension else (ORBIT_PIECE,)))
+        job.say("searching")
+        starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
+        found = attractors(scene, starts, stop=lambda: bool(job.stop[0]))
+        job.later(self._arrived, scene, found, [described(one) for one in found])
+
+    def _say_search(self, status: str, sentence: str) -> None:
+        self._show_attractors("" if status == "done" else status, sentence)
 
     def _arrived(self, scene: Scene, found: list[Attractor], shown: list[dict[str, Any]]) -> None:
         self._found, self._found_at, self._shown = found, scene.digest, shown
-        self._show_attractors("")
 
     def _show_attractors(self, status: str, sentence: str = "") -> None:
         shown = self._shown if self._found else []
         self._tell(type="map-attractors", status=status, sentence=sentence, attractors=shown)
 
     def _forget_attractors(self) -> None:
-        self._search[0] = 1
+        self._search.cancel()
         self._found = []
         self._show_attractors("none")
 
@@ -213,17 +200,8 @@ class MapTab(Background):
         number = message.get("number")
         if not isinstance(number, int) or isinstance(number, bool) or not 0 <= number < len(self._found):
             raise BadInput("That attractor is not in the list any more; look for them again.")
-        page = self._page
-        page.session.set_mode("settled")
-        page.session.set_start("previous")
-        page.live = None
-        page.header()
-        page.jobs.submit(partial(_from_attractor, self._found[number]))
-
-
-def _from_attractor(attractor: Attractor, stop: Stop) -> Iterator[Settled]:
-    """Pictures of an attractor, from its own state."""
-    yield from settling(attractor.scene, start=attractor.state, samples=samples_for(attractor.scene), stop=stop)
+        self._host.session.set_start("previous")
+        self._host.show(self._found[number].scene, self._found[number].state)
 
 
 def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:
@@ -232,7 +210,7 @@ def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], Non
     last = time.monotonic()
     for result in iter_diagram(grid, missing, lambda: bool(stop[0]), 1, pause):
         rows.append(cell_of(result))
-        if time.monotonic() - last > _BATCH:
+        if time.monotonic() - last > CELLS_EVERY:
             yield np.array(rows)
             rows, last = [], time.monotonic()
     if rows:

@@ -14,7 +14,7 @@ from granchain_core.steady.regime import modulus_words
 
 from ...page.format import short_error
 from ...parts.chain import PALETTE
-from ..curve.view import REGIMES
+from ...parts.regimes import REGIMES
 
 CATEGORIES = (*REGIMES, "failed")
 """What a cell may be; the colours are those of the curve, and each has a hatch of its own in the browser."""

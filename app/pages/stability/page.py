@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from panel.io import unlocked
 
-from granchain_core import BadInput, Cancelled, NumbersFailed, Scene, Settled, State
-from granchain_core.integrate.engine import new_stop
+from granchain_core import BadInput, Scene, Settled, State
 from granchain_core.orbits.compiled import ORBIT_PIECE
 from granchain_core.orbits.flow import refuse_cut
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
 
-from ...serve.compiler import COMPILER
-from ...serve.queues import ANALYSES, LatestWins, Stop
+from ...page.host import Host
+from ...page.job_list import IDLE, OFF, RUNNING, Activity
+from ...page.task import Job, Task
+from ...serve.queues import ANALYSES
+from ...serve.waiting import ANALYSIS_QUIET
 from .view import (
+    Stability,
     described_multipliers,
     evidence,
     mode_message,
@@ -27,24 +30,17 @@ from .view import (
 )
 from .work import PHASES, Analysis, Target, analyse, search, section_of, transient
 
-if TYPE_CHECKING:
-    from ...page.controller import Controller
-
-_QUIET = 120
-"""Milliseconds between a settled picture and its analysis: nothing is analysed while a knob moves."""
 _LIVE = "A live run is on its way, and only a motion that repeats has multipliers: choose “settled” above."
-_Result = tuple[Stop, object]
 
 
 class StabilityPage:
     """While it is on the screen, every picture that stays is analysed; a knob that moves gives up what is under way."""
 
-    def __init__(self, page: Controller) -> None:
-        self._page = page
-        self._view = page.views.stability
-        self._orbits = LatestWins(partial(page.later, self._arrived), partial(page.later, page.failed), ANALYSES)
-        self._sections = LatestWins(partial(page.later, self._arrived), partial(page.later, page.failed), ANALYSES)
-        self._stop: Stop = new_stop()
+    def __init__(self, host: Host, view: Stability) -> None:
+        self._host = host
+        self._view = view
+        self._orbits = Task(host, ANALYSES, self._ended, "The analysis")
+        self._sections = Task(host, ANALYSES, self._ended, "The section")
         self._due = 0
         self._open = False
         self._observer = False
@@ -63,15 +59,15 @@ class StabilityPage:
         }
 
     @property
-    def activity(self) -> tuple[str, str, str]:
+    def activity(self) -> Activity:
         """Name, state and detail for the list of what is computed now."""
         if not self._open:
-            return "stability", "off", "not on the screen"
+            return "stability", OFF, "not on the screen"
         words = {"compiling": "compiling the tangent flow", "computing": "multipliers, mode and section",
                  "searching": "Newton's method for an unstable orbit"}
         if self.status in words:
-            return "stability", "computing", words[self.status]
-        return "stability", "there" if self._analysed is not None else "off", "follows the settled picture"
+            return "stability", RUNNING, words[self.status]
+        return "stability", IDLE if self._analysed is not None else OFF, "follows the settled picture"
 
     # The picture in front
 
@@ -79,7 +75,7 @@ class StabilityPage:
         """Another picture is asked for: what is under way here is given up, what is shown is greyed."""
         self._give_up()
         self._picture = None
-        if self._open and self._page.session.mode == "live":
+        if self._open and self._host.session.mode == "live":
             self._clear(_LIVE)
         elif self._open:
             self._view.display(stale=True)
@@ -91,19 +87,18 @@ class StabilityPage:
         again = self._picture is not None and picture.state is self._picture.state  # with its energy account
         self._picture = picture
         if not again:
-            self._start, self._rank = self._page.session.began, 0
+            self._start, self._rank = self._host.session.began, 0
             self._due += 1
-            self._page.after(_QUIET, self._begin, self._due)
+            self._host.after(ANALYSIS_QUIET, self._begin, self._due)
 
     def close(self) -> None:
         """The visitor left."""
         self._open = False
         self._give_up()
-        self._orbits.close()
-        self._sections.close()
 
     def _give_up(self) -> None:
-        self._stop[0] = 1
+        self._orbits.cancel()
+        self._sections.cancel()
         self._due += 1
         self._analysed = None
         self.status = "none"
@@ -112,7 +107,7 @@ class StabilityPage:
         self._open = bool(message.get("value"))
         if not self._open:
             self._give_up()
-        elif self._page.session.mode == "live":
+        elif self._host.session.mode == "live":
             self._clear(_LIVE)
         else:
             self._begin(self._due)
@@ -122,7 +117,6 @@ class StabilityPage:
         picture = self._picture
         if due != self._due or not self._open or picture is None or self._analysed is picture.state:
             return
-        self._stop = new_stop()
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
         self._view.display(stale=True, regime=picture.regime.name, regime_period=picture.regime.period or 1,
@@ -132,45 +126,36 @@ class StabilityPage:
         else:
             self._target = None
             self._clear(no_multipliers(picture))
-        self._sections.submit(partial(self._work, self._stop, lambda stop: section_of(picture, self._start, stop)))
+        self._sections.start(partial(self._make_section, picture, self._start))
 
     def _follow(self, target: Target) -> None:
         self._target = target
         self._say("computing")
-        stop, observer, rank = self._stop, self._observer, self._rank
-        self._orbits.submit(partial(self._work, stop, partial(self._orbit, target, observer, rank)))
+        self._orbits.start(partial(self._analyse, target, self._observer, self._rank))
 
     # In a worker thread
 
-    def _work(self, stop: Stop, make: Callable[[Stop], Iterator[object]], _: Stop) -> Iterator[_Result]:
-        """Results with the flag that says whether they are still wanted."""
-        try:
-            if not stop[0]:
-                for result in make(stop):
-                    yield stop, result
-        except (NumbersFailed, BadInput) as failure:
-            yield stop, failure
+    def _analyse(self, target: Target, observer: bool, rank: int, job: Job) -> None:
+        self._compile(target.scene, job)
+        job.later(self._arrived, analyse(target, observer, rank, job.stop))
 
-    def _orbit(self, target: Target, observer: bool, rank: int, stop: Stop) -> Iterator[object]:
-        self._await_kernels(target.scene, stop)
-        yield analyse(target, observer, rank, stop)
+    def _make_section(self, picture: Settled, start: State | None, job: Job) -> None:
+        for section in section_of(picture, start, job.stop):
+            job.later(self._arrived, section)
 
-    def _await_kernels(self, scene: Scene, stop: Stop) -> None:
+    def _find(self, picture: Settled, section: Section | None, period: int, job: Job) -> None:
+        self._compile(picture.run.scene, job)
+        job.later(self._arrived, search(picture, section, period, job.stop))
+
+    @staticmethod
+    def _compile(scene: Scene, job: Job) -> None:
         refuse_cut(scene)  # before anything is compiled for it
-        if not COMPILER.has(scene, ORBIT_PIECE):
-            self._page.later(self._compiling, stop)
-        if not COMPILER.await_piece(scene, ORBIT_PIECE, stop):
-            raise Cancelled
-
-    def _compiling(self, stop: Stop) -> None:
-        if not stop[0]:
-            self._say("compiling")
+        job.compile(scene, ORBIT_PIECE)
 
     # What comes back
 
-    def _arrived(self, result: _Result) -> None:
-        stop, found = result
-        if stop[0] or self._picture is None:
+    def _arrived(self, found: Analysis | Target | Section) -> None:
+        if self._picture is None:
             return
         with unlocked():
             if isinstance(found, Analysis):
@@ -178,12 +163,17 @@ class StabilityPage:
             elif isinstance(found, Target):
                 self._rank = 0
                 self._follow(found)
-            elif isinstance(found, Section):
+            else:
                 self._section = found
                 self._show_section()
-            elif isinstance(found, Exception):
-                self._say("failed", str(found))
             self._show_evidence()
+
+    def _ended(self, status: str, sentence: str) -> None:
+        """What was found has arrived by then; only what failed, or is being compiled, is left to be told."""
+        if status != "done":
+            with unlocked():
+                self._say(status, sentence)
+                self._show_evidence()
 
     def _show(self, analysis: Analysis) -> None:
         self._analysis, self.status = analysis, "done"
@@ -211,9 +201,9 @@ class StabilityPage:
         """There are no multipliers to show; why is told."""
         self._analysis, self.status = None, "none"
         self._view.display(status="none", failure="", stale=False, sentence=sentence, marks=[], observer_marks=[],
-                           searched=False, evidence=[], scene=self._page.session.scene.name, observer=self._observer)
+                           searched=False, evidence=[], scene=self._host.session.scene.name, observer=self._observer)
         self._view.tell(type="no-mode")
-        if self._page.session.mode == "live":
+        if self._host.session.mode == "live":
             self._view.tell(type="no-section")
         self._show_evidence()
 
@@ -232,16 +222,16 @@ class StabilityPage:
         self._again()
 
     def _choose_mode(self, message: dict[str, Any]) -> None:
-        self._rank = _whole("mode", message.get("value"), 0, 2 * self._page.session.scene.N - 1)
+        self._rank = _whole("mode", message.get("value"), 0, 2 * self._host.session.scene.N - 1)
         self._again()
 
     def _again(self) -> None:
         """The same orbit with what was chosen."""
-        if self._open and self._target is not None and self._picture is not None and not self._stop[0]:
+        if self._open and self._target is not None and self._picture is not None:
             self._follow(self._target)
 
     def _choose_section(self, message: dict[str, Any]) -> None:
-        self._bead = _whole("bead", message.get("bead"), 1, self._page.session.scene.N)
+        self._bead = _whole("bead", message.get("bead"), 1, self._host.session.scene.N)
         self._phase = _whole("phase", message.get("phase"), 0, PHASES - 1)
         self._show_section()
 
@@ -251,13 +241,7 @@ class StabilityPage:
         if not self._open or picture is None:
             raise BadInput("There is no settled picture to search from yet; wait for it.")
         self._say("searching")
-        stop = self._stop
-
-        def work(flag: Stop) -> Iterator[object]:
-            self._await_kernels(picture.run.scene, flag)
-            yield search(picture, section, period, flag)
-
-        self._orbits.submit(partial(self._work, stop, work))
+        self._orbits.start(partial(self._find, picture, section, period))
 
     def _back(self, _: dict[str, Any]) -> None:
         """From an orbit that was found, or a search, back to what the chain does."""
