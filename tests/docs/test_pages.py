@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from pages import PAGES, ROOT, blocks, commands
+from documents import PAGES, ROOT, blocks, commands
 
 from app import cli
 from granchain_core import BadInput, scene, scene_names

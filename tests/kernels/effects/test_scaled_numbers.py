@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from granchain_core import Scene, scene
-from granchain_core.kernels.dop853.force_kinks import push
+from granchain_core.kernels.dop853.force_kinks import scaled_force
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji, damping
 from granchain_core.kernels.effects.driver import driver_velocity
 from granchain_core.kernels.effects.given_force import Sampled
@@ -90,7 +90,7 @@ def test_a_cut_contact_stops_pushing_where_its_force_is_zero(law, power) -> None
     """The sign that is followed is that of F/g, F = K δ^{3/2} + g(δ) δ̇."""
     for d, rate in ((0.3, -0.7), (1e-4, -1e-4), (2.0, 1.0)):
         g = 0.4 * d**power
-        assert push(law, 1.4, d, rate) == pytest.approx((1.4 * d**1.5 + g * rate) / g, rel=1e-13)
+        assert scaled_force(law, 1.4, d, rate) == pytest.approx((1.4 * d**1.5 + g * rate) / g, rel=1e-13)
 
 
 @pytest.mark.parametrize("offset", np.linspace(-0.5, 0.5, 11))
