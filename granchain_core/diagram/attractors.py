@@ -48,9 +48,32 @@ class Origin:
 class Attractor:
     """A steady state with what leads to it.
 
-    Forces are the largest ones [N], with their relative errors where the motion is periodic. `orbit` is the certified
-    orbit with its multipliers, None where the motion is not periodic or Newton's method did not reach it. `share` is
-    the part of the random states that end here, `share_error` its standard error.
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    regime : Regime
+        What kind of motion it is.
+    max_input_force, max_output_force, max_output_force_elastic : float
+        Largest forces [N].
+    force_errors : ForceErrors
+        Their relative errors; None where the motion is not periodic.
+    state : State
+        Where it is at drive phase 0.
+    orbit : Orbit or None
+        The certified orbit with its multipliers; None where the motion is not periodic or Newton's method did not
+        reach it.
+    origins : list of Origin
+        The starts that end here: "rest", "up", "down", "random 17".
+    share, share_error : float
+        Part of the random states that end here, and its standard error.
+
+    Examples
+    --------
+    >>> from granchain_core import attractors, scene
+    >>> only, = attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=2)
+    >>> only.stable, [origin.name for origin in only.origins][:3]
+    (True, ['rest', 'up', 'down'])
     """
 
     scene: Scene
@@ -78,11 +101,41 @@ class Attractor:
 
 def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Callable[[], bool] | None = None,
                progress: Callable[[float], None] | None = None) -> list[Attractor]:
-    """Steady states of `scene` that are found from rest, from sweeps of f in both directions and from random states.
+    """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
-    The largest share comes first. Random states are uniform in a box of displacements and velocities, `_BOX` times what
-    is seen on the way from rest; shares are relative to it. The same seed gives the same answer. `stop` may end the
-    search early with what is there. Raises `BadInput`, and `NumbersFailed` where no start stays finite.
+    Random states are uniform in a box of displacements and velocities, 1.5 times what is seen on the way from rest;
+    the shares are relative to it (docs/diagram.md).
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    random_states : int
+        How many random states, 0 to 10,000.
+    seed : int
+        Of the random states; the same seed gives the same answer.
+    stop : callable, optional
+        Asked between starts; where it returns true the search ends with what there is.
+    progress : callable, optional
+        Called with the part that is done.
+
+    Returns
+    -------
+    list of Attractor
+        Each steady state once, the largest share first.
+
+    Raises
+    ------
+    BadInput
+        `random_states` is out of range.
+    NumbersFailed
+        No start stays finite.
+
+    Examples
+    --------
+    >>> from granchain_core import attractors, scene
+    >>> [(one.regime.period, one.share) for one in attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=4)]
+    [(1, 1.0)]
     """
     if not 0 <= random_states <= MOST_STATES:
         raise BadInput(f"random_states = {random_states} is outside 0 to {MOST_STATES}; the nearest valid value is "

@@ -55,7 +55,24 @@ def _or_nan(value: float | None) -> float:
 
 @dataclass(eq=False)
 class Diagram:
-    """A two-parameter diagram: its grid, its cells (cells,) by number, and the time it took."""
+    """A two-parameter diagram.
+
+    Attributes
+    ----------
+    grid : Grid
+        The scene and its two axes; cell (i, j) has y value i and x value j.
+    cells : numpy.ndarray, structured, shape (cells,)
+        By number i · len(x) + j: regime, period, largest forces [N], relative errors, and the evidence for the regime.
+    wall_s : float
+        Wall-clock time [s].
+
+    Examples
+    --------
+    >>> from granchain_core import diagram, scene
+    >>> found = diagram(scene("sec2").evolve(N=2), ("f", [1900.0, 2000.0]), ("A0", [5e-7]))
+    >>> found.complete, found.column("max_output_force").shape, found.regime(0).name
+    (True, (1, 2), 'periodic')
+    """
 
     grid: Grid
     cells: np.ndarray

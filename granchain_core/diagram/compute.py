@@ -95,10 +95,40 @@ def settle_on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None
 def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
             stop: Callable[[], bool] | None = None, progress: Callable[[Diagram, float], None] | None = None,
             workers: int | None = None) -> Diagram:
-    """Regime, period, largest forces and errors over two knobs, every cell from rest.
+    """Regime and largest forces over two knobs, every cell from rest, on all cores.
 
-    `x` and `y` are (knob, ascending values). `progress` is told the diagram so far and the part of it that is done
-    after every cell; `stop` may end it early, and what is not computed then has regime −1. Raises `BadInput`.
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    x, y : tuple of (str, iterable of float)
+        A knob ("f", "A0", "D", "k", "kappa", "F0" or "wall") and its ascending values in SI.
+    stop : callable, optional
+        Asked between cells; where it returns true the diagram ends, and what is not computed has regime −1.
+    progress : callable, optional
+        Called with the diagram so far and the part of it that is done, after every cell.
+    workers : int, optional
+        Threads; one for each core if not given.
+
+    Returns
+    -------
+    Diagram
+        A table of cells, (len(y), len(x)).
+
+    Raises
+    ------
+    BadInput
+        A knob cannot be an axis, its values do not ascend or are out of range, or there are too many cells.
+
+    Examples
+    --------
+    >>> from granchain_core import diagram, scene
+    >>> found = diagram(scene("sec2").evolve(N=2), ("f", [1900.0, 2000.0, 2100.0]), ("A0", [4e-7, 5e-7]))
+    >>> found.column("period")
+    array([[1, 1, 1],
+           [1, 1, 1]], dtype=int16)
+    >>> bool((found.column("max_output_force")[1] > found.column("max_output_force")[0]).all())
+    True
     """
     began = time.perf_counter()
     grid = Grid(scene, Axis.of(*x), Axis.of(*y))

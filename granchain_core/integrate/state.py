@@ -11,7 +11,24 @@ from ..scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where the chain is: displacement and velocity (N,) in SI and the drive phase as a fraction of a period."""
+    """Where a chain is: its state at one instant.
+
+    Attributes
+    ----------
+    displacement : numpy.ndarray, shape (N,)
+        Displacements from the places of first touch [m].
+    velocity : numpy.ndarray, shape (N,)
+        [m/s]
+    phase : float
+        Drive phase as a fraction of a period, 0 to 1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from granchain_core import State
+    >>> State(np.zeros(2), np.array([0.01, 0.0])).phase
+    0.0
+    """
 
     displacement: np.ndarray
     velocity: np.ndarray

@@ -34,13 +34,36 @@ _MOST_HALVINGS = 6
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit of `period` drive periods through `state` at phase 0.
+    """A periodic orbit with its Floquet multipliers.
 
-    `residual` is the map's remaining change over the state's largest entry, `newton_residuals` its history.
-    `multipliers` (2N,) are sorted by modulus, largest first; of chains of more than `DENSE` beads they are the leading
-    ones. `liouville` is the difference between the logarithm of their product and ∫ trace, relative to the latter;
-    None where not all are known, or where the smallest are mere rounding. `changes` are the contact events along the
-    orbit, as in `Flow`.
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    period : int
+        In drive periods.
+    state : State
+        Where the orbit is at drive phase 0.
+    residual : float
+        What the map still changes, over the state's largest entry.
+    newton_residuals : tuple of float
+        Its history.
+    multipliers : numpy.ndarray of complex, shape (2N,)
+        Sorted by modulus, largest first; of more than 100 beads the leading ones only.
+    liouville : float or None
+        Difference between the logarithm of their product and ∫ trace, relative to the latter; None where not all are
+        known or the smallest are rounding.
+    changes : numpy.ndarray
+        Contact events along the orbit.
+    observer_multipliers : numpy.ndarray of complex or None
+        Those of the observer of model (4), where they were asked for.
+
+    Examples
+    --------
+    >>> from granchain_core import orbit, scene
+    >>> found = orbit(scene("sec2").evolve(N=2, f=2000.0))
+    >>> found.multipliers.shape, found.stable
+    ((4,), True)
     """
 
     scene: Scene
@@ -68,10 +91,45 @@ class Orbit:
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
                    stop: np.ndarray | None = None) -> Orbit:
-    """The orbit nearest to `start`, or to the steady state from rest; `period` in drive periods, else the settled one.
+    """A periodic orbit by Newton's method on the stroboscopic map, stable or not. Also called `orbit`.
 
-    Raises `BadInput` for a period out of range, `NumbersFailed` with the residual history where Newton's method does
-    not converge, and `Cancelled`.
+    Its Floquet multipliers are the eigenvalues of the map's derivative, computed with the orbit (docs/orbits.md).
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its tension must not be cut.
+    period : int, optional
+        In drive periods; the steady state's if not given.
+    start : State, optional
+        Newton's method begins here; in the steady state reached from rest if not given.
+    observer : bool
+        Whether to compute the multipliers of the observer, model (4) of Zhang et al. 2016.
+    stop : numpy.ndarray, shape (1,), optional
+        A byte that another thread sets to 1 to end the computation.
+
+    Returns
+    -------
+    Orbit
+        The orbit that was found.
+
+    Raises
+    ------
+    BadInput
+        The period is out of range, or the scene cuts tension.
+    NumbersFailed
+        Newton's method did not converge; the message has its residuals.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import orbit, scene
+    >>> found = orbit(scene("sec2").evolve(N=2, f=2000.0))
+    >>> found.period, found.residual < 1e-10
+    (1, True)
+    >>> bool(abs(found.multipliers[0]) < 1.0)
+    True
     """
     if period is not None and not 1 <= period <= LONGEST_PERIOD:
         raise BadInput(f"period {period} is outside 1 to {LONGEST_PERIOD}; the nearest valid value is "

@@ -17,13 +17,36 @@ _NOT_ASKED = Regime("unsettled", None, None, None, 0)
 
 
 class LiveChain:
-    """A chain run by the live method, `samples` recorded states a period, with knobs that act on the way.
-
-    It begins at rest, or in the state `start`.
+    """A chain that goes on while its knobs are moved, by the live method.
 
     D, k, the laws and the frequency act at the next sample: the drive phase goes on from where it is, so the driver
     never jumps. A new amplitude waits for the driver's next passage through its middle position, where u_0 is
     continuous for every A0.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    samples : int
+        Recorded samples a drive period, an even number.
+    start : State, optional
+        Where it begins; at rest if not given.
+
+    Raises
+    ------
+    ValueError
+        `samples` is odd.
+
+    Examples
+    --------
+    >>> from granchain_core import LiveChain, scene
+    >>> chain = scene("sec2").evolve(N=2, f=2000.0)
+    >>> live = LiveChain(chain, samples=16)
+    >>> live.advance(32).displacement.shape
+    (33, 2)
+    >>> live.change(chain.evolve(f=1900.0))
+    >>> live.time == 2 / 2000.0
+    True
     """
 
     def __init__(self, scene: Scene, samples: int = 96, start: State | None = None) -> None:

@@ -15,7 +15,25 @@ from ..quantities import QUANTITIES, WALL_FACTORS
 
 @dataclass(frozen=True)
 class Bead:
-    """One elastic sphere: mass [kg], radius [m], Young's modulus [Pa], Poisson's ratio."""
+    """One elastic sphere.
+
+    Attributes
+    ----------
+    mass : float
+        [kg]
+    radius : float
+        [m]
+    young : float
+        Young's modulus [Pa].
+    poisson : float
+        Poisson's ratio [1].
+
+    Examples
+    --------
+    >>> from granchain_core import Bead
+    >>> Bead(mass=2.8e-2, radius=9.5e-3, young=193e9, poisson=0.3).radius
+    0.0095
+    """
 
     mass: float
     radius: float
@@ -37,10 +55,45 @@ def hertz_stiffness(left: Bead, right: Bead) -> float:
 class Description:
     """The values of a driven chain, immutable and hashable, and what follows from them.
 
-    Beads are `pattern` repeated to N (two entries make a dimer), with `impurities` ((bead number from 1, Bead), …)
-    in place of some. Contact 0 joins driver and bead 1, contact N joins bead N and the wall. `tension_cut` and
-    `dissipation` choose the contact's law; `reference_overlap` [m] is where D of an overlap-dependent law is
-    stated. `ranges` are slider ranges, (knob, low, high). `start_velocity` is ((bead number, m/s), …) at t = 0.
+    The model is eq. (1) of Zhang et al. 2016: N spheres in Hertz contact between a harmonic driver and a wall
+    (docs/model.md). Contact 0 joins driver and bead 1, contact N joins bead N and the wall.
+
+    Attributes
+    ----------
+    name, title, look_at, paper : str
+        What it is called, what to look at, and where in the paper it stands.
+    pattern : tuple of Bead
+        Repeated to N beads: two entries make a dimer.
+    N : int
+        Number of beads.
+    f : float
+        Drive frequency [Hz].
+    A0 : float
+        Drive amplitude [m]: the driver is at A0 sin 2πft.
+    D : float
+        Damping coefficient of a contact [N s/m].
+    k : float
+        Stiffness of each bead's foundation spring [N/m].
+    F0 : float
+        Static preload [N].
+    wall : str or float
+        "bead", "same-material", "rigid", or the wall contact's stiffness over that of two beads.
+    dissipation : str
+        "linear", "tsuji", "kuwabara-kono" or "none".
+    tension : str
+        "allowed", or "cut" where a contact must not pull.
+    accuracy : float
+        Relative error of the displacements that is asked for.
+    reference_overlap : float
+        Overlap at which D of a law that depends on it is stated [m].
+    impurities : tuple of (int, Bead)
+        Beads in place of the pattern's, by number from 1.
+    start_velocity : tuple of (int, float)
+        Beads that move at t = 0, by number, with their velocities [m/s].
+    ranges : tuple of (str, float, float)
+        Ranges of the sliders.
+    preset : tuple
+        The knobs of the preset it comes from.
     """
 
     name: str

@@ -17,7 +17,23 @@ from .validity import warnings
 
 @dataclass(frozen=True)
 class Scene(Description):
-    """A driven chain, immutable and hashable; `evolve` gives a new one."""
+    """A driven chain, immutable and hashable; `evolve` gives one with other knobs.
+
+    Its fields are those of `Description`.
+
+    Examples
+    --------
+    >>> from granchain_core import scene
+    >>> chain = scene("sec2").evolve(N=2, f=2000.0, dissipation="tsuji")
+    >>> chain.effects
+    ['contact', 'driver', 'wall', 'Tsuji damping']
+    >>> chain.masses().shape, chain.contact_stiffness().shape
+    ((2,), (3,))
+    >>> chain.evolve(f=-1.0)
+    Traceback (most recent call last):
+    ...
+    granchain_core.errors.BadInput: drive frequency f = -1 Hz is outside 0.1 to 1e+06 Hz; ...
+    """
 
     @property
     def effects(self) -> list[str]:

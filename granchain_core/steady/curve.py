@@ -32,10 +32,31 @@ MOST_POINTS = 100_000
 
 @dataclass(frozen=True, eq=False)
 class CurvePoint:
-    """The steady state at one frequency: largest forces [N], regime, relative errors of the forces.
+    """The steady state at one frequency.
 
-    Where the motion is not periodic the forces are the largest seen in the last periods and no error is claimed.
-    `failure` is a sentence if the numbers failed there, `status` the outcome's name; the forces are then NaN.
+    Attributes
+    ----------
+    frequency : float
+        [Hz]
+    max_output_force, max_output_force_elastic, max_input_force : float
+        Largest forces [N]; where the motion is not periodic, those of the last periods. NaN where the numbers failed.
+    regime : Regime
+        What kind of motion it is.
+    force_errors : ForceErrors
+        Relative errors of the three; None where the motion is not periodic.
+    state : State
+        Where the chain is at drive phase 0.
+    failure : str
+        A sentence where the numbers failed.
+    status : str
+        "done", or the failure's name.
+
+    Examples
+    --------
+    >>> from granchain_core import resonance_curve, scene
+    >>> point = resonance_curve(scene("sec2").evolve(N=2), [2000.0]).points[0]
+    >>> point.status, point.regime.period, point.error_estimate < 1e-3
+    ('done', 1, True)
     """
 
     frequency: float
@@ -56,7 +77,26 @@ class CurvePoint:
 
 @dataclass(eq=False)
 class Curve:
-    """A resonance curve in ascending frequency."""
+    """A resonance curve in ascending frequency.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    start : str
+        "rest", "up" or "down".
+    points : list of CurvePoint
+        One for each frequency.
+    wall_s : float
+        Wall-clock time [s].
+
+    Examples
+    --------
+    >>> from granchain_core import resonance_curve, scene
+    >>> curve = resonance_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0])
+    >>> curve.column("max_input_force").shape
+    (2,)
+    """
 
     scene: Scene
     start: str
@@ -133,8 +173,35 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
                stop: Callable[[], bool] | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
     """Points of a resonance curve as they are finished.
 
-    From "rest" every point starts at rest and they come coarse first, on all cores; "up" and "down" carry the state
-    along in that direction. `stop` is asked between points and may end the curve; a running point is then given up.
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its own frequency does not matter.
+    frequencies : sequence of float
+        Drive frequencies [Hz].
+    start : str
+        "rest": points come coarse first, from all cores; "up" or "down": the state is carried along in that direction.
+    stop : callable, optional
+        Asked between points; where it returns true the curve ends, and a running point is given up.
+    workers : int, optional
+        Threads; one for each core if not given.
+
+    Yields
+    ------
+    CurvePoint
+        One for each frequency.
+
+    Raises
+    ------
+    BadInput
+        No frequency, too many, one out of range, or another word for `start`.
+
+    Examples
+    --------
+    >>> from granchain_core import iter_curve, scene
+    >>> points = iter_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0], start="down")
+    >>> [point.frequency for point in points]
+    [2000.0, 1800.0]
     """
     if start not in STARTS:
         raise unknown_name("start", start, STARTS)
@@ -201,7 +268,43 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: n
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
                     stop: Callable[[], bool] | None = None, on_point: Callable[[CurvePoint], None] | None = None,
                     workers: int | None = None) -> Curve:
-    """The whole curve in ascending frequency; `on_point` is called with each point as it is finished."""
+    """The resonance curve: largest forces of the steady state over the drive frequency.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its own frequency does not matter.
+    frequencies : sequence of float
+        Drive frequencies [Hz], 1 to 100,000 of them, in any order.
+    start : str
+        "rest": every point begins at rest, all cores work; "up" or "down": the state is carried along that way, so
+        that hysteresis shows.
+    stop : callable, optional
+        Asked between points; where it returns true the curve ends with what there is.
+    on_point : callable, optional
+        Called with each `CurvePoint` as it is finished.
+    workers : int, optional
+        Threads; one for each core if not given.
+
+    Returns
+    -------
+    Curve
+        Its points in ascending frequency. A point whose numbers fail says so and does not end the curve.
+
+    Raises
+    ------
+    BadInput
+        No frequency, too many, one out of range, or another word for `start`.
+
+    Examples
+    --------
+    >>> from granchain_core import resonance_curve, scene
+    >>> curve = resonance_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0, 2200.0])
+    >>> curve.column("frequency")
+    array([1800., 2000., 2200.])
+    >>> max(curve.points, key=lambda point: point.max_output_force_elastic).frequency
+    1800.0
+    """
     began = time.perf_counter()
     curve = Curve(scene, start)
     for point in iter_curve(scene, frequencies, start, stop, workers):

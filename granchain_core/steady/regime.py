@@ -28,12 +28,35 @@ SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
 @dataclass(frozen=True)
 class Regime:
-    """What the motion is and how one knows.
+    """What kind of motion it is, and the evidence.
 
-    `decay` is by how much changes shrank per orbit where that was seen, `multiplier` the largest |μ| of the n-period
-    map where it was computed; `distance` is the bound on the relative distance to the orbit, `lyapunov` (exponent per
-    period, its standard error) there where it was measured. `followed`: the motion was still on its way, and the orbit
-    it goes to was found ahead of it. `approaches` is the period of an orbit that an unsettled motion goes to.
+    Attributes
+    ----------
+    name : str
+        "periodic", "quasi-periodic", "chaotic" or "unsettled".
+    period : int or None
+        In drive periods, where the motion is periodic.
+    decay : float or None
+        By how much changes shrank per orbit, where that was seen.
+    distance : float or None
+        Bound on the relative distance to the orbit.
+    periods_run : int
+        Drive periods that were run.
+    lyapunov : tuple of float or None
+        Lyapunov exponent per drive period and its standard error, where it was measured.
+    multiplier : float or None
+        Largest |μ| of the n-period map, where it was computed.
+    followed : bool
+        The motion was still on its way, and the orbit it goes to was found ahead of it.
+    approaches : int or None
+        Period of an orbit that an unsettled motion goes to.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> regime = settle(scene("sec2").evolve(N=2, f=2000.0)).regime
+    >>> regime.name, regime.period, regime.distance < 1e-4
+    ('periodic', 1, True)
     """
 
     name: str

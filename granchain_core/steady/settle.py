@@ -36,10 +36,29 @@ _MOST_ROUNDS = 12
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """A steady state (or how far one got): the recorded run, its regime, the state at phase 0.
+    """A steady state, or how far one got.
 
-    `start` says where it came from: "rest" or "previous state". A preview is a first picture from the live method;
-    `final` is the last and best.
+    Attributes
+    ----------
+    run : Run
+        The recorded orbit, or a few periods where the motion is not periodic.
+    regime : Regime
+        What kind of motion it is.
+    state : State
+        Where the chain is at drive phase 0.
+    start : str
+        Where the motion came from: "rest" or "previous state".
+    preview : bool
+        Whether this is a first picture by the live method.
+    final : bool
+        Whether it is the last and best.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> found = settle(scene("sec2").evolve(N=2, f=2000.0), samples=16)
+    >>> found.run.time.shape, found.state.displacement.shape
+    ((17,), (2,))
     """
 
     run: Run
@@ -142,7 +161,34 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
              stop: np.ndarray | None = None) -> Iterator[Settled]:
     """Pictures on the way to the steady state: a quick preview first, the certified one last.
 
-    Raises `NumbersFailed` and `Cancelled`.
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    start : State, optional
+        Where the motion begins; at rest if not given.
+    samples : int
+        Samples a drive period of each picture.
+    stop : numpy.ndarray, shape (1,), optional
+        A byte that another thread sets to 1 to end the computation.
+
+    Yields
+    ------
+    Settled
+        About ten a second; `final` is set on the last.
+
+    Raises
+    ------
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settling
+    >>> [picture.final for picture in settling(scene("sec2").evolve(N=2, f=2000.0))][-1]
+    True
     """
     origin = "rest" if start is None else "previous state"
     began = time.perf_counter()
@@ -159,7 +205,43 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
 
 def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
             stop: np.ndarray | None = None) -> Settled:
-    """The steady state reached from rest or from `start`, certified where it is periodic."""
+    """The steady state that a chain reaches. Also called `settle`.
+
+    The live method runs until the distance to the orbit is bounded, or until it is decided otherwise what the motion
+    is; a periodic orbit is then computed by the certified method (docs/design.md, "Settled is a bound").
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    start : State, optional
+        Where the motion begins; at rest if not given.
+    samples : int
+        Samples a drive period of the recorded orbit.
+    stop : numpy.ndarray, shape (1,), optional
+        A byte that another thread sets to 1 to end the computation.
+
+    Returns
+    -------
+    Settled
+        One orbit where the motion is periodic, else a few periods of it.
+
+    Raises
+    ------
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> found = settle(scene("sec2").evolve(N=2, f=2000.0))
+    >>> found.regime.name, found.regime.period
+    ('periodic', 1)
+    >>> f"{found.run.max_output_force_elastic:.3f} N"
+    '2.260 N'
+    """
     began = time.perf_counter()
     way = settle(scene, start, stop)
     origin = "rest" if start is None else "previous state"

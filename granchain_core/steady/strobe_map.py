@@ -2,7 +2,7 @@
 
 Whether a claim near |μ| = 1 holds is asked here, in the middle of settling: with kernels that are compiled already, and
 for cut tensions too. The tangent flow (`granchain_core/orbits`) is for orbits that are asked for by name; both agree on
-|μ| to 1e-5 (tests/numerics/test_confirmed_orbits.py).
+|μ| to 1e-5 (tests/numerics/test_label_honesty.py).
 """
 
 from __future__ import annotations

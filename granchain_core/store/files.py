@@ -53,7 +53,35 @@ _ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elas
 
 
 def save(result: Run, path: str | Path) -> Path:
-    """Write a run to `path`; returns the path. Raises `BadInput` where it cannot be written."""
+    """Write a run to an HDF5 file with labelled axes and units (README.md, "Files").
+
+    Parameters
+    ----------
+    result : Run
+        What `run` returned.
+    path : str or pathlib.Path
+        The file; one that is there is replaced when the new one is complete.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    BadInput
+        It cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> from granchain_core import load, run, save, scene
+    >>> result = run(scene("sec2").evolve(N=2, f=2000.0), periods=0, record=1, samples=8)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     again = load(save(result, pathlib.Path(folder) / "run.h5"))
+    >>> bool((again.displacement == result.displacement).all())
+    True
+    """
 
     def write(file: h5py.File) -> None:
         _provenance(file, result.scene, result.cost.method, result.error_estimate)
@@ -113,7 +141,31 @@ def save_curve(curve: Curve, path: str | Path) -> Path:
 
 
 def load(path: str | Path) -> Run:
-    """The run that `save` wrote. Raises `BadInput` for a file that is not one."""
+    """Read the run that `save` wrote.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        The file.
+
+    Returns
+    -------
+    Run
+        The same numbers, bit by bit.
+
+    Raises
+    ------
+    BadInput
+        There is no such file, or it is not a run written by granchain.
+
+    Examples
+    --------
+    >>> from granchain_core import load
+    >>> load("nothing-there.h5")
+    Traceback (most recent call last):
+    ...
+    granchain_core.errors.BadInput: nothing-there.h5 is not a run written by granchain: ...
+    """
     try:
         return _read(path)
     except BadInput:

@@ -63,13 +63,19 @@ def test_a_layer_imports_only_what_stands_above_it(path: Path) -> None:
 @pytest.mark.parametrize("path", ALL, ids=lambda p: str(p.relative_to(ROOT)))
 def test_a_file_can_be_held_and_says_what_it_is(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    assert text.count("\n") <= 300
     tree = ast.parse(text)
+    assert text.count("\n") - lines_of_docstrings(tree) <= 300
     assert ast.get_docstring(tree) or not tree.body
     for node in ast.walk(tree):
         public = isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_")
         if public and node in tree.body:
             assert ast.get_docstring(node), f"{path.name}: {node.name} has no docstring"  # type: ignore[arg-type]
+
+
+def lines_of_docstrings(tree: ast.Module) -> int:
+    """Lines that are documentation: the better a file is documented, the longer it may be."""
+    return sum(node.body[0].end_lineno - node.body[0].lineno + 1 for node in ast.walk(tree)
+               if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node))
 
 
 def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
+from started import until
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile the tangent flow, on a machine that runs tests.
@@ -69,8 +70,7 @@ def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Vis
     assert sheet.locator("path.swing").first.get_attribute("d") != before
     moment = sheet.locator("line.moment")
     there = moment.get_attribute("transform")
-    page.wait_for_timeout(300)
-    assert moment.get_attribute("transform") != there
+    until(page, lambda: moment.get_attribute("transform") != there)
 
 
 def test_the_observer_is_a_second_set_and_off_at_first(visit: Visit) -> None:
@@ -107,8 +107,7 @@ def test_the_section_follows_bead_and_phase(visit: Visit) -> None:
     sheet.get_by_label("drive phase of the section").fill("12")
     expect(sheet.locator("output")).to_have_text("0.25 T")
     expect(sheet.locator("path.own")).to_have_count(3)
-    page.wait_for_timeout(200)
-    assert points(sheet) != second
+    until(page, lambda: points(sheet) != second)
 
 
 def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: Visit) -> None:

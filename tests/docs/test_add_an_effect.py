@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from pages import ROOT, blocks, edited
+from documents import ROOT, blocks, edited
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
 _PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml")

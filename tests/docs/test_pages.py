@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from pages import PAGES, ROOT, blocks, commands
+from documents import PAGES, ROOT, blocks, commands
 
 from app import cli
 from granchain_core import BadInput, scene, scene_names
@@ -19,6 +19,7 @@ from granchain_core.quantities import QUANTITIES
 
 MODEL = ROOT / "docs" / "model.md"
 _ROWS = re.findall(r"^\| `granchain (run [^`]+)` \| ([\d.]+) \| ([^|]+) \|$", MODEL.read_text("utf-8"), re.MULTILINE)
+_FOLDERS = "(?:granchain|granchain_core|app|assets|tests|tools|docs)"
 _COMMANDS = sorted({command for page in PAGES for command in commands(page)})
 
 
@@ -29,8 +30,26 @@ def test_links_and_named_files_exist(page: Path):
     made = {block.path for block in blocks(page) if block.is_new_file}
     for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", text):
         assert (page.parent / target).exists(), target
-    for name in re.findall(r"`((?:granchain_core|app|assets|tests|docs)/[\w./-]+)`", text):
+    for name in re.findall(rf"`({_FOLDERS}/[\w./-]+)`", text):
         assert name in made or (ROOT / name).exists(), name
+
+
+def test_files_named_in_the_source_exist():
+    """A docstring or comment that names a file of the project leads somewhere."""
+    lost = [f"{path.relative_to(ROOT)}: {name}" for folder in ("granchain_core", "app", "tests", "tools")
+            for path in sorted((ROOT / folder).rglob("*.py"))
+            for name in re.findall(rf"\b({_FOLDERS}/[\w./-]+\.(?:py|md|npz|css|js))\b", path.read_text(encoding="utf-8"))
+            if not (ROOT / name).exists() and not name.endswith("test_drag.py")]  # docs/add-an-effect.md makes that one
+    assert lost == []
+
+
+def test_the_glossary_names_a_place_for_every_term():
+    """Each row has a term, what it is, and at least one file or page."""
+    rows = re.findall(r"^\| (?!symbol|---)(.+) \|$", (ROOT / "docs" / "glossary.md").read_text("utf-8"), re.MULTILINE)
+    cells = [re.split(r"(?<!\\) ?\| ", row) for row in rows]
+    assert all(len(row) == 4 and row[1] and row[2] and re.search(r"[\w/]+\.(py|md)", row[3]) for row in cells)
+    terms = [row[1] for row in cells]
+    assert len(set(terms)) == len(terms)
 
 
 @pytest.mark.parametrize("command", _COMMANDS)

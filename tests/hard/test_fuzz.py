@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fuzzing import check as checker
-from fuzzing import oracle, properties
-from fuzzing.check import Verdict, check
-from fuzzing.many import warm
-from fuzzing.scenes import FEW, Draw, draw
-from fuzzing.table import describe, known, silent_other, table
 
 from granchain_core import Cancelled, NumbersFailed, Run, run
 from granchain_core.errors import OverBudget
 from granchain_core.lower import lower
+from tools.fuzzing import check as checker
+from tools.fuzzing import oracle, properties
+from tools.fuzzing.check import Verdict, check
+from tools.fuzzing.many import warm
+from tools.fuzzing.scenes import FEW, Draw, draw
+from tools.fuzzing.table import describe, known, silent_other, table
 
 SEED, COUNT = 7, 150
 #: Seconds a run may take here: the slowest scenes are for the program.

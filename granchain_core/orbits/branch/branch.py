@@ -32,7 +32,28 @@ MOST_POINTS = 20_000
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """A branch: its axis, the period of its orbits in drive periods, and one or two arms from the same seed."""
+    """A branch of periodic orbits over one knob.
+
+    Attributes
+    ----------
+    axis : KnobAxis
+        The knob, where it starts and where it ends.
+    period : int
+        Of its orbits, in drive periods.
+    arms : tuple of Arm
+        One or two directions from the same seed; `ended` and `reason` say how each ended.
+    points : list of BranchPoint
+        All orbits in their order along the branch.
+    special : list of SpecialPoint
+        Folds, period doublings, Neimark–Sacker points and grazings, each with the interval that holds it.
+
+    Examples
+    --------
+    >>> from granchain_core import branch, scene
+    >>> found = branch(scene("sec2").evolve(N=2), "f", 2000.0, 2020.0)
+    >>> found.arms[0].ended, len(found.points) == len(found.column("knob"))
+    ('reached', True)
+    """
 
     axis: KnobAxis
     period: int
@@ -140,11 +161,54 @@ def arms_from(equations: BranchEquations, x: np.ndarray, value: float, direction
 def continue_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                     start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
                     on_point: Callable[[Arm], None] | None = None, stop: np.ndarray | None = None) -> Branch:
-    """The branch of periodic orbits of `period` drive periods through the one at knob = `start`, as far as `end`.
+    """Follow a branch of periodic orbits over one knob, by pseudo-arclength. Also called `branch`.
 
-    See `begin_branch` for its seed. `on_point` is told the arm that has grown. An arm ends where the knob reaches `end`
-    or comes back to `start`, where the branch closes on itself or merges with one of half the period, or where it
-    cannot be followed; `branch.arms[0].reason` says which.
+    An arm ends where the knob reaches `end` or comes back to `start`, where the branch closes on itself or merges with
+    one of half the period, or where it cannot be followed; `branch.arms[0].reason` says which (docs/branches.md).
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its tension must not be cut.
+    knob : str
+        "f", "A0", "D", "k", "kappa" or "F0".
+    start, end : float
+        Values of the knob in SI between which the branch is followed; the first orbit is at `start`.
+    period : int, optional
+        Of the orbits, in drive periods; the steady state's at `start` if not given.
+    start_state : State, optional
+        Near the first orbit; the steady state from rest if not given.
+    both : bool
+        Begin at the scene's own value of the knob and follow both ways, to `start` and to `end`.
+    most_points : int
+        Points of an arm at most.
+    on_point : callable, optional
+        Called with the arm that has grown.
+    stop : numpy.ndarray, shape (1,), optional
+        A byte that another thread sets to 1 to end the computation.
+
+    Returns
+    -------
+    Branch
+        Orbits, multipliers, largest forces and special points.
+
+    Raises
+    ------
+    BadInput
+        The knob cannot be followed, or a value is out of range.
+    NumbersFailed
+        There is no orbit to begin with.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import branch, scene
+    >>> found = branch(scene("sec2").evolve(N=2), "f", 2000.0, 2020.0)
+    >>> found.column("knob")[[0, -1]]
+    array([2000., 2020.])
+    >>> bool(found.column("stable").all())
+    True
     """
     if not 2 <= most_points <= MOST_POINTS:
         raise BadInput(f"most_points = {most_points} is outside 2 to {MOST_POINTS}; the nearest valid value is "

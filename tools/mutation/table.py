@@ -35,8 +35,8 @@ DEMANDED: dict[str, tuple[str, ...]] = {
 }
 
 #: All tests of the core, what compiles least first: a mutant that survives its own tests is given these.
-BROAD: tuple[str, ...] = ("tests/kernels", "tests/physics", "tests/numerics", "tests/lanes", "tests/orbits",
-                          "tests/observe", "tests/diagram", "tests/hard/test_outcomes.py", "tests/hard/test_broken.py",
+BROAD: tuple[str, ...] = ("tests/kernels", "tests/scene", "tests/physics", "tests/integrate", "tests/run", "tests/numerics",
+                          "tests/steady", "tests/orbits", "tests/observe", "tests/diagram", "tests/hard/test_outcomes.py", "tests/hard/test_broken.py",
                           "tests/hard/test_cases.py", "tests/hard/test_fuzz.py",
                           "--deselect", "tests/kernels/test_machine_code.py", "--deselect", "tests/kernels/test_cache.py",
                           "-k", "not timings and not stop_flag")

@@ -1,7 +1,7 @@
 """Program: draw whole scenes, check each, print the table and every scene in which something did not hold.
 
-    python -m tests.hard.fuzzing --count 20000 --seed 5 [--workers 2] [--minutes 10] [--few]
-    python -m tests.hard.fuzzing --seed 5 --only 123
+    python -m tools.fuzzing --count 20000 --seed 5 [--workers 2] [--minutes 10] [--few]
+    python -m tools.fuzzing --seed 5 --only 123
 
 Every scene is held against the certified method at its finest, every third against SciPy in (u, v) too unless that
 would take long, every sixteenth is given to naive RK4 and to LSODA.

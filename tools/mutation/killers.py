@@ -4,11 +4,11 @@ from __future__ import annotations
 
 #: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where beads
 #: are not alike; NaN in every lane; what is not finite.
-MOTION = ("tests/kernels/test_motion.py",)
-UNLIKE = ("tests/kernels/test_scaled_numbers.py",)
-VECTORS = ("tests/lanes/test_vector_nan.py",)
-FAILURES_W = ("tests/numerics/test_not_finite.py", "-k", "first_bead")
-FASTMATH = ("tests/numerics/test_not_finite.py", "tests/kernels/test_motion.py", "-k",
+MOTION = ("tests/kernels/equations/test_motion.py",)
+UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py",)
+VECTORS = ("tests/kernels/simd/test_vector_nan.py",)
+FAILURES_W = ("tests/integrate/test_not_finite.py", "-k", "first_bead")
+FASTMATH = ("tests/integrate/test_not_finite.py", "tests/kernels/equations/test_motion.py", "-k",
             "not_finite or not_a_number or a_nan_in_a_bead and none")
 
 #: The energy account of one combination of effects; samples against the stored extended-precision solution.
@@ -19,7 +19,7 @@ ON_THE_WAY = ("tests/physics/test_work_on_the_way.py",)
 REFERENCE = ("tests/physics/test_reference.py::test_displacements_agree_to_1e_8_at_every_sample[sec2-340]",)
 
 #: What happens inside one fixed step, run by Python; a whole touch inside one.
-STEP_EVENTS = ("tests/kernels/test_step_events.py",)
+STEP_EVENTS = ("tests/kernels/rk4/test_step_events.py",)
 STEP_TOUCH = ("tests/numerics/test_fixed_step_touches.py", "-k", "1e-06-True")
 
 #: Brief touches and certified steps.
@@ -27,7 +27,7 @@ TOUCHES = ("tests/numerics/test_touches.py", "-k", "none_is_invented and True or
 GRAZING = ("tests/numerics/test_events.py", "-k", "brief_touch")
 
 #: Coefficients and orders of convergence.
-TABLEAU = ("tests/kernels/test_tableau.py",)
+TABLEAU = ("tests/kernels/dop853/test_tableau.py",)
 RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-closed")
 CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
 CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
@@ -37,22 +37,22 @@ SLACK = ("tests/numerics/test_slack.py", "-k", "not linear")
 CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.
-SIMD = ("tests/lanes/test_simd.py", "-k", "along_the_chain and (changes8 or changes9)")
-SIMD_LAWS = ("tests/lanes/test_simd.py", "-k", "along_the_chain and (changes10 or changes11)")
-SIMD_PLAIN = ("tests/lanes/test_simd.py", "-k", "along_the_chain and changes0")
-SIMD_LONG = ("tests/lanes/test_simd.py", "-k", "along_the_chain and changes6")
+SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (changes8 or changes9)")
+SIMD_LAWS = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (changes10 or changes11)")
+SIMD_PLAIN = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and changes0")
+SIMD_LONG = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and changes6")
 
 #: Eight chains at once: their order, their forces, unlike beads, the drive's phase, what they believe.
-LANES = ("tests/lanes/test_lane_steps.py", "-k", "order_three and sec2")
-LANES_ONE = ("tests/lanes/test_lane_steps.py", "-k", "order_three and one")
-LANES_KK = ("tests/lanes/test_lane_steps.py", "-k", "order_three and Kuwabara")
-LANES_PRESSED = ("tests/lanes/test_lane_steps.py", "-k", "order_three and pressed")
-LANES_FOUNDED = ("tests/lanes/test_lane_steps.py", "-k", "order_three and founded")
-LANE_FORCES = ("tests/lanes/test_lane_steps.py", "-k", "largest_forces and sec2")
-UNLIKE_LANES = ("tests/lanes/test_unlike_lanes.py", "-k", "unlike_beads")
-LANE_PHASE = ("tests/lanes/test_unlike_lanes.py", "-k", "phase")
-LANE_LOOKS = ("tests/lanes/test_lane_looks.py",)
-LYAPUNOV = ("tests/diagram/test_lyapunov.py", "-k", "chaotic_chain")
+LANES = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and sec2")
+LANES_ONE = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and one")
+LANES_KK = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and Kuwabara")
+LANES_PRESSED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and pressed")
+LANES_FOUNDED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and founded")
+LANE_FORCES = ("tests/kernels/batch/test_batch_steps.py", "-k", "largest_forces and sec2")
+UNLIKE_LANES = ("tests/kernels/batch/test_unlike_beads.py", "-k", "unlike_beads")
+LANE_PHASE = ("tests/kernels/batch/test_unlike_beads.py", "-k", "phase")
+LANE_LOOKS = ("tests/kernels/batch/test_period_end.py",)
+LYAPUNOV = ("tests/steady/test_lyapunov.py", "-k", "chaotic_chain")
 
 #: Tangents: their columns, and their determinant, which does not see a missing saltation.
 ROUTES = ("tests/orbits/test_tangents.py", "-k", "missing_saltation or one_derivative and changes4")
@@ -72,18 +72,18 @@ TWIN = ("tests/observe/test_twin.py", "-k", "starts_where")
 SAMPLING = ("tests/observe/test_sampling.py", "-k", "follows_its_chain and smooth or monotone")
 
 #: Time, restarts, failures.
-CONTINUATION = ("tests/numerics/test_continuation.py", "-k", "not stop_flag")
-MANY_PERIODS = ("tests/numerics/test_long_records.py",)
-CHECKPOINTS = ("tests/numerics/test_checkpoints.py",)
-FAILURES_T = ("tests/numerics/test_not_finite.py", "-k", "counts_from_the_start")
-STIFFEST = ("tests/numerics/test_failures.py", "-k", "stiffest")
+CONTINUATION = ("tests/integrate/test_continuation.py", "-k", "not stop_flag")
+MANY_PERIODS = ("tests/integrate/test_long_records.py",)
+CHECKPOINTS = ("tests/integrate/test_checkpoints.py",)
+FAILURES_T = ("tests/integrate/test_not_finite.py", "-k", "counts_from_the_start")
+STIFFEST = ("tests/integrate/test_failures.py", "-k", "stiffest")
 
 #: What is claimed of a motion.
 HONESTY = ("tests/numerics/test_honesty.py", "-k", "not curve")
 SAME_STEPS = ("tests/numerics/test_honesty.py", "-k", "same_steps")
-REGIMES = ("tests/physics/test_regimes.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
-SETTLED = ("tests/physics/test_regimes.py", "-k", "section_2_from_rest")
-CLAIMS = ("tests/physics/test_claims.py", "-k", "not largest and not summed and not fixed_point and not relaxing")
-CLAIMS_TIME = ("tests/physics/test_claims.py", "-k", "counted_and_not_summed")
-CLAIMS_RUN = ("tests/physics/test_claims.py", "-k", "largest_forces or largest_elastic")
-CLAIMS_SETTLED = ("tests/physics/test_claims.py", "-k", "fixed_point or relaxing")
+REGIMES = ("tests/steady/test_regimes.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
+SETTLED = ("tests/steady/test_regimes.py", "-k", "section_2_from_rest")
+CLAIMS = ("tests/steady/test_claims.py", "-k", "not largest and not summed and not fixed_point and not relaxing")
+CLAIMS_TIME = ("tests/steady/test_claims.py", "-k", "counted_and_not_summed")
+CLAIMS_RUN = ("tests/steady/test_claims.py", "-k", "largest_forces or largest_elastic")
+CLAIMS_SETTLED = ("tests/steady/test_claims.py", "-k", "fixed_point or relaxing")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 
-import equations
 import numpy as np
 import pytest
+import uv_equations as equations
 from chains import LAWS
 
 from granchain_core import scene

@@ -1,11 +1,12 @@
 """Program: change the core in one place at a time and see whether a test notices.
 
-    python -m tests.hard.mutation [--only PART_OF_A_NAME ...] [--list] [--minutes M] [--seed S] [--work FOLDER]
-                                   [--named]
+    python -m tools.mutation [--only PART_OF_A_NAME ...] [--list | --check] [--minutes M] [--seed S]
+                             [--work FOLDER] [--named]
 
 The tests named in the table are run unchanged first, once each list; then with each mutant. One that survives them is
 run against all tests of the core before it counts as survived. With --seed the order is drawn, so that --minutes gives
-a sample of the table. --work keeps the copy and the compiled kernels of the unchanged core for the next time.
+a sample of the table. --check runs nothing and lists the entries that no longer fit the source; where there are any,
+nothing else is begun either. --work keeps the copy and the compiled kernels of the unchanged core for the next time.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from .bench import Bench, Outcome
+from .in_step import problems
 from .mutant import Mutant
 from .table import BROAD, DEMANDED, MUTANTS
 
@@ -30,6 +32,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="*", default=[], help="mutants with one of these words in their name")
     parser.add_argument("--list", action="store_true", help="the table without running anything")
+    parser.add_argument("--check", action="store_true", help="whether the table is in step with the source, in a second")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after this")
     parser.add_argument("--seed", type=int, help="draw the order")
     parser.add_argument("--work", type=Path, help="folder for the copy, kept")
@@ -41,6 +44,12 @@ def main() -> int:
     if words.list:
         for one in chosen:
             print(f"{one.name}: {one.breaks} ({one.path})")
+        return 0
+    if found := problems():
+        print("The table is out of step with the source:", *found, sep="\n  ")
+        return 1
+    if words.check:
+        print(f"{len(MUTANTS)} mutants in step with the source")
         return 0
     with Bench(words.work) as bench:
         return _run(bench, chosen, time.perf_counter() + 60.0 * words.minutes, words.named)

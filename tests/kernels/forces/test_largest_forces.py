@@ -110,7 +110,7 @@ def test_laws_without_a_jump_have_none(law: str) -> None:
     assert len(run(STRIKE.evolve(dissipation=law), periods=0, record=1).jumps.time) == 0
 
 
-#: Section 2's chain with D = 300 at 100 Hz: tests/reference/located_uv.py, in (u, v) with located events, gives this.
+#: Section 2's chain with D = 300 at 100 Hz: tests/numerics/forces/located.py, in (u, v) with located events, gives this.
 TRUTH = 0.1473283
 
 
