@@ -28,6 +28,7 @@ from ..parts.header import Header
 from ..parts.knobs import Knobs
 from ..parts.regimes import REGIMES
 from ..parts.trains import Trains
+from ..pictures.theme import Theme
 
 #: Pages over the pictures; each has its place in page.html.
 PAGES = ("accuracy", "stability", "branches", "observer", "hard")
@@ -56,6 +57,11 @@ class Views:
         self.hard = Hard(received, sizing_mode="stretch_both", state={"cases": described_cases()})
         self.badge = Badge(received)
         self.shown: Settled | None = None
+
+    def dress(self, theme: Theme) -> None:
+        """Another look for every picture that is drawn here."""
+        for part in (self.accuracy, self.hard, self.observer, self.stability):
+            part.dress(theme)
 
     def template(self) -> pn.Template:
         """The page; its layout is a CSS grid in page.css."""

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..pages.curve.page import Curves
+from ..pictures.theme import THEMES
 from .layout import Views
 from .session import LOOKS, Session
 
@@ -31,6 +32,7 @@ class Looks:
             ink, thick = _INK[str(look)]
             self._views.curve.ink(ink, thick)
             self._views.trains.thicken(thick)
+            self._views.dress(THEMES[str(look)])
 
     def _lock(self, message: dict[str, Any]) -> None:
         self._views.energy.locked = bool(message.get("value"))

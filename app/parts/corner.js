@@ -32,13 +32,14 @@ const TABS = {
     const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
     open.addEventListener("click", () => page.cover("accuracy"));
     const host = Object.assign(document.createElement("div"), { className: "small" });
+    const figure = new Embedded(host, (one) => fillAccuracy(one, page.accuracy));
     const said = paragraph("");
     const show = () => {
-      const { rows = [], told, status, done = 0 } = page.accuracy ?? {};
+      const { drawn = {}, small, told, status, done = 0 } = page.accuracy ?? {};
       const running = ["waiting", "compiling", "measuring"].includes(status);
       said.textContent = running ? `measuring, ${Math.round(100 * done)} % …` : told?.stale ? "The knobs have moved; open the page to measure again." : told?.sentence ?? "";
       host.classList.toggle("stale", Boolean(told?.stale));
-      if (host.isConnected && rows.length) workPicture(host, { ...page.accuracy, compact: true });
+      if (host.isConnected) showAccuracy(figure, small, { drawn, told });
     };
     model.send_msg({ do: "accuracy-open" });
     requestAnimationFrame(show);
@@ -55,10 +56,11 @@ const TABS = {
     const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
     open.addEventListener("click", () => page.cover("observer"));
     const host = Object.assign(document.createElement("div"), { className: "small" });
+    const figure = new Embedded(host, (one) => fillDistance(one, page.observer));
     const said = paragraph("");
     const show = () => {
       said.textContent = page.observer?.sentence || "A copy of the chain that feels its input force and nothing else.";
-      if (host.isConnected && page.observer) distancePicture(host, page.observer.history, page.observer.told, true);
+      if (host.isConnected && page.observer) showDistance(figure, page.observer.small, page.observer);
     };
     page.observerTab = host;  // while it is on the screen the observer runs
     drawObserver = show;

@@ -9,7 +9,7 @@ class Corner(Component):
     """Tabs; the data tab sends the text of a CSV file."""
 
     _esm = "".join(text(f"{name}.js") for name in (
-        "plot", "observerplot", "effects", "multipliers", "stabilitysmall", "branchpicture", "map", "corner"))
+        "plot", "embedded", "effects", "multipliers", "stabilitysmall", "branchpicture", "map", "corner"))
     _stylesheets = [text(f"{name}.css")  # noqa: RUF012
                     for name in ("controls", "drawing", "multipliers", "corner", "map")]
 

@@ -7,13 +7,12 @@ import math
 import threading
 import time
 
-import numpy as np
 import pytest
 
-from app.pages.check.view import described, described_cases, figure_beside, figures, picture_message, summary
+from app.pages.check.view import described, described_cases, figure_beside, figures, summary
 from app.pages.check.work import CaseProcess, Ended, case_of
 from granchain_core import Cancelled, NumbersFailed
-from granchain_core.hard import CASES, Case, Check, Figure, Picture, Trace, run_case
+from granchain_core.hard import CASES, Case, Check, Figure, run_case
 from granchain_core.integrate.engine import new_stop
 
 
@@ -64,15 +63,6 @@ def test_every_case_has_its_lines_and_none_is_too_long_for_one() -> None:
     shown = described_cases()
     assert [one["name"] for one in shown] == [case.name for case in CASES]
     assert all(0 < len(one[line]) <= 115 for one in shown for line in ("hard", "naive", "oracle"))
-
-
-def test_a_picture_is_one_array_with_its_gaps() -> None:
-    picture = Picture(np.arange(3), "drive periods", "force in N", (
-        Trace("granchain", np.array([1.0, 2.0, np.nan])), Trace("naive", np.array([1.0, 2.5, 3.0]))))
-    message = picture_message("x", picture)
-    rows = message["values"].reshape(-1, message["columns"])
-    assert rows.dtype == np.float32 and message["labels"] == ["granchain", "naive"]
-    np.testing.assert_array_equal(rows, np.array([[0, 1, 2], [1, 2, np.nan], [1, 2.5, 3]], dtype=np.float32))
 
 
 def test_the_process_answers_is_stopped_and_an_end_is_noticed() -> None:

@@ -9,19 +9,15 @@ const STATUS = {
   none: "", waiting: "waiting for its turn …", compiling: "compiling the kernels of all methods: some 20 s, only the first time on this computer …",
   measuring: "measuring …", done: "", cancelled: "cancelled; what was measured stays", failed: "",
 };
-const NAIVE = "#d97706";
 const percent = (error) => (error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`);
 
 function methodTable(ways, rows) {
   const body = part("tbody");
   for (const way of ways) {
-    const icon = draw("svg", { viewBox: "-9 -9 18 18" });
-    icon.append(mark(way, 0, 0, 5.5));
-    const failed = rows.filter((row) => row.way === way.name && row.failure);
+    const failed = rows.filter((row) => row.way === way.name);
     const restrictions = part("td", { className: "soft", textContent: way.restrictions });
     for (const row of failed) restrictions.append(part("div", { className: "failed", textContent: `failed at ${row.setting}: ${row.failure}` }));
-    const name = part("td", {}, icon);
-    name.append(way.name.replace("scipy ", "SciPy "));
+    const name = part("td", { textContent: way.name.replace("scipy ", "SciPy ") });
     body.append(part("tr", {}, name, part("td", { textContent: way.title }), part("td", { textContent: way.order }), restrictions,
       part("td", { className: "soft", textContent: way.reference })));
   }
@@ -38,8 +34,8 @@ class Lesson {
     for (const select of [this.methods, this.steps]) select.addEventListener("change", () => this.show());
     this.said = part("p");
     this.draw = part("div", { className: "picture" });
-    this.key = part("span", { className: "key" }, part("i"), "certified", part("i", { className: "dashed" }), "naive");
-    this.root = part("div", { className: "lesson" }, part("div", { className: "row" }, this.methods, this.steps, this.key),
+    this.figure = new Embedded(this.draw, () => this.show());
+    this.root = part("div", { className: "lesson" }, part("div", { className: "row" }, this.methods, this.steps),
       this.said, part("div", { className: "draw" }, this.draw));
     this.show();
   }
@@ -47,6 +43,7 @@ class Lesson {
   load(message) {
     // A plain array of numbers, whatever kind of buffer it came in.
     this.data = { ...message, values: new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length) };
+    const before = [this.methods.value, this.steps.value];
     const names = [...new Set(message.drawn.map((one) => one.method))];
     this.methods.replaceChildren(...names.map((name) => new Option(name, name)));
     this.steps.replaceChildren(...[...new Set(message.drawn.map((one) => one.steps))].map((n) => new Option(`${n} steps a period`, n)));
@@ -54,11 +51,15 @@ class Lesson {
     const natural = message.drawn.filter((one) => one.steps === 200);
     this.steps.value = "200";
     this.methods.value = natural.filter((one) => one.row >= 0).sort((a, b) => b.error - a.error)[0]?.method ?? names[0];
-    this.show();
+    if (this.known) [this.methods.value, this.steps.value] = before;
+    this.known = true;
+    this.root.hidden = false;
+    this.figure.load(message.figure, "output force, certified and naive");
   }
 
   forget() {
     this.data = null;
+    this.known = false;
     this.show();
   }
 
@@ -69,7 +70,13 @@ class Lesson {
     this.said.textContent = !chosen ? "" : chosen.failure
       ? `With ${chosen.steps} steps a period nothing would have been drawn: ${chosen.failure}`
       : `With ${chosen.steps} steps a period the force is off by ${percent(chosen.error)} of the largest, and nothing in the picture says so.`;
-    lessonPicture(this.draw, this.data, chosen, NAIVE);
+    this.fill(chosen);
+  }
+  fill(chosen) {
+    const { columns, values } = this.data;
+    const row = (number) => Array.from(values.subarray(number * columns, (number + 1) * columns));
+    const naive = chosen && chosen.row >= 0 ? row(chosen.row) : [], force = row(1);
+    this.figure.set("naive", { data: { time: naive.length ? row(0) : [], force: naive, difference: naive.map((v, i) => v - force[i]) } });
   }
 }
 
@@ -89,21 +96,23 @@ export function render({ model }) {
     part("span", { className: "grow" }), close);
   const said = part("b"), agreement = part("span", { className: "soft" }), warning = part("span", { className: "warn" });
   const say = part("div", { className: "say" }, said, agreement, warning);
-  const picture = part("div", { className: "picture" }), tip = part("div", { className: "tip", hidden: true });
-  const work = part("div", { className: "work" }, picture, tip);
+  const picture = part("div", { className: "picture" });
+  const work = part("div", { className: "work" }, picture);
+  const figure = new Embedded(picture, (one) => fillAccuracy(one, page.accuracy));
   const lesson = new Lesson();
   const table = part("div", { className: "table" });
   const root = part("div", { className: "part sheet" }, head, say, work, lesson.root, table);
 
-  let told = null, points = [];
+  let told = null;
   const redraw = () => {
-    page.accuracy = { rows: model.state.rows ?? [], ways: model.state.ways ?? [], told, agreement: model.state.agreement, status: model.state.status, done: model.state.done };
+    const { state } = model;
+    page.accuracy = { drawn: state.drawn ?? {}, told, status: state.status, done: state.done, small: model.figures.small };
     page.emit("accuracy", page.accuracy);
     root.classList.toggle("stale", Boolean(told?.stale));
     said.textContent = told?.sentence ?? "";
-    warning.textContent = model.state.failure || (told?.stale ? "The knobs have moved: this was measured for another chain. Measure again to see it for this one." : "");
+    warning.textContent = state.failure || (told?.stale ? "The knobs have moved: this was measured for another chain. Measure again to see it for this one." : "");
     warning.hidden = !warning.textContent;
-    if (page.covered === "accuracy") points = workPicture(picture, page.accuracy);
+    if (page.covered === "accuracy") showAccuracy(figure, model.figures.page, page.accuracy);
   };
   const show = () => {
     const { state } = model;
@@ -117,18 +126,8 @@ export function render({ model }) {
     table.replaceChildren(methodTable(state.ways ?? [], state.rows ?? []));
     redraw();
   };
-  work.addEventListener("pointermove", (event) => {
-    const point = nearest(points, event, picture);
-    tip.hidden = !point;
-    if (!point) return;
-    tip.textContent = `${point.way.title}, ${point.row.setting}: ${point.row.told}, order ${point.way.order}`;
-    const right = point.x > picture.clientWidth / 2;
-    tip.style.left = right ? "" : `${point.x + 16}px`;
-    tip.style.right = right ? `${picture.clientWidth - point.x + 16}px` : "";
-    tip.style.top = `${Math.max(0, point.y - 20)}px`;
-  });
-  work.addEventListener("pointerleave", () => { tip.hidden = true; });
   model.on("state", show);
+  model.on("figures", redraw);
   model.on("msg:custom", (message) => {
     if (message.type === "asked") { told = message; redraw(); }
     else if (message.type === "lesson") lesson.load(message);
@@ -137,10 +136,8 @@ export function render({ model }) {
   page.on("cover", (name) => {
     model.send_msg({ do: "cover", name });
     if (name !== "accuracy") return;
-    requestAnimationFrame(() => { redraw(); lesson.show(); });
+    requestAnimationFrame(redraw);
   });
-  new ResizeObserver(() => { if (page.covered === "accuracy") { redraw(); lesson.show(); } }).observe(work);
-  page.on("look", () => { redraw(); lesson.show(); });
   show();
   return root;
 }

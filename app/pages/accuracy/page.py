@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -17,9 +18,10 @@ from ...page.format import duration, short_error
 from ...page.host import Host
 from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
+from ...pictures.accuracy import Asked
 from ...serve.compiler import CERTIFIED, LIVE
 from ...serve.queues import MEASUREMENTS
-from .view import Accuracy, described_reference, described_rows, described_ways, lesson_message
+from .view import Accuracy, described_reference, described_ways
 
 
 def measured_for(scene: Scene) -> str:
@@ -36,6 +38,7 @@ class AccuracyPage:
         self._task = Task(host, MEASUREMENTS, self._say, "The measurement")
         self._measured = ""
         self._lesson: Lesson | None = None
+        self._agreement: float | None = None
         self.rows: list[Row] = []
         self.status = "none"
         self.done = 0.0
@@ -61,11 +64,9 @@ class AccuracyPage:
         now = locate(page_setting(scene, session.picture, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)
         stale = bool(self._measured) and self._measured != measured_for(scene)
-        self._view.tell(
-            type="asked", asked=scene.accuracy, asked_words=short_error(scene.accuracy), stale=stale,
-            cheapest=None if best is None else self.rows.index(best), sentence=self._sentence(best),
-            now=None if now is None else {"way": now.method, "setting": now.label, "error": now.error,
-                                          "ms": 1e3 * now.wall_s})
+        self._view.mark(self.rows, Asked(
+            scene.accuracy, self._agreement, None if best is None else (best.wall_s, best.error),
+            None if now is None else (now.wall_s, now.error)), stale=stale, sentence=self._sentence(best))
 
     def cancel(self) -> None:
         """Stop; the rows that are there stay."""
@@ -87,8 +88,8 @@ class AccuracyPage:
         self._task.cancel()
         scene = self._host.session.scene
         self._measured, self.rows, self._lesson, self.done = measured_for(scene), [], None, 0.0
-        self._view.display(rows=[], agreement=None, agreement_words="", reference="", second="")
-        self._view.tell(type="no-lesson")
+        self._agreement = None
+        self._view.forget()
         self._say("waiting")
         self.describe()
         self._task.start(partial(self._work, scene))
@@ -97,20 +98,21 @@ class AccuracyPage:
         """In the measuring thread: the kernels first, then one row after the other."""
 
         def report(found: WorkPrecision) -> None:
-            job.later(self._show, list(found.rows), found.lesson, described_reference(found))
+            job.later(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
 
         job.compile(scene, LIVE, CERTIFIED, METHODS_PIECE)
         job.say("measuring")
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.later(self._progress, done))
 
-    def _show(self, rows: list[Row], lesson: Lesson | None, reference: dict[str, Any]) -> None:
+    def _show(self, rows: list[Row], lesson: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
         self.rows = rows
+        self._agreement = agreement if math.isfinite(agreement) else None
         with unlocked():
-            self._view.display(rows=described_rows(rows), **reference)
+            self._view.measured(rows, reference)
             if lesson is not None and self._lesson is None:
                 self._lesson = lesson
-                self._view.tell(**lesson_message(lesson))
+                self._view.teach(lesson)
             self.describe()
 
     def _progress(self, done: float) -> None:

@@ -33,9 +33,8 @@ class Card {
     this.status = part("span", { className: "status" });
     this.warning = part("p", { className: "warn", hidden: true });
     this.rows = part("div", { className: "rows" });
-    this.picture = part("div", { className: "picture" });
-    this.key = part("div", { className: "key" });
-    this.drawn = part("div", { className: "drawn", hidden: true }, part("div", { className: "draw" }, this.picture), this.key);
+    this.drawn = part("div", { className: "drawn", hidden: true });
+    this.figure = new Embedded(this.drawn);
     const line = (label, text) => part("p", {}, part("b", { textContent: label }), " ", ...raised(text));
     this.root = part("article", { className: "case" },
       part("div", { className: "title" }, part("h3", {}, ...raised(one.name)), this.status, this.run),
@@ -70,16 +69,8 @@ class Card {
   }
 
   load(message) {
-    // A plain array of numbers, whatever kind of buffer it came in.
-    this.data = { ...message, values: new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length) };
     this.drawn.hidden = false;
-    this.draw();
-  }
-
-  draw() {
-    if (!this.data || !this.picture.clientWidth) return;
-    caseKey(this.key, this.data);
-    casePicture(this.picture, this.data);
+    this.figure.load(message.figure, message.words);
   }
 }
 
@@ -113,13 +104,9 @@ export function render({ model }) {
     page.hard = summary;
     page.emit("hard");
   };
-  const redraw = () => { for (const card of cards.values()) card.draw(); };
   setInterval(() => { for (const card of cards.values()) if (card.began !== null) card.tick(); }, 1000);
   model.on("state", show);
   model.on("msg:custom", (message) => { if (message.type === "picture") cards.get(message.case)?.load(message); });
-  page.on("cover", (name) => { if (name === "hard") requestAnimationFrame(redraw); });
-  page.on("look", redraw);
-  new ResizeObserver(() => { if (page.covered === "hard") redraw(); }).observe(list);
   show();
   return root;
 }

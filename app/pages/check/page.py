@@ -13,7 +13,7 @@ from ...page.host import Host
 from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
-from .view import Hard, described, picture_message, summary
+from .view import Hard, described, summary
 from .work import CaseProcess, Ended, case_of
 
 _FAULT = "The process that measures it ended by a fault inside granchain; run it again, and please report it."
@@ -105,7 +105,7 @@ class HardPage:
 
     def _draw(self, name: str, picture: Picture | None) -> None:
         if picture is not None:
-            self._view.tell(**picture_message(name, picture))
+            self._view.draw(name, picture)
 
     def _end(self, status: str, sentence: str) -> None:
         """The case in front is measured, or failed; the next one's turn comes."""

@@ -3,21 +3,41 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
-import numpy as np
+from bokeh.embed import json_item
 
 from granchain_core.hard import CASES, Check, Picture
 
 from ...page.format import duration
 from ...parts.component import Component, text
+from ...pictures.check import check
+from ...pictures.theme import THEMES, Theme
 
 
 class Hard(Component):
-    """The page over the pictures; rows come in `state`, drawn traces as one message for each case."""
+    """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
 
-    _esm = text("plot.js") + text("hardpicture.js") + text("hard.js")
-    _stylesheets = [text("controls.css"), text("drawing.css"), text("hard.css")]  # noqa: RUF012
+    _esm = text("embedded.js") + text("hard.js")
+    _stylesheets = [text("controls.css"), text("hard.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, **params)
+        self._theme = THEMES["light"]
+        self._drawn: dict[str, Picture] = {}
+
+    def draw(self, name: str, picture: Picture) -> None:
+        """Show the picture of a case in place of what there is of it."""
+        self._drawn[name] = picture
+        self.tell(**picture_message(name, picture, self._theme))
+
+    def dress(self, theme: Theme) -> None:
+        """All pictures in another look."""
+        if theme != self._theme:
+            self._theme = theme
+            for name, picture in self._drawn.items():
+                self.tell(**picture_message(name, picture, theme))
 
 
 def described_cases() -> list[dict[str, Any]]:
@@ -66,10 +86,8 @@ def summary(found: dict[str, list[Check]]) -> str:
             f"{first.case}, {figure_beside(first.figure, first.bar)} against {figures(first.bar, 3)}{more}.")
 
 
-def picture_message(name: str, picture: Picture) -> dict[str, Any]:
-    """A picture as one array: x, then a row for each trace. Where a trace is NaN nothing is drawn."""
-    return {
-        "type": "picture", "case": name, "columns": len(picture.x), "x_label": picture.x_label,
-        "y_label": picture.y_label, "labels": [trace.label for trace in picture.traces],
-        "values": np.concatenate([picture.x, *(trace.values for trace in picture.traces)], dtype=np.float32),
-    }
+def picture_message(name: str, picture: Picture, theme: Theme) -> dict[str, Any]:
+    """A picture that nothing will change: the figure itself, and the words for who cannot see it."""
+    labels = "; ".join(trace.label for trace in picture.traces)
+    return {"type": "picture", "case": name, "figure": json_item(check(picture, theme)),
+            "words": f"{picture.y_label} over {picture.x_label}: {labels}"}

@@ -5,7 +5,7 @@ const element = (tag, properties = {}, ...children) => {
   made.append(...children);
   return made;
 };
-const PERIODS_A_SECOND = 4, AHEAD = 2, KEPT_A_PERIOD = 8;
+const PERIODS_A_SECOND = 4, AHEAD = 2, KEPT_A_PERIOD = 8, KEPT_PERIODS = 80;
 
 // A chain that fills its own canvas, without the word of the main picture.
 class WholeChain extends ChainDrawing {
@@ -101,11 +101,17 @@ export function render({ model }) {
   const stage = element("div", { className: "chains" }, element("div", {}, label("chain x", "driven, as on the page"), above),
     element("div", { className: "between" }, forceLabel, between), element("div", {}, label("observer y", "feels F_in and nothing else of x"), below));
   const picture = element("div", { className: "fill" });
+  const figure = new Embedded(picture, (one) => fillDistance(one, page.observer));
   const root = element("div", { className: "part sheet" }, head, say, stage, element("div", { className: "trace" }, picture));
 
   const palette = model.state.palette;
   const drawings = [new WholeChain(above, palette), new PushedChain(below, palette)];
-  let queue = [], now = null, row = 0, last = performance.now(), asked = 0, history = [], drawn = 0, playing = true;
+  let queue = [], now = null, row = 0, last = performance.now(), asked = 0, history = [], playing = true;
+  const tellAll = () => {
+    page.observer = { history, prediction: now?.message.prediction ?? [], sentence: model.state.sentence, small: model.figures.small };
+    page.emit("observer");
+    if (page.covered === "observer") showDistance(figure, model.figures.page, page.observer);
+  };
   const tell = () => {
     const { state } = model;
     said.textContent = state.sentence ?? "";
@@ -113,8 +119,7 @@ export function render({ model }) {
     rates.textContent = state.predicted ? `a drive period: predicted × ${state.predicted.toPrecision(4)}${state.measured ? `, measured × ${state.measured.toPrecision(4)}` : ""}` : "";
     slider.value = state.kappa ?? 0;
     shown.textContent = (state.kappa ?? 0) === 0 ? "κ = 0" : `κ = ${Number((state.kappa).toPrecision(3))}`;
-    page.observer = { history, told: state, sentence: state.sentence };
-    page.emit("observer");
+    tellAll();
   };
   const more = () => {
     if (document.hidden || performance.now() < asked) return;
@@ -128,14 +133,13 @@ export function render({ model }) {
     const stride = Math.max(1, Math.round((rows - 1) / KEPT_A_PERIOD));
     if (history.length && history.at(-1)[0] > number) history = [];
     for (let r = 0; r < rows - 1; r += stride) history.push([number + r / (rows - 1), step.distance[r]]);
-    history = history.slice(-KEPT_A_PERIOD * (SHOWN_PERIODS + 20));
+    history = history.slice(-KEPT_A_PERIOD * (KEPT_PERIODS));
     drawings[0].load({ ...step.chain, live: true });
     drawings[1].factor = drawings[0].factor;
     drawings[1].load({ ...step.chain, live: true });
     drawings[1].exaggeration = drawings[0].exaggeration;
     push.textContent = `at most ${step.message.push}`;
-    page.observer = { history, told: model.state, sentence: model.state.sentence };
-    page.emit("observer");
+    tellAll();
   };
   const wanted = () => page.covered === "observer" || page.observerTab?.isConnected;
   const tick = (time) => {
@@ -150,7 +154,6 @@ export function render({ model }) {
         drawings[0].draw(now.chain, row);
         drawings[1].draw(now.observer, row);
         drawForce(between, now, row);
-        if (time - drawn > 120) { drawn = time; distancePicture(picture, history, model.state, false); }
       }
     }
     requestAnimationFrame(tick);
@@ -162,11 +165,12 @@ export function render({ model }) {
     queue.push(parted(message));
   });
   model.on("state", tell);
+  model.on("figures", tellAll);
   const measure = () => { for (const one of drawings) one.measure(); };
   new ResizeObserver(measure).observe(stage);
   page.on("look", measure);
   page.on("play", (value) => { playing = value; });
-  page.on("cover", (name) => { if (name === "observer") requestAnimationFrame(measure); });
+  page.on("cover", (name) => { if (name === "observer") requestAnimationFrame(() => { measure(); tellAll(); }); });
   tell();
   requestAnimationFrame(tick);
   return root;

@@ -14,7 +14,7 @@ from ...page.host import Host
 from ...page.task import Job, Task
 from ...serve.compiler import CERTIFIED
 from ...serve.queues import PICTURES
-from .view import Observer, step_message
+from .view import Observer
 from .work import ObserverRun, Step
 
 _COMPILING = "Compiling the observer's kernels: some 10 s, only the first time on this computer."
@@ -101,4 +101,4 @@ class ObserverPage:
             status="", sentence=run.sentence, predicted=run.predicted, measured=run.measured, since=run.since,
             mu=None if mu is None else [mu.real, mu.imag], period=None if run.orbit is None else run.orbit.period,
             broken=run.broken, in_step=run.in_step)
-        self._view.tell(**step_message(moved.step, run.scene, moved.began))
+        self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

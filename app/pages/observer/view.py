@@ -2,28 +2,62 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
+from bokeh.embed import json_item
 
 from granchain_core import Scene
 
 from ...page.frames import prefixed
 from ...parts.chain import PALETTE
-from ...parts.component import Component, text
+from ...parts.component import text
+from ...parts.drawn import Drawn
+from ...pictures.observer import observer, prediction
+from ...pictures.theme import Theme
 from .work import Step
 
+_TRANSIENT = 2
+"""Drive periods after a start that no multiplier describes."""
 
-class Observer(Component):
+
+class Observer(Drawn):
     """The page over the pictures; every period comes as one message."""
 
-    _esm = text("plot.js") + text("chaindrawing.js") + text("observerplot.js") + text("observer.js")
-    _stylesheets = [text("controls.css"), text("drawing.css"), text("observer.css")]  # noqa: RUF012
+    _esm = text("embedded.js") + text("chaindrawing.js") + text("observer.js")
+    _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, **params)
+        self._anchor: tuple[float, float] | None = None
+
+    def empty_figures(self, theme: Theme) -> dict[str, Any]:
+        """The distance over time without its points, for the page and, small, for the corner."""
+        return empty_figures(theme)
+
+    def step(self, step: Step, scene: Scene, began: bool, since: int, factor: float | None) -> None:
+        """Send one period, and what is predicted from where the transient is over, two periods after the start."""
+        self.need_figures()
+        if began:
+            self._anchor = None
+        if self._anchor is None and step.number >= since + _TRANSIENT:
+            self._anchor = float(step.number), float(step.distance[0])
+        line = prediction(*self._anchor, factor) if self._anchor else []
+        self.tell(**step_message(step, scene, began), prediction=line)
 
 
 def first_state() -> dict[str, Any]:
     """What the page knows before anything was computed."""
     return {"palette": PALETTE, "kappa": 0.0, "status": "", "sentence": ""}
+
+
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """The distance over time without its points, for the page and, small, for the corner."""
+    return {name: json_item(observer([], [], [], theme, compact))
+            for name, compact in (("page", False), ("small", True))}
 
 
 def step_message(step: Step, scene: Scene, began: bool) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from .view import (
     evidence,
     mode_message,
     no_multipliers,
-    section_message,
+    section_points,
     verdict,
 )
 from .work import PHASES, Analysis, Target, analyse, search, section_of, transient
@@ -190,8 +190,11 @@ class StabilityPage:
         if self._section is None or self._picture is None:
             return
         own = None if self._analysis is None else self._analysis.points
-        self._view.tell(**section_message(self._section, transient(self._picture, self._section), own, self._bead,
-                                          self._phase))
+        regime = self._picture.regime
+        self._view.section(section_points(
+            self._section, transient(self._picture, self._section), own, self._bead, self._phase,
+            regime.period or 1 if regime.name == "periodic" else 0,
+            unstable=self._analysis is not None and not self._analysis.target.followed))
 
     def _show_evidence(self) -> None:
         if self._picture is not None:

@@ -37,9 +37,10 @@ class SectionView {
     this.phase.setAttribute("aria-label", "drive phase of the section");
     this.said = part("output");
     this.close = part("input", { type: "checkbox" });
-    this.close.addEventListener("change", () => this.draw(this.state));
+    this.close.addEventListener("change", () => this.look());
     this.told = part("span", { className: "soft" });
     this.host = part("div", { className: "picture" });
+    this.figure = new Embedded(this.host, () => this.fill());
     const tell = () => { this.say(); send({ do: "stability-section", bead: Number(this.beads.value), phase: Number(this.phase.value) }); };
     this.beads.addEventListener("change", tell);
     this.phase.addEventListener("input", tell);
@@ -60,15 +61,26 @@ class SectionView {
   say() { this.said.textContent = `${(Number(this.phase.value) / 48).toFixed(2)} T`; }
 
   load(message) {
-    this.data = message && { ...message, values: new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length) };
+    this.data = message;
+    if (message) this.fill();
+    else this.figure.remove();
   }
 
-  draw(state) {
-    this.state = state;
-    this.host.replaceChildren();
+  // Which part of the plane: all of it, or that of the second half of the points.
+  look() {
+    const ranges = this.close.checked ? this.data?.near : this.data?.drawn;
+    if (ranges) for (const name of ["displacements", "velocities"]) this.figure.set(name, ranges[name]);
+  }
+
+  fill() {
+    for (const [name, properties] of Object.entries(this.data?.drawn ?? {})) this.figure.set(name, properties);
+    this.look();
+  }
+
+  draw(state, item) {
     this.told.textContent = !this.data ? "" : `${this.data.count} drive periods, one point each`
       + (this.data.own ? `; ${state.searched ? "diamonds: the unstable orbit" : "rings: the orbit"}` : "");
-    if (this.host.clientWidth) sectionPicture(this.host, this.data, state, this.close.checked);
+    if (this.data) this.figure.load(item, "Poincaré section");
   }
 }
 
@@ -118,7 +130,7 @@ export function render({ model }) {
       const focused = root.getRootNode().activeElement?.dataset?.rank;
       points = circlePicture(circle, page.stability);
       if (focused) circle.querySelector(`[data-rank="${focused}"]`)?.focus();
-      section.draw(model.state);
+      section.draw(model.state, model.figures.section);
       mode.measure();
     }
     page.emit("stability", page.stability);
@@ -187,11 +199,12 @@ export function render({ model }) {
     looking();
     if (name === "stability") requestAnimationFrame(() => { redraw(); loop(); });
   });
+  model.on("figures", () => { if (page.covered === "stability") redraw(); });
   page.on("look", () => { mode.drawing.look(); redraw(); });
   document.addEventListener("visibilitychange", looking);
   new IntersectionObserver(([entry]) => { seen = entry.isIntersecting; looking(); }).observe(document.getElementById("corner"));
   const sized = new ResizeObserver(() => { if (page.covered === "stability") redraw(); });
-  for (const host of [circle, canvas, wiggles, section.host]) sized.observe(host);
+  for (const host of [circle, canvas, wiggles]) sized.observe(host);
   show();
   return root;
 }

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import cmath
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
+from bokeh.embed import json_item
 
 from granchain_core import Settled
 from granchain_core.orbits import Orbit
@@ -16,16 +18,35 @@ from granchain_core.steady.regime import modulus_words
 
 from ...page.format import duration, short_error
 from ...page.frames import prefixed
-from ...parts.component import Component, text
+from ...parts.component import text
+from ...parts.drawn import Drawn
+from ...pictures.section import SectionPoints, close_up, section, section_state
+from ...pictures.theme import Theme
 from .work import Analysis
 
 
-class Stability(Component):
+class Stability(Drawn):
     """The page over the pictures and, through what it shares in the browser, the small version in the corner."""
 
-    _esm = "".join(text(name) for name in ("plot.js", "chaindrawing.js", "multipliers.js", "section.js", "mode.js",
+    _esm = "".join(text(name) for name in ("plot.js", "embedded.js", "chaindrawing.js", "multipliers.js", "mode.js",
                                            "stability.js"))
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "multipliers", "stability")]  # noqa: RUF012
+
+    def empty_figures(self, theme: Theme) -> dict[str, Any]:
+        """The section without its points."""
+        return empty_figures(theme)
+
+    def section(self, shown: SectionPoints) -> None:
+        """Show a section in place of what there is of one."""
+        self.need_figures()
+        self.tell(**section_message(shown))
+
+
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """The section without its points."""
+    nothing = SectionPoints(np.zeros((1, 2)), np.zeros((0, 2)), 1, 0, False, 1, ("m", "m/s"))
+    return {"section": json_item(section(nothing, theme))}
 
 
 def period_words(orbit: Orbit) -> str:
@@ -162,14 +183,18 @@ def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:
     }
 
 
-def section_message(section: Section, on_the_way: int, orbit: Section | None, bead: int, phase: int) -> dict[str, Any]:
+def section_points(section: Section, on_the_way: int, orbit: Section | None, bead: int, phase: int, period: int = 0,
+                   unstable: bool = False) -> SectionPoints:
     """Points of one bead at one phase, and the orbit's own; all were computed at this very phase."""
     points = section.points(bead, phase)
     own = np.zeros((0, 2)) if orbit is None else orbit.points(bead, phase)
     factors, units = zip(*(prefixed(float(np.abs(np.concatenate([points, own])[:, i]).max())) for i in (0, 1)),
                          strict=True)
-    return {
-        "type": "section", "bead": bead, "phase": phase, "phases": section.samples, "transient": on_the_way,
-        "count": len(points), "own": len(own), "units": [f"{units[0]}m", f"{units[1]}m/s"],
-        "values": (np.concatenate([points, own]) / np.array(factors)).astype(np.float32).ravel(),
-    }
+    return SectionPoints(points / np.array(factors), own / np.array(factors), on_the_way, period, unstable, bead,
+                         (f"{units[0]}m", f"{units[1]}m/s"))
+
+
+def section_message(shown: SectionPoints) -> dict[str, Any]:
+    """What the browser puts into its figure, and the ranges of the close view."""
+    return {"type": "section", "drawn": section_state(shown), "near": close_up(shown), "count": len(shown.points),
+            "own": len(shown.own)}
