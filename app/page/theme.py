@@ -10,7 +10,7 @@ from ..pictures.theme import THEMES
 from .layout import Views
 from .session import LOOKS, Session
 
-_INK = {"light": ("#14181f", 1.0), "dark": ("#eef1f6", 1.0), "projector": ("#000000", 1.5)}
+_WIDTHS = {"light": 1.0, "dark": 1.0, "projector": 1.5}
 
 
 class Looks:
@@ -29,10 +29,10 @@ class Looks:
         """Ink and line width of a look."""
         look = message.get("value")
         if look in LOOKS:
-            ink, thick = _INK[str(look)]
-            self._views.curve.ink(ink, thick)
+            theme, thick = THEMES[str(look)], _WIDTHS[str(look)]
+            self._views.curve.ink(theme.ink, thick)
             self._views.trains.thicken(thick)
-            self._views.dress(THEMES[str(look)])
+            self._views.dress(theme)
 
     def _lock(self, message: dict[str, Any]) -> None:
         self._views.energy.locked = bool(message.get("value"))

@@ -127,7 +127,7 @@ def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: b
     plot.add_tools(HoverTool(renderers=shown, tooltips=[("", "$name"), ("", "@setting"), ("", "@told")]))
     if not compact:
         plot.add_layout(Legend(items=items, click_policy="hide", padding=0, margin=0, spacing=0, label_height=14,
-                               glyph_height=14, title="click: hide"), "right")
+                               glyph_height=14), "right")
     return shown
 
 

@@ -36,7 +36,7 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
     expect(sheet).to_contain_text("it drifts; an offset of its beads, which nothing pulls back", timeout=COMPILED)
     expect(sheet).to_contain_text("predicted × 4.418")  # PHYSICS.md, section 3: one real multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5", timeout=30_000)
-    chains = sheet.locator("canvas")
+    chains = sheet.locator(".chains canvas")
     assert chains.count() == 3
     sheet.get_by_role("button", name="0.001").click()
     expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
