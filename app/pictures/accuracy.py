@@ -118,7 +118,7 @@ def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: b
                          line_alpha=0.75)
         dots = plot.scatter("ms", "error", source=source, marker=look["marker"], size=8 if compact else 12,
                             line_color=look["colour"], line_width=2.0, fill_color=look["colour"],
-                            name=f"{ways()[name].title}, order {ways()[name].order:g}")
+                            name=f"{name}, order {ways()[name].order:g}")
         in_theme(line, line_width=1.8)
         if not look["filled"]:
             in_theme(dots, fill_color="card")
