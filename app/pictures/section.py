@@ -74,7 +74,7 @@ def section_state(shown: SectionPoints) -> dict[str, dict[str, Any]]:
         joined = []
     number = np.arange(len(points))
     return {
-        "path": {"data": {"u": [one[:, 0].tolist() for one in joined], "v": [one[:, 1].tolist() for one in joined]}},
+        "path": {"data": {"u": [_short(one[:, 0]) for one in joined], "v": [_short(one[:, 1]) for one in joined]}},
         "way": _dots(points[:before], number[:before], 6 if len(points) < _FEW else 3.4),
         "dots": _dots(points[before:], number[before:], 3.4),
         "orbit": _dots(own[:0] if shown.unstable else own, np.arange(1, len(own) + 1), 16),
@@ -91,8 +91,13 @@ def close_up(shown: SectionPoints) -> dict[str, dict[str, Any]]:
 
 
 def _dots(points: np.ndarray, number: np.ndarray, size: float) -> dict[str, Any]:
-    return {"data": {"u": points[:, 0].tolist(), "v": points[:, 1].tolist(), "number": number[: len(points)].tolist(),
+    return {"data": {"u": _short(points[:, 0]), "v": _short(points[:, 1]), "number": number[: len(points)].tolist(),
                      "size": [size] * len(points)}}
+
+
+def _short(values: np.ndarray) -> list[float]:
+    """Seven figures: a section is sent anew with every step of the phase's slider."""
+    return [float(f"{value:.7g}") for value in values]
 
 
 def _ranges(points: np.ndarray) -> dict[str, dict[str, Any]]:
