@@ -159,11 +159,11 @@ def lower(scene: Scene, balance: bool = False) -> Lowered:
     beta = 2 * math.pi * scene.f / scales.rate
     inverse_mass = np.zeros(scene.N + 2)
     inverse_mass[1:-1] = scene.bead(1).mass / scene.masses()
-    absent = dict.fromkeys(Slots._fields)
     filled = {effect.slot: _FILLED[effect.slot](scene, scales) for effect in effects_of(scene)}
-    slots = Slots(**absent | filled | {
-        "chain": Chain(inverse_mass, scene.contact_stiffness() / scene.K),
-        "driver": Harmonic(1.0, beta),
-        "balance": Balance(1) if balance else None,
-    })
+    slots = Slots(
+        chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K),
+        driver=Harmonic(1.0, beta),
+        balance=Balance(1) if balance else None,
+        **filled,
+    )
     return Lowered(scene, scales, slots, beta)

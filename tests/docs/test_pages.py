@@ -56,7 +56,8 @@ def test_the_glossary_names_a_place_for_every_term():
 def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
     """The parser takes them, and the scene takes their knobs."""
     parsed = cli._parser().parse_args(shlex.split(command)[1:])
-    if "scene" in parsed and parsed.scene != "drag":  # docs/add-an-effect.md makes that one, and its test runs it
+    # docs/add-an-effect.md makes the one, docs/add-a-damping-law.md the other, and their tests run them
+    if "scene" in parsed and parsed.scene != "drag" and "dissipation=three-quarters" not in parsed.set:
         changes = dict(setting.split("=") for setting in parsed.set)
         if changes.get("f") == "13OO":  # the readme's wrong value
             with pytest.raises(BadInput):
