@@ -1,5 +1,8 @@
 // The chain on the page: bead i stands above column i of the map; its clock is the page's.
 
+import { ChainDrawing, unpack } from "./chaindrawing.js";
+import { Clock, Cursor } from "./stage.js";
+
 function afterFrame(act) {
   const channel = new MessageChannel();
   channel.port1.onmessage = act;

@@ -7,7 +7,7 @@ const nice = (value) => {
 };
 
 // The four series of a picture from their one array.
-function unpack(frames) {
+export function unpack(frames) {
   const { rows, beads, values } = frames;
   let at = 0;
   for (const [name, width] of [["displacement", beads], ["force", beads + 1], ["energy", beads], ["drive", 1]]) {
@@ -17,7 +17,7 @@ function unpack(frames) {
   }
 }
 
-class ChainDrawing {
+export class ChainDrawing {
   constructor(canvas, palette) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");

@@ -1,5 +1,8 @@
 // The Accuracy page, over the pictures: what accuracy costs here and now, and what naive steps would have drawn.
 
+import { draw, mark, nearest, workPicture } from "../../parts/plot.js";
+import { lessonPicture } from "./lesson.js";
+
 const part = (tag, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);

@@ -1,6 +1,8 @@
 // What naive steps would have drawn: the output force dashed over the certified one, and their difference below.
 
-function lessonPicture(host, lesson, chosen, colour) {
+import { draw, extent, frame, round3, ticks, words } from "../../parts/plot.js";
+
+export function lessonPicture(host, lesson, chosen, colour) {
   const f = frame(host, { left: 62, right: 12, top: 8, bottom: 42 }, "output force, certified and naive");
   const { svg } = f;
   const { columns, values } = lesson;

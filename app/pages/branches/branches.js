@@ -1,5 +1,8 @@
 // The Branches page, over the pictures: a branch of periodic orbits grows, and a click loads one of them.
 
+import { draw, mark, nearest } from "../../parts/plot.js";
+import { branchPicture, prefixOf, SPECIAL } from "./branchpicture.js";
+
 const part = (tag, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);

@@ -1,6 +1,8 @@
 // The picture of branches: largest force over frequency, stable solid and unstable dashed, special points by their marks.
 
-const SPECIAL = {
+import { draw, frame, mark, words } from "../../parts/plot.js";
+
+export const SPECIAL = {
   fold: { words: "fold", look: { mark: "triangle", colour: "#e0900a", family: "granchain" }, size: 6 },
   period_doubling: { words: "period doubling", look: { mark: "diamond", colour: "#9b6bf2", family: "granchain" }, size: 6 },
   neimark_sacker: { words: "Neimark–Sacker (torus)", look: { mark: "circle", colour: "#0fa3b8", family: "scipy" }, size: 5.5 },
@@ -8,7 +10,7 @@ const SPECIAL = {
 };
 
 const PREFIX = [[1e-9, "n"], [1e-6, "µ"], [1e-3, "m"], [1, ""], [1e3, "k"]];
-const prefixOf = (largest) => PREFIX.filter(([factor]) => factor <= largest).at(-1) ?? PREFIX[0];
+export const prefixOf = (largest) => PREFIX.filter(([factor]) => factor <= largest).at(-1) ?? PREFIX[0];
 
 function steps(low, high, count) {
   const raw = (high - low) / count, power = 10 ** Math.floor(Math.log10(raw));
@@ -29,7 +31,7 @@ function pieces(orbits) {
   return found;
 }
 
-function branchPicture(host, { arms, special, now, grazing, zoom, compact }) {
+export function branchPicture(host, { arms, special, now, grazing, zoom, compact }) {
   const small = compact || host.clientWidth < 520;
   const f = frame(host, { left: small ? 50 : 68, right: 16, top: 10, bottom: small ? 26 : 46 }, "largest output force of periodic orbits over drive frequency");
   const { svg } = f;
@@ -82,7 +84,7 @@ function branchPicture(host, { arms, special, now, grazing, zoom, compact }) {
 
 // The corner's small version: the same picture and the way to the page.
 let drawBranches = () => {};
-function branchesTab() {
+export function branchesTab() {
   const page = window.granchain;
   const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
   open.addEventListener("click", () => page.cover("branches"));

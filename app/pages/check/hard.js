@@ -1,5 +1,7 @@
 // The page "Hard cases", over the pictures: a card for each case, nothing measured before one asks.
 
+import { caseKey, casePicture } from "./hardpicture.js";
+
 const part = (tag, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);

@@ -1,5 +1,7 @@
 // The small picture of a hard case: what granchain computes and what a naive solver draws, over the same axes.
 
+import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
+
 const LOGARITHMIC = ", log10";
 const STYLES = {
   ours: [{ class: "ours" }, { class: "ours", "stroke-dasharray": "14 5" }],
@@ -41,7 +43,7 @@ function pieces(xs, ys) {
 
 const DOTTED = 70;
 
-function casePicture(host, { columns, labels, values, x_label, y_label }) {
+export function casePicture(host, { columns, labels, values, x_label, y_label }) {
   const rows = Array.from({ length: 1 + labels.length }, (_, i) => Array.from(values.subarray(i * columns, (i + 1) * columns)));
   const [xs, ...traces] = rows, styles = styled(labels);
   const f = frame(host, { left: 62, right: 26, top: 28, bottom: 42 }, `${y_label} over ${x_label}: ${labels.join("; ")}`);
@@ -66,7 +68,7 @@ function casePicture(host, { columns, labels, values, x_label, y_label }) {
 }
 
 // The key below the picture: a piece of each line with its words.
-function caseKey(host, { labels }) {
+export function caseKey(host, { labels }) {
   const styles = styled(labels);
   host.replaceChildren(...labels.map((label, i) => {
     const icon = draw("svg", { viewBox: "0 0 44 12", class: "sample" });

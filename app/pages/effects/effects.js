@@ -30,7 +30,7 @@ function effectRow(model, effect, slot) {
   return row;
 }
 
-function effectsTab(model) {
+export function effectsTab(model) {
   const { panel, validity } = model.state;
   if (!panel) return [];
   const { step } = panel;

@@ -12,7 +12,7 @@ const HATCH = [
 // Redraws what is on the screen; set while the tab is open.
 let mapRedraw = () => {};
 
-function mapMessage(message) {
+export function mapMessage(message) {
   if (message.type === "map-head") Object.assign(MAP, { head: message, cells: new Map(), done: 0, stale: false });
   else if (message.type === "map-cells") mapCells(message);
   else if (message.type === "map-now") MAP.now = message;
@@ -172,7 +172,7 @@ function mapSwatch(category, number) {
   return canvas;
 }
 
-function mapTab(model) {
+export function mapTab(model) {
   const made = (tag, properties = {}, ...children) => {
     const element = Object.assign(document.createElement(tag), properties);
     element.append(...children);

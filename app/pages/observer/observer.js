@@ -1,5 +1,8 @@
 // The Observer page: the chain above, its observer below, the force that alone goes from one to the other, their distance.
 
+import { ChainDrawing } from "../../parts/chaindrawing.js";
+import { distancePicture, SHOWN_PERIODS } from "./observerplot.js";
+
 const element = (tag, properties = {}, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);

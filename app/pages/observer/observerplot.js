@@ -1,10 +1,12 @@
 // The distance between observer and chain over time, on a logarithmic axis, and what the multiplier predicts of it.
 
-const SHOWN_PERIODS = 60;
+import { draw, frame, tens, words } from "../../parts/plot.js";
+
+export const SHOWN_PERIODS = 60;
 const LOWEST = 1e-13, HIGHEST = 30;
 
 // history: [period, distance] pairs; told: predicted factor a period, and since which period it holds.
-function distancePicture(host, history, told, compact) {
+export function distancePicture(host, history, told, compact) {
   const f = frame(host, { left: compact ? 44 : 62, right: 12, top: 8, bottom: compact ? 22 : 40 }, "distance between observer and chain over time");
   const { svg } = f;
   const now = history.length ? history.at(-1)[0] : 0;

@@ -1,5 +1,8 @@
 // One Floquet mode as a motion of the chain: where a small disturbance of the orbit moves every bead.
 
+import { ChainDrawing } from "../../parts/chaindrawing.js";
+import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
+
 class DisturbedChain extends ChainDrawing {
   // A mode has no size of its own: the largest displacement is drawn as this part of the beads' distance.
   load(frames) {
@@ -31,7 +34,7 @@ class DisturbedChain extends ChainDrawing {
   words() {}
 }
 
-class ModeView {
+export class ModeView {
   constructor(canvas, host) {
     this.drawing = new DisturbedChain(canvas);
     this.canvas = canvas;

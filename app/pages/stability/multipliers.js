@@ -1,10 +1,12 @@
 // Multipliers and the unit circle: inside filled, outside larger and open; where they were before fades behind them.
 
+import { draw, frame, MARK, round3, words } from "../../parts/plot.js";
+
 const FARTHEST = 2.4; // what lies farther out stands at the edge, with its modulus beside it
 const AROUND = 1.18;
 
 // `stability` holds state (marks, observer_marks, stale) and trail, the sets of marks before, oldest first.
-function circlePicture(host, { state, trail }, compact) {
+export function circlePicture(host, { state, trail }, compact) {
   const f = frame(host, { left: 4, right: 4, top: 4, bottom: 4 }, "multipliers in the complex plane with the unit circle");
   const { svg, width, height } = f;
   const marks = [...(state.marks ?? []), ...(state.observer ? state.observer_marks ?? [] : [])];
@@ -63,7 +65,7 @@ function trailPicture(svg, trail, state, X, Y) {
 }
 
 // The sets of marks before the present one: as many as fade away; another scene begins anew.
-class Trail {
+export class Trail {
   constructor(most = 14) {
     this.most = most;
     this.sets = [];

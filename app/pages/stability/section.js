@@ -1,12 +1,14 @@
 // The Poincaré section of one bead: a point per drive period, the transient faint, the orbit's own points ringed.
 
+import { draw, frame, MARK, round3, ticks, words } from "../../parts/plot.js";
+
 const padded = ([low, high]) => {
   const room = 0.08 * (high - low) || 0.1 * Math.abs(high) || 1;
   return [low - room, high + room];
 };
 const between = (array) => array.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]);
 
-function sectionPicture(host, section, { regime, searched, regime_period: period = 1 }, near) {
+export function sectionPicture(host, section, { regime, searched, regime_period: period = 1 }, near) {
   const f = frame(host, { left: 62, right: 12, top: 10, bottom: 44 }, "Poincaré section");
   if (!section) return;
   const { svg } = f;

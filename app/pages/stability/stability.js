@@ -1,5 +1,10 @@
 // The Stability page, over the pictures: does a disturbance die out, which way does it leave, and how one knows.
 
+import { draw, MARK } from "../../parts/plot.js";
+import { ModeView } from "./mode.js";
+import { circlePicture, Trail } from "./multipliers.js";
+import { sectionPicture } from "./section.js";
+
 const part = (tag, properties = {}, ...children) => {
   const element = Object.assign(document.createElement(tag), properties);
   element.append(...children);

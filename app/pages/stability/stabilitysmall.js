@@ -1,6 +1,8 @@
 // The Stability tab of the corner: the unit circle and the sentence; it draws what the Stability page holds.
 
-function stabilityTab() {
+import { circlePicture } from "./multipliers.js";
+
+export function stabilityTab() {
   const page = window.granchain;
   const make = (tag, properties, ...children) => {
     const element = Object.assign(document.createElement(tag), properties);

@@ -1,5 +1,12 @@
 // The corner below the curve: what to look at, what the marks mean, which effects are on, the visitor's own data.
 
+import { branchesTab } from "../pages/branches/branchpicture.js";
+import { effectsTab } from "../pages/effects/effects.js";
+import { mapMessage, mapTab } from "../pages/map/map.js";
+import { distancePicture } from "../pages/observer/observerplot.js";
+import { stabilityTab } from "../pages/stability/stabilitysmall.js";
+import { workPicture } from "../parts/plot.js";
+
 const MARKS = { circle: "●", diamond: "◆", triangle: "▲", square: "■", star: "★", circle_dot: "◉", x: "✕", dash: "–" };
 const LARGEST_FILE = 2_000_000;
 
