@@ -106,6 +106,8 @@ def layer(module: str) -> str:
     parts = module.split(".")[1:]
     if module in ("app.main", "app.serve.server"):
         return "start"
+    if module in ("app", "app.scripts"):
+        return "serve"
     if parts[0] == "page":
         return "rules" if parts[-1] in RULES else "page"
     return ".".join(parts[:2]) if parts[0] == "pages" else parts[0]

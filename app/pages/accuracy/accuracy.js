@@ -1,16 +1,21 @@
 // The Accuracy page, over the pictures: what accuracy costs here and now, and what naive steps would have drawn.
 
-const part = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
+import { part } from "../../parts/dom.js";
+import { draw, mark, nearest, workPicture } from "../../parts/plot.js";
+import { lessonPicture } from "./lesson.js";
+
 const STATUS = {
-  none: "", waiting: "waiting for its turn …", compiling: "compiling the kernels of all methods: some 20 s, only the first time on this computer …",
-  measuring: "measuring …", done: "", cancelled: "cancelled; what was measured stays", failed: "",
+  none: "",
+  waiting: "waiting for its turn …",
+  compiling: "compiling the kernels of all methods: some 20 s, only the first time on this computer …",
+  measuring: "measuring …",
+  done: "",
+  cancelled: "cancelled; what was measured stays",
+  failed: "",
 };
 const NAIVE = "#d97706";
-const percent = (error) => (error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`);
+const percent = (error) =>
+  error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`;
 
 function methodTable(ways, rows) {
   const body = part("tbody");
@@ -19,13 +24,29 @@ function methodTable(ways, rows) {
     icon.append(mark(way, 0, 0, 5.5));
     const failed = rows.filter((row) => row.way === way.name && row.failure);
     const restrictions = part("td", { className: "soft", textContent: way.restrictions });
-    for (const row of failed) restrictions.append(part("div", { className: "failed", textContent: `failed at ${row.setting}: ${row.failure}` }));
+    for (const row of failed)
+      restrictions.append(
+        part("div", { className: "failed", textContent: `failed at ${row.setting}: ${row.failure}` }),
+      );
     const name = part("td", {}, icon);
     name.append(way.name.replace("scipy ", "SciPy "));
-    body.append(part("tr", {}, name, part("td", { textContent: way.title }), part("td", { textContent: way.order }), restrictions,
-      part("td", { className: "soft", textContent: way.reference })));
+    body.append(
+      part(
+        "tr",
+        {},
+        name,
+        part("td", { textContent: way.title }),
+        part("td", { textContent: way.order }),
+        restrictions,
+        part("td", { className: "soft", textContent: way.reference }),
+      ),
+    );
   }
-  const head = part("tr", {}, ...["method", "what it is", "order", "restrictions", "reference"].map((name) => part("th", { textContent: name })));
+  const head = part(
+    "tr",
+    {},
+    ...["method", "what it is", "order", "restrictions", "reference"].map((name) => part("th", { textContent: name })),
+  );
   return part("table", {}, part("thead", {}, head), body);
 }
 
@@ -39,17 +60,27 @@ class Lesson {
     this.said = part("p");
     this.draw = part("div", { className: "picture" });
     this.key = part("span", { className: "key" }, part("i"), "certified", part("i", { className: "dashed" }), "naive");
-    this.root = part("div", { className: "lesson" }, part("div", { className: "row" }, this.methods, this.steps, this.key),
-      this.said, part("div", { className: "draw" }, this.draw));
+    this.root = part(
+      "div",
+      { className: "lesson" },
+      part("div", { className: "row" }, this.methods, this.steps, this.key),
+      this.said,
+      part("div", { className: "draw" }, this.draw),
+    );
     this.show();
   }
 
   load(message) {
     // A plain array of numbers, whatever kind of buffer it came in.
-    this.data = { ...message, values: new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length) };
+    this.data = {
+      ...message,
+      values: new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length),
+    };
     const names = [...new Set(message.drawn.map((one) => one.method))];
     this.methods.replaceChildren(...names.map((name) => new Option(name, name)));
-    this.steps.replaceChildren(...[...new Set(message.drawn.map((one) => one.steps))].map((n) => new Option(`${n} steps a period`, n)));
+    this.steps.replaceChildren(
+      ...[...new Set(message.drawn.map((one) => one.steps))].map((n) => new Option(`${n} steps a period`, n)),
+    );
     // What one would naturally take, and of that what goes wrong most visibly.
     const natural = message.drawn.filter((one) => one.steps === 200);
     this.steps.value = "200";
@@ -65,10 +96,14 @@ class Lesson {
   show() {
     this.root.hidden = !this.data;
     if (!this.data) return;
-    const chosen = this.data.drawn.find((one) => one.method === this.methods.value && String(one.steps) === this.steps.value);
-    this.said.textContent = !chosen ? "" : chosen.failure
-      ? `With ${chosen.steps} steps a period nothing would have been drawn: ${chosen.failure}`
-      : `With ${chosen.steps} steps a period the force is off by ${percent(chosen.error)} of the largest, and nothing in the picture says so.`;
+    const chosen = this.data.drawn.find(
+      (one) => one.method === this.methods.value && String(one.steps) === this.steps.value,
+    );
+    this.said.textContent = !chosen
+      ? ""
+      : chosen.failure
+        ? `With ${chosen.steps} steps a period nothing would have been drawn: ${chosen.failure}`
+        : `With ${chosen.steps} steps a period the force is off by ${percent(chosen.error)} of the largest, and nothing in the picture says so.`;
     lessonPicture(this.draw, this.data, chosen, NAIVE);
   }
 }
@@ -85,23 +120,47 @@ export function render({ model }) {
   const status = part("span", { className: "status" });
   const close = part("button", { type: "button", textContent: "✕", title: "Back to the chain", className: "close" });
   close.addEventListener("click", () => page.cover(null));
-  const head = part("div", { className: "head" }, part("h2", { textContent: "What accuracy costs" }), status, meter, cancel, again,
-    part("span", { className: "grow" }), close);
-  const said = part("b"), agreement = part("span", { className: "soft" }), warning = part("span", { className: "warn" });
+  const head = part(
+    "div",
+    { className: "head" },
+    part("h2", { textContent: "What accuracy costs" }),
+    status,
+    meter,
+    cancel,
+    again,
+    part("span", { className: "grow" }),
+    close,
+  );
+  const said = part("b"),
+    agreement = part("span", { className: "soft" }),
+    warning = part("span", { className: "warn" });
   const say = part("div", { className: "say" }, said, agreement, warning);
-  const picture = part("div", { className: "picture" }), tip = part("div", { className: "tip", hidden: true });
+  const picture = part("div", { className: "picture" }),
+    tip = part("div", { className: "tip", hidden: true });
   const work = part("div", { className: "work" }, picture, tip);
   const lesson = new Lesson();
   const table = part("div", { className: "table" });
   const root = part("div", { className: "part sheet" }, head, say, work, lesson.root, table);
 
-  let told = null, points = [];
+  let told = null,
+    points = [];
   const redraw = () => {
-    page.accuracy = { rows: model.state.rows ?? [], ways: model.state.ways ?? [], told, agreement: model.state.agreement, status: model.state.status, done: model.state.done };
+    page.accuracy = {
+      rows: model.state.rows ?? [],
+      ways: model.state.ways ?? [],
+      told,
+      agreement: model.state.agreement,
+      status: model.state.status,
+      done: model.state.done,
+    };
     page.emit("accuracy", page.accuracy);
     root.classList.toggle("stale", Boolean(told?.stale));
     said.textContent = told?.sentence ?? "";
-    warning.textContent = model.state.failure || (told?.stale ? "The knobs have moved: this was measured for another chain. Measure again to see it for this one." : "");
+    warning.textContent =
+      model.state.failure ||
+      (told?.stale
+        ? "The knobs have moved: this was measured for another chain. Measure again to see it for this one."
+        : "");
     warning.hidden = !warning.textContent;
     if (page.covered === "accuracy") points = workPicture(picture, page.accuracy);
   };
@@ -127,20 +186,35 @@ export function render({ model }) {
     tip.style.right = right ? `${picture.clientWidth - point.x + 16}px` : "";
     tip.style.top = `${Math.max(0, point.y - 20)}px`;
   });
-  work.addEventListener("pointerleave", () => { tip.hidden = true; });
+  work.addEventListener("pointerleave", () => {
+    tip.hidden = true;
+  });
   model.on("state", show);
   model.on("msg:custom", (message) => {
-    if (message.type === "asked") { told = message; redraw(); }
-    else if (message.type === "lesson") lesson.load(message);
+    if (message.type === "asked") {
+      told = message;
+      redraw();
+    } else if (message.type === "lesson") lesson.load(message);
     else if (message.type === "no-lesson") lesson.forget();
   });
   page.on("cover", (name) => {
     model.send_msg({ do: "cover", name });
     if (name !== "accuracy") return;
-    requestAnimationFrame(() => { redraw(); lesson.show(); });
+    requestAnimationFrame(() => {
+      redraw();
+      lesson.show();
+    });
   });
-  new ResizeObserver(() => { if (page.covered === "accuracy") { redraw(); lesson.show(); } }).observe(work);
-  page.on("look", () => { redraw(); lesson.show(); });
+  new ResizeObserver(() => {
+    if (page.covered === "accuracy") {
+      redraw();
+      lesson.show();
+    }
+  }).observe(work);
+  page.on("look", () => {
+    redraw();
+    lesson.show();
+  });
   show();
   return root;
 }

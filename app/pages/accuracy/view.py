@@ -12,6 +12,7 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, ways
 from ...page.format import duration, short_error
 from ...page.frames import prefixed
 from ...parts.component import Component, text
+from ...scripts import module
 
 _PALETTE = ("#e0900a", "#9b6bf2", "#0fa3b8", "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hexagon", "star", "down", "pentagon")
@@ -23,7 +24,7 @@ _NAIVE_MARKS, _NAIVE_COLOUR = ("x", "plus", "star"), "#8a8f98"
 class Accuracy(Component):
     """The page over the pictures; points, lines and text come in `state`, the drawn forces as one message."""
 
-    _esm = text("plot.js") + text("lesson.js") + text("accuracy.js")
+    _esm = module("accuracy.js")
     _stylesheets = [text("controls.css"), text("drawing.css"), text("accuracy.css")]  # noqa: RUF012
 
 

@@ -11,12 +11,13 @@ from granchain_core.hard import CASES, Check, Picture
 
 from ...page.format import duration
 from ...parts.component import Component, text
+from ...scripts import module
 
 
 class Hard(Component):
     """The page over the pictures; rows come in `state`, drawn traces as one message for each case."""
 
-    _esm = text("plot.js") + text("hardpicture.js") + text("hard.js")
+    _esm = module("hard.js")
     _stylesheets = [text("controls.css"), text("drawing.css"), text("hard.css")]  # noqa: RUF012
 
 

@@ -16,7 +16,7 @@ from ...cli.explain import slots_of
 from ...page.host import Host
 from ...page.job_list import IDLE, RUNNING, Activity
 from ...page.task import Job, Task
-from ...parts.corner import Corner
+from ...parts.component import Component
 from ...serve.compiler import CERTIFIED, COMPILER, CURVE, LIVE
 from ...serve.queues import MEASUREMENTS
 from ...serve.waiting import ACTIVITIES_EVERY, COST_QUIET
@@ -29,7 +29,7 @@ class EffectsPanel:
     `activities` lists everything that is computed for this visitor.
     """
 
-    def __init__(self, host: Host, view: Corner, activities: Callable[[], list[Activity]]) -> None:
+    def __init__(self, host: Host, view: Component, activities: Callable[[], list[Activity]]) -> None:
         self._host = host
         self._view = view
         self._activities = activities

@@ -18,7 +18,7 @@ from granchain_core.orbits.compiled import ORBIT_PIECE
 from ...page.host import Host
 from ...page.session import slider_range
 from ...page.task import Job, Task
-from ...parts.corner import Corner
+from ...parts.component import Component
 from ...serve.compiler import CERTIFIED, CURVE, LIVE
 from ...serve.queues import LONG, Stop
 from ...serve.waiting import CELLS_EVERY, MAP_QUIET
@@ -42,7 +42,7 @@ def page_grid(scene: Scene) -> Grid:
 class MapTab:
     """While the tab is on the screen its diagram is computed; nothing is while it is not."""
 
-    def __init__(self, host: Host, view: Corner) -> None:
+    def __init__(self, host: Host, view: Component) -> None:
         self._host = host
         self._view = view
         self._visible = False

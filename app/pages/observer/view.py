@@ -11,13 +11,14 @@ from granchain_core import Scene
 from ...page.frames import prefixed
 from ...parts.chain import PALETTE
 from ...parts.component import Component, text
+from ...scripts import module
 from .work import Step
 
 
 class Observer(Component):
     """The page over the pictures; every period comes as one message."""
 
-    _esm = text("plot.js") + text("chaindrawing.js") + text("observerplot.js") + text("observer.js")
+    _esm = module("observer.js")
     _stylesheets = [text("controls.css"), text("drawing.css"), text("observer.css")]  # noqa: RUF012
 
 

@@ -17,14 +17,14 @@ from granchain_core.steady.regime import modulus_words
 from ...page.format import duration, short_error
 from ...page.frames import prefixed
 from ...parts.component import Component, text
+from ...scripts import module
 from .work import Analysis
 
 
 class Stability(Component):
     """The page over the pictures and, through what it shares in the browser, the small version in the corner."""
 
-    _esm = "".join(text(name) for name in ("plot.js", "chaindrawing.js", "multipliers.js", "section.js", "mode.js",
-                                           "stability.js"))
+    _esm = module("stability.js")
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "multipliers", "stability")]  # noqa: RUF012
 
 
