@@ -107,7 +107,7 @@ class Cancelled(Exception):
 
 
 def outcome_of(problem: NumbersFailed | OverBudget) -> dict[str, Any]:
-    """What a script is told of a computation that failed or was not begun: outcome, sentence, and what is known."""
+    """The JSON object of a computation that failed or was not begun: status, message, and where and when if known."""
     if isinstance(problem, OverBudget):
         return {"status": problem.status, "message": str(problem), "estimate_s": problem.estimate,
                 "budget_s": problem.budget}

@@ -1,8 +1,8 @@
 """What one effect costs in a step: the same chain's kernel with it and without it, timed by turns.
 
-Two costs are told apart. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The
+There are two costs. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The
 live method also splits steps where contacts open or close, so an effect that changes the motion (a preload that keeps
-contacts closed, a chain without damping that never comes to order) costs or saves far more than its own code.
+contacts closed, damping that makes an irregular motion periodic) costs or saves far more than its own code.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A stop flag that goes up by itself when time is over: one slow setting must not hold up all the others."""
+"""A stop flag with a time limit: one slow setting must not delay all the others."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from ..integrate.engine import new_stop
 
 _LOOK = 0.01
-"""Seconds between looks at the outer flag and the clock."""
+"""Seconds between two checks of the outer flag and the clock."""
 
 
 class Limited:

@@ -29,7 +29,7 @@ _REFERENCE = Setting("dop853", tolerance=3e-15)
 _SECOND = ("DOP853", 1e-14)
 #: Seconds after which a setting is given up, and a reference.
 _ROW_LIMIT, _REFERENCE_LIMIT = 8.0, 60.0
-#: A setting is run until it has taken so many seconds or runs; the fastest counts, so that neither a compiler nor a
+#: A setting is repeated for this many seconds or runs; the fastest counts, so that neither a compiler nor a
 #: neighbour on the machine is measured. What takes longer than the last is run once.
 _ENOUGH, _MOST_RUNS, _SLOW = 0.05, 9, 0.5
 #: What takes less than so many seconds is measured in a second round, too, seconds after the first: a neighbour that

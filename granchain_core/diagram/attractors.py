@@ -1,7 +1,7 @@
 """All steady states of one setting that are found from rest, from both sweeps and from random states.
 
-Every start is settled in lanes; what is one and the same is told by sameness.py. A start that ends on an unstable
-orbit, where a slow departure looks like rest, is put beside it and runs on.
+All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable
+orbit, where a slow departure looks like a steady state, is displaced and run further.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from .sameness import LIVE, Found, found, merged
 
 #: Frequencies passed on the way in a sweep, periods at each, and how far away it begins.
 _SWEEP, _PASS, _AWAY = 8, 150, 0.08
-#: Random states lie within so many times the largest displacement and velocity on the way from rest.
+#: Size of the box of random states, in largest displacements and velocities seen on the way from rest.
 _BOX = 1.5
-#: A start that ended on an unstable orbit is put so far beside it, relative to the motion, and runs so many periods
-#: before it is looked at again: more than it takes to leave an orbit with |μ| = 1.003.
+#: Displacement from an unstable orbit, relative to the motion, and drive periods before the next check: enough to
+#: leave an orbit with |μ| = 1.003.
 _BESIDE, _RUN_ON = 1e-2, 3000
 #: Mean exponents per drive period above which a group is chaotic, and below which it may be quasi-periodic.
 _CLEARLY, _UNCLEAR = 0.01, 5e-3

@@ -26,8 +26,8 @@ from ..steady.batch_job import BatchResult
 _SAME = 1e-7
 #: Scaled strobes of an orbit that agree to this after fewer periods have the shorter period.
 _REPEATS = 1e-6
-#: Sections that are so many times further apart than their own states are different; those of motions that are not
-#: periodic have so many states, after as many periods more.
+#: Sections are different if their distance exceeds that of their own neighbouring states by this factor; states in the
+#: section of a motion that is not periodic, taken after as many further periods.
 _APART, _SECTION = 3.0, 400
 LIVE, _CERTIFIED = Setting("rk4-split"), Setting("dop853", tolerance=1e-11)
 

@@ -15,7 +15,7 @@ from .oracle import Plain, restitution, solved
 
 
 def overdamped(times: float, beads: int = 3) -> Scene:
-    """The rig with so many times its damping."""
+    """The rig with a multiple of its damping."""
     return scene("rig").evolve(N=beads, D=35.4 * times, f=160.0, accuracy=1e-7)
 
 
@@ -91,7 +91,7 @@ def _pulls(periods: int) -> list[Figure]:
 
 
 def naive_bounce(strength: float, steps: float) -> float:
-    """The restitution with the dashpot that plain RK4 in (u, v) finds with so many steps in a contact."""
+    """The restitution with the dashpot by plain RK4 in (u, v), for a number of steps per contact."""
     h, state = contact_time(1.0, 1.0) / steps, np.array([-0.3 * contact_time(1.0, 1.0) / steps, 1.0])
 
     def slope(y: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from .case import Figure, Picture, Trace
 from .drafts import observed_apart
 from .oracle import Plain
 
-#: Strobes of a normal form that are looked at, and its dimension.
+#: Strobes of a normal form, and its dimension.
 _STROBES, _BEADS = 400, 3
 
 
@@ -183,7 +183,7 @@ def two_attractors_picture() -> Picture:
 
 
 def drifting(quick: bool) -> list[Figure]:
-    """The observer without a foundation drifts and that is said by name; with one it does not, and nothing is said."""
+    """The observer without a foundation drifts, and the verdict says so; with one it does not."""
     wrong = []
     for base, drifts in (("fig11-free", True), ("fig11-founded", False)):
         for frequency in ((100.0,) if quick else (100.0, 200.0)):

@@ -68,13 +68,13 @@ class Batch:
             change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
             triangle=np.zeros((ORBITS, ORBITS)),
         )
-        for lane in range(LANES):  # an empty lane runs the example, at rest, and is never looked at
+        for lane in range(LANES):  # an empty lane runs the example at rest and is never checked
             self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
 
     def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, look: int, earliest: int = 0) -> None:
         """Start a scene in a lane from the scaled state y at phase 0, with `refine` times the live method's steps.
 
-        It is looked at after `look` periods, or from `earliest` on when it may have settled.
+        It is checked after `look` periods, or from `earliest` on once it may have settled.
         """
         slots, lanes, state = lowered.slots, self.lanes, self.state
         steps = math.ceil(refine * lowered.steps_per_period())
@@ -103,14 +103,14 @@ class Batch:
                  tops: np.ndarray) -> None:
         """Start a scene on the orbit y of a coarser run, of `period` and decay `rate` per orbit, with its forces.
 
-        It is looked at when it has forgotten that orbit for its own.
+        It is checked once the difference from that orbit has decayed.
         """
         orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(FORGET) / math.log(rate))))
         self.put(lane, lowered, y, refine, NEVER, orbits * period)
         self.state.fine[lane] = period, rate, *tops, orbits, 0.0
 
     def run(self) -> tuple[int, bool]:
-        """Run until a lane should be looked at; its number, and whether it is finite."""
+        """Run until a lane is due for a check; its number, and whether it is finite."""
         status, lane = kernels.run_batch(self.lanes, self.state, self.stop)
         if status == CANCELLED:
             raise Cancelled

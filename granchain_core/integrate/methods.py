@@ -49,7 +49,8 @@ class Setting:
     def finer(self) -> Setting:
         """The next finer setting: half the step, or a tolerance so much smaller that the error surely is.
 
-        Error control makes errors uneven: an eighth of the tolerance now and then left as large an error as before.
+        With error control the error does not fall evenly with the tolerance: an eighth of it sometimes left the error
+        unchanged, so the next tolerance is a sixty-fourth.
         """
         if METHODS[self.method].adaptive:
             return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST), self.tolerance / 8.0))
@@ -79,7 +80,7 @@ METHODS: dict[str, Method] = {
         Method("rk4", "RK4 in w", 4.0, 2.0, False, False, False, "fixed step; order 2 at contact events; a touch "
                "shorter than a step is not resolved, its jump read off the step's ends",
                "Kutta 1901; w-variables: docs/model.md"),
-        Method("rk4-split", "RK4 in w, steps split at contact events, what Simpson's rule misses there given back", 4.0,
+        Method("rk4-split", "RK4 in w, steps split at contact events, quadrature corrected there", 4.0,
                3.9, True, False, False, "fixed step; order 3.5 below errors of about 1e-9; with more than 30 beads two "
                "changes of one contact inside a step are not seen",
                "Kutta 1901; w-variables and events: docs/model.md"),
@@ -97,12 +98,11 @@ METHODS: dict[str, Method] = {
 #: Above this relative error the live method is the cheaper one; its error at the live step is about that below, and
 #: falls with the fourth power of the step (`granchain accuracy sec2` measures both).
 _LIVE_IS_CHEAPER, _LIVE_ERROR = 1e-10, 7e-6
-#: How much larger than as a rule the error is in one random scene of some thousand (`python -m
-#: tests.numerics.honesty`).
+#: Factor by which one random scene in about a thousand exceeds the usual error (`python -m tests.numerics.honesty`).
 _SPREAD = 8.0
 #: A largest force stands at a jump if the largest jump is at least this part of it.
 AT_A_JUMP = 0.95
-#: Simpson's rule gives 0.0024 h^{5/2} too much of ∫ s^{3/2} over the step behind an onset; several contacts may do so.
+#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step behind an onset, for several contacts.
 _JUMP = 0.01
 #: Coarsest steps for one of the live method's.
 _COARSEST = 0.5
@@ -123,11 +123,11 @@ def typical_error(setting: Setting) -> float:
 
 
 def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndarray, tops: np.ndarray) -> np.ndarray:
-    """What the relative errors (3,) of the largest forces are at least, where they stand at jumps (2,) [scaled].
+    """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,) [scaled].
 
-    What Simpson's rule gives too much behind an onset is taken back at the end of a split step, for the next two steps
-    too. Where another contact closes meanwhile, its rate is off by a part of K v^{3/2} h^{5/2} (events.py), v being the
-    speeds, of either sign from one step size to the next: the difference of two computations does not bound it.
+    The quadrature error behind an onset is subtracted at the end of the split step and of the next two steps. If
+    another contact closes in between, its rate is off by a part of K v^{3/2} h^{5/2} (contact_events.py), with v the
+    approach speeds. Its sign changes with the step size, so the difference of two computations does not bound it.
     """
     least = np.zeros(3)
     if setting.method == "rk4-split" and lowered.slots.dissipation is not None:

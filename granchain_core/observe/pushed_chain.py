@@ -49,7 +49,7 @@ class PushedChain:
         return self._log.peaks[:MEMORY:ROWS].copy()
 
     def run(self, start: State, halvings: int) -> Samples:
-        """The motion from `start` in steps halved so many times; one row a sample, in scaled units."""
+        """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
         lo, n, row = self.lowered, self.lowered.beads, self.lowered.row
         if len(start.displacement) != n:
             raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")

@@ -36,7 +36,7 @@ _SAMPLES, _TOLERANCE = 480, 1e-9
 
 @dataclass(frozen=True)
 class Response:
-    """Strong pushes in so many periods, what that is, and the evidence.
+    """Strong pushes of the driver per number of periods, the kind of response, and the evidence.
 
     `kind` is "resonance", "anti-resonance" or "". `contact_phase` and `peak_phase` are the drive's phase [degrees, 0
     where it moves forward through its middle] where the strongest push begins and is strongest, None where driver and

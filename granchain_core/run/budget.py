@@ -21,7 +21,7 @@ from ..integrate import METHODS, Setting
 from ..lower import Lowered, lower
 from ..scene import Scene
 
-#: Seconds a run may take unless it is told otherwise.
+#: Default budget of a run [s].
 BUDGET = 86_400.0
 #: Seconds of one step of a method with fixed steps: so much, and so much for each contact.
 _STEP: dict[str, tuple[float, float]] = {"rk4-split": (450e-9, 45e-9), "rk4": (350e-9, 35e-9),
@@ -72,7 +72,7 @@ event.register("numba:compiler_lock", _COMPILER)
 
 
 class Stopwatch:
-    """What a computation in this thread takes by itself: a kernel's first use compiles it, which is no part of it."""
+    """Time of a computation in this thread, without that of compiling kernels at their first use."""
 
     def __init__(self) -> None:
         self._began, self._compiled = time.perf_counter(), _COMPILER.seconds

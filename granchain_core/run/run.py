@@ -28,13 +28,13 @@ from .stated import Computations
 
 #: Most periods in all and most recorded rows of one run.
 MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
-#: A motion whose error is stated larger than this may be chaotic: finer computations will not help then.
+#: Stated error above which a motion may be chaotic: finer computations do not help then.
 _LOST = 0.3
-#: It is then computed until its energy account closes to so many times the accuracy, energies being quadratic.
+#: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.
 _CLOSES = 10.0
 #: Periods whose stroboscopic states are kept to decide the regime, however long a run is.
 _KEPT = 420
-#: The next finer computation takes about so many times as long.
+#: Time of the next finer computation over that of the last.
 _TWICE = 2.0
 #: Fewest periods on which a run is called anything but unsettled.
 _ENOUGH = 40
@@ -212,7 +212,7 @@ def _least(now: _Attempt, setting: Setting) -> np.ndarray:
 
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> Regime:
-    """The regime as far as these periods show it; a slow one is told apart by multipliers or its Lyapunov exponent."""
+    """The regime shown by these periods; a slow motion is classified by multipliers or its Lyapunov exponent."""
     tolerance = 10.0 * scene.accuracy
     regime = replace(find_period(attempt.strobes, rounding=min(1e-6, tolerance)), periods_run=periods)
     if periods < _ENOUGH or attempt.engine.grid_index != 0:

@@ -1,4 +1,4 @@
-"""One scene on its way through the lanes: when it is looked at, and what is done with what is seen."""
+"""One member of a batch: when its regime is checked, and what follows from the result."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .decide import MOST_PERIODS, SLOW_PERIODS
 from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
 
-#: How the largest forces on an orbit are found where they jump: finer than the lanes that found the orbit.
+#: How the largest forces on an orbit are found where they jump: finer than the batch that found the orbit.
 _LOCATED = Setting("rk4-split", refine=8)
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
@@ -34,10 +34,10 @@ class Start:
 
 @dataclass(eq=False)
 class BatchResult:
-    """A steady state found in a lane: largest forces [N] in the order input, output, elastic output.
+    """A steady state found in a batch: largest forces [N] in the order input, output, elastic output.
 
-    `errors` (3,) are their relative errors, None where none is claimed; `number` is that of its start. Where it is
-    `doubtful` the lanes did not decide, and `settle` has to, from `state`.
+    `errors` (3,) are their relative errors, None where none is stated; `number` is that of its start. If it is
+    `doubtful` the batch could not decide, and `settle` continues from `state`.
     """
 
     scene: Scene

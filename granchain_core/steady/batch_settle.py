@@ -1,11 +1,11 @@
-"""Many steady states at once by lanes: settle coarsely, then finely, and let the difference be the error.
+"""Many steady states in batches: settle with coarse steps, then with fine ones; the difference is the error.
 
-Every scene starts in a lane at a coarse step. When its regime is decided its place is filled with the next one; a
-periodic scene comes back once more at a third of the step, from where it settled, until the coarse orbit is
-forgotten. The forces of the finer run are given, with their change as error estimate. A slow approach is followed to
-where it leads (extrapolate.py), on the way to the coarse orbit and to the finer one. What is not periodic within the
-budget is told apart by its Lyapunov exponent, four scenes at a time. Results that this leaves in doubt are marked: they
-are for `settle`, which takes one chain at a time (curve.py).
+Every scene starts in a lane with coarse steps. Once its regime is decided, the next scene takes its lane. A
+periodic scene is run again from its settled state with a third of the step, until the difference from the coarse orbit
+has decayed; the forces of this finer run are reported, with their change as error estimate. Slow approaches are
+extrapolated in both runs (kernels/strobes/extrapolation.py). Motions that are not periodic within the
+budget are classified by their Lyapunov exponents, four scenes at a time. Results that are still undecided are marked
+and left to `settle`, which takes one chain at a time (curve.py).
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class _Lanes:
                     self._start(lane, job)
 
     def _start(self, lane: int, job: Job) -> None:
-        """The coarse run is looked at when it has settled, the finer one when it has forgotten the coarse one."""
+        """The coarse run is checked once it may have settled, the finer one once its start has decayed."""
         if job.coarse is None:
             look = min(_DRAFT if self.draft else MOST_PERIODS, job.affordable_periods - job.run)
             self.block.put(lane, job.lowered, job.y, 1, look)
@@ -71,7 +71,7 @@ class _Lanes:
         self.block.put_fine(lane, job.lowered, job.y, _FINER, regime.period, rate, tops)
 
     def step(self) -> BatchResult | None:
-        """Run until a lane is to be looked at, and do so."""
+        """Run until a lane is due for a check, and check it."""
         lane, finite = self.block.run()
         job = self.jobs[lane]
         if not finite:

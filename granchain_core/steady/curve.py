@@ -240,7 +240,7 @@ def _points(scenes: Iterator[Scene], flag: np.ndarray) -> Iterator[CurvePoint]:
 
 
 def second_look(result: BatchResult, stop: np.ndarray) -> CurvePoint:
-    """The point of a result that the lanes left in doubt: its chain by itself, from where they left it."""
+    """The point of a result that the batch left undecided: its chain alone, continued from the same state."""
     point = safe_point(result.scene, result.state, stop)
     run = result.regime.periods_run + point.regime.periods_run
     return replace(point, regime=replace(point.regime, periods_run=run))

@@ -1,9 +1,9 @@
-"""The periodic orbit beside a motion: is it one that the motion goes to, or one that it leaves?
+"""The periodic orbit beside a motion, and whether the motion approaches it or departs from it.
 
-A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one; while it
-lasts both look alike. So the orbit itself is found, its multipliers say what becomes of a small disturbance, and the
-way from the motion to the orbit is tried: from the whole distance and from shorter and shorter ones the motion must
-come nearer about as fast as the multipliers say.
+A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one;
+meanwhile both look alike. So the orbit itself is found by Newton's method, and its multipliers predict the growth of
+small disturbances. The prediction is tested: from its present distance and from smaller and smaller ones, the motion
+must approach the orbit about as fast as the multipliers say.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ MOST_BEADS = 100
 UNSURE = 1e-5
 #: A motion that changes by more over n periods is not beside an orbit of n; nor is one so far from the orbit found.
 _BESIDE = 0.1
-#: A motion is looked at for the shortest period over which it changes by no more than so many times the least change.
+#: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _AS_SMALL = 3.0
-#: Distances are shortened by this factor until they are this small. Each is followed until the multipliers have taken
-#: this part of it away, for so many orbits at most, and this part of that must be gone: beside an orbit that has just
-#: become stable there may be a closed curve that the motion stays on, where distances go up and down by some per cent.
+#: Factor between the tested distances, and the smallest; the part of a distance that must decay according to the
+#: multipliers, orbits for that at most, and the part of it that must really decay. Beside an orbit that has just
+#: become stable there may be a closed curve on which the motion stays, and distances vary by some per cent.
 _CLOSER, _SMALLEST, _TAKEN, _MOST_ORBITS, _PART = 0.4, 1e-5, 0.2, 3000, 0.3
 #: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
 _TURN = 16
-#: Directions whose |μ| is below this, or below this part of the largest, are gone after so many orbits.
+#: Directions whose |μ| is below this, or below this part of the largest, have decayed after those orbits.
 _SLOW = 0.3
 #: Length to which a departure is drawn out along the directions that grow.
 _DRAWN_OUT = 3e-3
@@ -92,7 +92,7 @@ class NearbyOrbit:
                 return True
 
     def _lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
-        """The largest lengths of an offset from the orbit, now and so many orbits later; infinite if it gets lost."""
+        """Largest lengths of an offset from the orbit, now and after `orbits` orbits; infinite if the map fails."""
         try:
             passed = self.strobe.passed(self.point.x + offset, _TURN, orbits)
         except NumbersFailed:

@@ -258,7 +258,7 @@ def settle(scene: Scene, start: State | None, stop: np.ndarray | None) -> Settli
 
 
 def live_picture(way: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
-    """A picture of what the live method does now, over one orbit or a few periods; the way itself is not moved."""
+    """The present motion by the live method, over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(way.scene, way.engine.setting, samples, stop=way.stop)
     state = way.engine.state
     engine.start(state)
@@ -314,7 +314,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
 
     The orbit of the live method differs from the true one by its error; a few more periods take that away, and the
     change from one n-period map to the next over 1 − |μ| says how much is left. What is left behind an extrapolation is
-    known from the changes behind it, and one behind which they are not smaller is taken back.
+    known from the changes after it, and a jump after which they are not smaller is undone.
     """
     scene, n = way.scene, way.regime.period
     assert n is not None

@@ -6,8 +6,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from edited_tree import edited_copy, files_of, follow
 from documents import ROOT
+from edited_tree import edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-damping-law.md"
 _CHECKS = Path(__file__).parent / "added_law.py"

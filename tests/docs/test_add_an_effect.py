@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from edited_tree import edited_copy, files_of, follow
 from documents import ROOT
+from edited_tree import edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import json
 import sys
-import time
 from pathlib import Path
 
 import h5py
@@ -47,15 +46,12 @@ def test_accuracy_not_reached_in_chaos() -> None:
 
 
 @pytest.mark.parametrize("knobs", [{"N": 10_000, "f": 0.1}, {"f": 0.1, "D": 3e4}, {"N": 10_000, "f": 10.0, "A0": 1e-4}])
-def test_over_budget_is_refused_in_a_tenth_of_a_second_with_what_would_fit(knobs: dict[str, float]) -> None:
+def test_over_budget_is_refused_before_anything_is_computed_with_what_would_fit(knobs: dict[str, float],
+                                                                                monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = scene("sec2").evolve(**knobs)
-    spent = []
-    for _ in range(5):
-        began = time.perf_counter()
-        with pytest.raises(OverBudget, match=r"would fit|needed") as caught:
-            run(chosen, periods=10_000, record=1, samples=8)
-        spent.append(time.perf_counter() - began)
-    assert min(spent) < 0.1
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "Engine", None)  # nothing can be integrated
+    with pytest.raises(OverBudget, match=r"would fit|needed") as caught:
+        run(chosen, periods=10_000, record=1, samples=8)
     assert caught.value.estimate > caught.value.budget
     assert isinstance(caught.value, BadInput)
 

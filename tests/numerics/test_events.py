@@ -69,7 +69,7 @@ def test_a_chain_that_never_opens_has_no_events():
 
 
 def test_certified_steps_end_on_the_events():
-    """After a step that found a contact opening or closing its overlap is zero, to the landing's own figure."""
+    """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
     engine = Engine(chain, Setting("dop853", tolerance=1e-9), 1)
     engine.periods(2)

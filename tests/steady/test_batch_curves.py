@@ -7,8 +7,8 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate.engine import new_stop
-from granchain_core.kernels.batch import period_end as lane_looks
-from granchain_core.steady import batch_settle as lane_curve
+from granchain_core.kernels.batch import period_end
+from granchain_core.steady import batch_settle
 from granchain_core.steady.batch_job import BatchResult
 from granchain_core.steady.curve import draft_curve, resonance_curve
 from granchain_core.steady.settle import settle
@@ -20,7 +20,7 @@ FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620
 def results(frequencies: list[float]) -> dict[float, BatchResult]:
     """What lanes find at these frequencies of section 2."""
     scenes = (scene("sec2").evolve(f=f) for f in frequencies)
-    return {found.scene.f: found for found in lane_curve.batch_results(scenes, new_stop())}
+    return {found.scene.f: found for found in batch_settle.batch_results(scenes, new_stop())}
 
 
 def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
@@ -79,4 +79,4 @@ def test_scenes_that_lanes_cannot_run_have_no_draft() -> None:
 
 def test_constants_of_the_disturbance_leave_room() -> None:
     """A disturbance is far above what counts as settled and far below what changes the sequence of contacts."""
-    assert 10.0 * lane_looks.SETTLED_DISTANCE < lane_looks._DISTURBANCE < 1e-2
+    assert 10.0 * period_end.SETTLED_DISTANCE < period_end._DISTURBANCE < 1e-2

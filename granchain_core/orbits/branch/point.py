@@ -114,7 +114,7 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tup
 
 
 def _counts(contacts: int, record: OrbitRecord, changes: np.ndarray) -> np.ndarray:
-    """Closings of every contact; the two ways of having none are told apart by the overlap's turning points."""
+    """Closings of every contact; always open and always closed are distinguished by the overlap's turning points."""
     numbers = changes[:, 0].astype(int)
     closings = np.bincount(numbers[numbers > 0] - 1, minlength=contacts)
     if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):
