@@ -1,4 +1,4 @@
-"""What lanes believe at the end of a period, from states made by hand; and what they take back beside events."""
+"""Decisions of a batch at the end of a period, from states made by hand; and its corrections beside events."""
 
 from __future__ import annotations
 
