@@ -1,4 +1,4 @@
-"""Decisions of a batch at the end of a period, from states made by hand; and its corrections beside events."""
+"""What lanes believe at the end of a period, from states made by hand; and what they take back beside events."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import pytest
 from granchain_core import scene
 from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.engine import new_stop
-from granchain_core.kernels.batch import contact_correction as lane_events
-from granchain_core.kernels.batch import period_end
+from granchain_core.kernels.batch import contact_correction, period_end
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 
 LANE, ROW = 5, 4
@@ -69,7 +68,7 @@ def test_what_a_lanes_step_across_an_event_gives_too_much(r: float) -> None:
     """Impulse and path of contact_correction.py by their definition, law by law."""
     half, speed, h, c = max(r - 0.5, 0.0), 0.7, 0.2, 0.3
     beside = ((r**1.5 + 4.0 * (r + 0.5) ** 1.5 + (r + 1.0) ** 1.5) / 6.0 - 0.4 * ((r + 1.0) ** 2.5 - r**2.5))
-    assert lane_events.momentum_error.py_func(r, r**1.5, half**1.5) == pytest.approx(excess(1.5, r) + beside, abs=1e-14)
+    assert contact_correction.momentum_error.py_func(r, r**1.5, half**1.5) == pytest.approx(excess(1.5, r) + beside, abs=1e-14)
     for law, scale, power in ((LinearDashpot(c), c, 1.0), (Tsuji(c), 0.8 * c, 1.25), (KuwabaraKono(c), 2.0 / 3.0 * c, 1.5)):
-        found = lane_events.displacement_error(law, r, half, r**1.5, half**1.5, speed, h)
+        found = contact_correction.displacement_error(law, r, half, r**1.5, half**1.5, speed, h)
         assert found == pytest.approx(scale * speed**power * h ** (power + 1.0) * excess(power, r), rel=1e-9, abs=1e-16)
