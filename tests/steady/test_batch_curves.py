@@ -1,4 +1,4 @@
-"""Curves by lanes: the attractor reached from rest stays it, whatever is done to reach it sooner; drafts say less."""
+"""Curves by batches: extrapolation does not change the attractor that is reached from rest; drafts claim less."""
 
 from __future__ import annotations
 

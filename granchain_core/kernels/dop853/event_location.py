@@ -1,6 +1,6 @@
-"""Steps that end on contact events: aimed at a release, landed on an onset, or neither.
+"""Event location for the flow: steps that end at a release, at an onset, or at neither.
 
-What a step comes to is (status, time, size, contact that changed at its end or −1); its result is work.end.
+A step returns (status, time, size, contact that changed at its end or −1); the state is in work.end.
 """
 
 from __future__ import annotations
@@ -14,18 +14,18 @@ from .event_step import attempt_in_time, first_change
 from .tableau import STAGES
 from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
-#: A step lands so near to an event, in units of the largest displacement: a few roundings.
+#: Largest overlap at a located event, in units of the largest displacement: a few roundings.
 _LANDED = 1e-14
-#: A release is aimed at when it is no farther away than this many steps.
+#: A release is located in advance if it is at most this many steps away.
 _AIM = 1.5
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
-#: Attempts at one landing, and at one step.
+#: Attempts to locate one event, and to take one step.
 _TRIALS, _ATTEMPTS = 8, 60
-#: The next step to try is never less than this, in t: two events that rounding sets side by side leave no trace in it.
+#: Shortest next step to try, in t: two events that rounding brings together do not shrink it further.
 _LEAST = 1e-9
-#: A first step behind an onset goes at most this part of the way to a release that it meets.
+#: A first step after an onset covers at most this part of the time to the next release.
 _PART = 0.5
-#: What aiming came to besides a kernel's status.
+#: Status of a release that could not be located, beside those of kernels/status.py.
 _LOST = -1
 
 

@@ -1,9 +1,9 @@
 """The largest forces inside an accepted step of the certified method, on its dense output.
 
-A force is looked at where the step begins, in its middle and where it ends; the step begins just behind an event and
-ends just behind the next, so that these values are right limits and the jump of a closing contact is one of them. Where
-it rises at the beginning and falls at the end, the top in between is searched by golden section if it may exceed what
-was seen: it is then as exact as the dense output, whatever the size of the step.
+A force is evaluated at the beginning, in the middle and at the end of a step. The step begins just past an event and
+ends just past the next, so these values are right limits and the jump of a closing contact is one of them. If the force
+rises at the beginning and falls at the end, its maximum is searched by golden section, provided that it may exceed the
+largest value so far. It is then as exact as the dense output, whatever the size of the step.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Event-located, error-controlled integration: DOP853 in w, restarted where a contact opens or closes.
 
 The slope is continuous across an event but its derivative is not, and behind onset the solution carries a
-(t − t_e)^{5/2}: no smooth method keeps its order across. So every change of contact inside a step is found on
-the dense output, the step is repeated to end just behind it, and the next one starts small.
+(t − t_e)^{5/2}: no smooth method keeps its order across. So every contact event inside a step is located on
+the dense output, the step is repeated to end just past it, and the next one starts small.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
 from .step import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
 
-#: A step is aimed to end this overlap behind the event, some roundings of the largest displacement, and lands within
-#: so many times that: the moment of a contact is then as exact as its speed lets it be.
+#: Target overlap just past an event, a few roundings of the largest displacement, and the factor by which it may be
+#: missed: the time of the event is then as exact as the approach speed allows.
 _BEHIND, _NEAR = 1e-15, 4.0
 #: The same where tension is cut: a contact without force may linger at δ = 0, which is no chatter.
 _BEHIND_CUT, _NEAR_CUT = 1e-14, 100.0
-#: A step that is aimed at an event may grow by so much of it.
+#: A step that is to end at an event may become longer by this factor.
 _LONGER = 1.01
 #: No contact opens and closes more often than this in one period unless it chatters.
 _EVENTS_PER_CONTACT = 2000
@@ -100,7 +100,7 @@ def may_turn(d0, s0, d1, s1, sign):
 def first_event(slots, beta, t, h, y, work, counts):
     """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
-    One that is nearer to the start than time can be told apart is no event to step to, and must not hide the next.
+    Events closer to t than floating-point resolution are ignored.
     """
     contact, first, dense_ready = -1, 2.0, False
     k = work.k
@@ -129,7 +129,7 @@ def first_event(slots, beta, t, h, y, work, counts):
 
 @by_slot
 def event_tolerance(tension):
-    """How far behind an event a step is to end, and within how many times that. Absent: as exactly as can be."""
+    """Target overlap past an event and the accepted factor. Absent: the smallest that rounding allows."""
     return _BEHIND, _NEAR
 
 
@@ -230,7 +230,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
     """Run over `points` points of a grid of `grid` points a period, starting at grid point `first`.
 
     With every > 0 the largest forces are followed and closings noted in `log`, and each every-th grid point is kept in
-    `samples`, whose row 0 is the start; with every = 0 nothing is looked at. Returns (status, rows or points done).
+    `samples`, whose row 0 is the start; with every = 0 nothing is recorded. Returns (status, rows or points done).
     """
     m = slots.chain.inverse_mass.size
     spacing = period / grid

@@ -80,7 +80,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, log, tops, counts, 
     keep_strobe(y, stages.k[0], strobes[0])
     watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
     for p in range(tops.shape[0]):
-        if first_not_finite(y, m) != 0:  # looked at before a step spreads it, so that the bead can be named
+        if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
             return NOT_FINITE, p
         next_period(log.peaks)
         advance(stages.along, method, slots, drive, 0, n, dtheta, h, y, stages, log, counts, stop)

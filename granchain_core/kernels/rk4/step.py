@@ -1,7 +1,7 @@
 """Fixed-step methods: classical Runge–Kutta of order 4 in w, plain or with its step split at contact events.
 
 The drive phase comes from an integer step count: `drive` holds (u_0, v_0) at every half step of one period, or is
-empty where a period has so many steps that the table would not fit, and the driver is asked instead.
+empty if a period has too many steps for it, and the driver is evaluated instead.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def keep_overlaps(slots, y, slope, ends, overlaps, rates):
 
 @kernel
 def correct_state(slots, ends, v0, y):
-    """Take from y what Simpson's rule gave too much beside contact events; the driver moves at v0."""
+    """Subtract the quadrature errors beside contact events from y; the driver moves at v0."""
     inverse_mass = slots.chain.inverse_mass
     m = inverse_mass.size
     for i in range(1, m - 1):
@@ -125,7 +125,7 @@ def correct_state(slots, ends, v0, y):
 
 @by_slot
 def correct_work(balance, excess, y):
-    """Take from the driver's work what its contact's impulse had too much. Absent: no work is kept."""
+    """Subtract the error of its contact's impulse from the driver's work. Absent: no work is recorded."""
 
 
 @correct_work.of(Balance)

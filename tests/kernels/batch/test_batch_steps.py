@@ -1,4 +1,4 @@
-"""Lanes: eight scenes at once converge to their motions with order about 3, each as if it ran alone."""
+"""A batch: eight scenes at once converge to their motions with order about 3, each as if it ran alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lanes of beads that are not alike move as the certified method says; the drive's phase in lanes never runs away."""
+"""Batches of unequal beads move as the certified method says; the drive's phase in a batch never drifts."""
 
 from __future__ import annotations
 

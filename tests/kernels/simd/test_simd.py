@@ -1,4 +1,4 @@
-"""SIMD along the chain gives what the scalar method gives, law by law; lanes, the points that each scene gives alone."""
+"""SIMD along the chain agrees with the scalar method, law by law; a batch, with each of its scenes alone."""
 
 from __future__ import annotations
 
