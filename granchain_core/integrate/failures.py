@@ -7,7 +7,7 @@ in that step the failure has not spread yet, and its earliest stage names the be
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -15,14 +15,34 @@ from ..errors import Cancelled, NumbersFailed
 from ..kernels import status as outcome
 from ..kernels.forces.largest import new_log
 from ..kernels.rk4.run import run_samples
-from .methods import METHODS
-
-if TYPE_CHECKING:
-    from .engine import Engine
-
+from ..lower import Lowered
+from .methods import METHODS, Setting
+from .state import Counts
 
 #: State, slope and grid index at the start of a call.
 Before = tuple[np.ndarray, np.ndarray, int]
+
+
+class FailedEngine(Protocol):
+    """What has to be known of an engine to tell where its numbers failed; the engine says what each is."""
+
+    lowered: Lowered
+    setting: Setting
+    samples: int
+    counts: Counts
+    elapsed: float
+    grid_index: int
+    method: Any
+    h: float
+    drive: np.ndarray
+    y: np.ndarray
+    work: Any
+
+    def new_simd_workspace(self) -> Any:
+        """An empty workspace of steps by vectors."""
+
+    def empty_samples(self, rows: int) -> Any:
+        """Room for so many samples."""
 
 
 def not_finite(state: np.ndarray, row: int) -> int:
@@ -31,7 +51,7 @@ def not_finite(state: np.ndarray, row: int) -> int:
     return 0 if beads.all() else int(np.argmin(beads)) + 1
 
 
-def check_start(engine: Engine) -> None:
+def check_start(engine: FailedEngine) -> None:
     """Raise `NumbersFailed` if the state from which `engine` is to go on is not finite already."""
     bead = not_finite(engine.y, engine.lowered.row)
     if bead:
@@ -39,7 +59,7 @@ def check_start(engine: Engine) -> None:
         raise _failed(engine, bead, engine.elapsed, None if adaptive else engine.grid_index)
 
 
-def raise_for(engine: Engine, status: int, done: float, before: Before | None) -> None:
+def raise_for(engine: FailedEngine, status: int, done: float, before: Before | None) -> None:
     """Turn a kernel's status into an outcome a student understands.
 
     `done` is how many drive periods of the call are certain, `before` where it started, None where nobody kept that.
@@ -62,22 +82,22 @@ def raise_for(engine: Engine, status: int, done: float, before: Before | None) -
                         f"method rk4-split.", "chatter", time=periods * scene.period, cost=_cost(engine))
 
 
-def _when(engine: Engine, periods: float) -> str:
+def _when(engine: FailedEngine, periods: float) -> str:
     return f"at about {periods * engine.lowered.scene.period:.6g} s ({periods:.6g} drive periods)"
 
 
-def _failed(engine: Engine, bead: int, periods: float, step: int | None) -> NumbersFailed:
+def _failed(engine: FailedEngine, bead: int, periods: float, step: int | None) -> NumbersFailed:
     where = "" if step is None else f" in step {step} of its period"
     return NumbersFailed(f"The motion of bead {bead} stopped being a finite number {_when(engine, periods)}{where}; "
                          f"lower the damping or ask for a higher accuracy.", "not-finite", bead,
                          periods * engine.lowered.scene.period, step, _cost(engine))
 
 
-def _cost(engine: Engine) -> dict[str, int]:
+def _cost(engine: FailedEngine) -> dict[str, int]:
     return dict(zip(("steps", "rhs", "events", "rejected"), map(int, engine.counts.array), strict=True))
 
 
-def _located(engine: Engine, done: float, before: Before | None) -> tuple[int, int | None]:
+def _located(engine: FailedEngine, done: float, before: Before | None) -> tuple[int, int | None]:
     """The bead and the step in which the numbers failed; the step is None where steps are not counted."""
     row = engine.lowered.row
     if METHODS[engine.setting.method].adaptive:
@@ -89,7 +109,7 @@ def _located(engine: Engine, done: float, before: Before | None) -> tuple[int, i
     return _by_halves(engine, done, before)
 
 
-def _by_halves(engine: Engine, done: float, before: Before) -> tuple[int, int]:
+def _by_halves(engine: FailedEngine, done: float, before: Before) -> tuple[int, int]:
     """Go through the call again up to the last certain instant, then halve the steps behind it."""
     n, row = engine.method.steps_per_period, engine.lowered.row
     y, slope, first = before
@@ -110,7 +130,7 @@ def _by_halves(engine: Engine, done: float, before: Before) -> tuple[int, int]:
     return next((b for b in (not_finite(k, row) for k in (*slopes[1:], end)) if b), 1), low % n
 
 
-def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: int,
+def _steps(engine: FailedEngine, y: np.ndarray, slope: np.ndarray, first: int, last: int,
            vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """State and slopes after steps `first` to `last`, counted through periods, by vectors or by scalar code."""
     n, now = engine.method.steps_per_period, y.copy()
