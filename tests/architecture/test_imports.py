@@ -142,6 +142,10 @@ def test_every_folder_says_in_one_line_what_it_is_for() -> None:
 DOCUMENTED = {"_esm", "_stylesheets", "_handle_msg", "_send_msg"}
 
 
+#: Public, whatever their names begin with.
+_OF_NAMED_TUPLES = {"_fields", "_replace", "_asdict", "_make"}
+
+
 def private_uses(module: str) -> Iterator[str]:
     """Private attributes of other objects than a class's own, by a dot or by name."""
     for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
@@ -152,7 +156,7 @@ def private_uses(module: str) -> Iterator[str]:
             name = str(node.args[1].value)
         else:
             continue
-        if name.startswith("_") and not name.startswith("__"):
+        if name.startswith("_") and not name.startswith("__") and name not in _OF_NAMED_TUPLES:
             yield name
 
 
