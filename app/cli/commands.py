@@ -107,7 +107,7 @@ def scenes(arguments: argparse.Namespace) -> None:
 
 def warm(arguments: argparse.Namespace) -> None:
     """Compile and cache the kernels of all presets."""
-    from granchain_core.pieces import warm_presets
+    from granchain_core.warm import warm_presets
 
     for done in warm_presets():
         say("compiled", done)

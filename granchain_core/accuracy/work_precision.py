@@ -14,10 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..integrate import Engine, Setting
+from ..integrate import METHODS, Engine, Setting
 from ..integrate.engine import new_stop
 from ..scene import Scene
-from .compiled import METHODS_PIECE, compile_piece
 from .limit import Limited
 from .naive import Lesson, lesson
 from .scipy_methods import solve
@@ -165,7 +164,7 @@ def work_precision(scene: Scene, stop: np.ndarray | None = None, progress: Calla
 
     found = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
                           f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
-    compile_piece(scene, METHODS_PIECE)  # else a compiler would eat the time of a method's first row
+    compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # else a compiler would eat the time of a method's first row
     exact = _within("The reference", flag, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).moved
     advance()
     found.lesson = lesson(scene, flag)
@@ -183,6 +182,12 @@ def work_precision(scene: Scene, stop: np.ndarray | None = None, progress: Calla
         found.disagreement = problem.sentence
     advance()
     return found
+
+
+def compile_methods(scene: Scene) -> None:
+    """Compile every method's kernels for the scene's structure, or load them from the cache, by a short run."""
+    for name in METHODS:
+        Engine(scene, Setting(name, tolerance=1e-3), 2).record(2)
 
 
 def _row(scene: Scene, choice: Choice, exact: np.ndarray, stop: np.ndarray) -> Row:

@@ -7,10 +7,9 @@ import pytest
 
 from granchain_core import Cancelled, scene
 from granchain_core.accuracy import effect_cost as module
-from granchain_core.accuracy.compiled import COST_PIECE, METHODS_PIECE, compile_piece
 from granchain_core.accuracy.effect_cost import CODE, Variant, effect_cost
 from granchain_core.integrate.engine import new_stop
-from granchain_core.warm import is_warm
+from granchain_core.warm import ACCURACY, COST, compile_piece, is_warm
 
 CHAIN = scene("sec2")
 
@@ -61,7 +60,7 @@ def test_timing_stops_at_once_and_is_held_up() -> None:
     assert len(held) == 3
 
 
-@pytest.mark.parametrize("piece", [METHODS_PIECE, COST_PIECE])
+@pytest.mark.parametrize("piece", [ACCURACY, COST])
 def test_a_compiled_piece_is_known_as_that(piece: str) -> None:
     compile_piece(CHAIN, piece)
     assert is_warm(CHAIN, (piece,))

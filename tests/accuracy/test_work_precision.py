@@ -17,13 +17,13 @@ from app.cli import main
 from granchain_core import Cancelled, NumbersFailed, scene
 from granchain_core.accuracy import Row, WorkPrecision, cheapest, ways, work_precision
 from granchain_core.accuracy import work_precision as entry
-from granchain_core.accuracy.compiled import METHODS_PIECE, compile_piece
 from granchain_core.accuracy.limit import Limited
 from granchain_core.accuracy.naive import NATURAL_STEPS, lesson
 from granchain_core.accuracy.scipy_methods import solve
 from granchain_core.accuracy.ways import choices
 from granchain_core.integrate import METHODS
 from granchain_core.integrate.engine import new_stop
+from granchain_core.warm import ACCURACY, compile_piece
 
 SHORT = scene("sec2").evolve(N=2, f=2000.0)
 
@@ -147,7 +147,7 @@ def test_a_solver_of_scipy_stops_between_two_steps(solver: str, monkeypatch: pyt
 
 def test_a_measurement_is_cancelled_in_its_middle() -> None:
     """While rows of SciPy's solvers are measured, which take minutes with the rig."""
-    compile_piece(scene("rig"), METHODS_PIECE)
+    compile_piece(scene("rig"), ACCURACY)
     reached = threading.Event()
     cancelled_in_the_middle(lambda stop: entry(scene("rig"), stop, lambda part: reached.set() if part > 0.0 else None), reached)
 

@@ -18,13 +18,12 @@ LAYERS = {
     "result": {"scene", "kernels", "integrate", "steady.regime"},
     "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
     "run": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady"},
-    "warm": {"integrate", "kernels", "lower", "scene", "steady"},
-    "pieces": {"scene", "warm", "orbits", "observe", "accuracy"},
-    "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "warm"},
+    "warm": {"scene", "kernels", "lower", "integrate", "steady", "orbits", "observe", "accuracy"},
+    "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady"},
     "diagram": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits"},
-    "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
+    "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment"},
     "hard": {"errors", "laws", "scene", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
-    "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
+    "accuracy": {"errors", "scene", "kernels", "lower", "integrate"}, "experiment": {"errors", "scene"},
     "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", "version"},
 }
 
