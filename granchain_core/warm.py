@@ -20,7 +20,7 @@ from .accuracy.effect_cost import CODE, MOTION
 from .accuracy.work_precision import compile_methods
 from .integrate import Engine, Setting
 from .integrate.batch import Batch, can_share_batch, is_uniform, scaled_state
-from .integrate.engine import new_stop, rest
+from .integrate.engine import rest
 from .kernels.jit import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
 from .lower import lower
@@ -32,6 +32,7 @@ from .orbits.flow import StroboscopicMap
 from .scene import Scene, scene, scene_names
 from .scene.effects import effects_of
 from .steady.lyapunov import exponents, exponents_in_pairs
+from .stop import Stop
 
 #: Names of the pieces of one structure's kernels.
 CURVE, CERTIFIED, LIVE = "curve", "certified", "live"
@@ -65,12 +66,12 @@ def _curve(short: Scene) -> None:
         Engine(short, Setting("rk4-split"), 1).record(1)
     exponents(Engine(short, Setting("rk4-split"), 1), 1, 1)
     if can_share_batch(short):
-        block = Batch(short, new_stop())
+        block = Batch(short, Stop())
         lowered = lower(short)
         y = scaled_state(lowered, rest(short))
         block.put(0, lowered, y, 1, look=1)
         block.run()
-        exponents_in_pairs([(lowered, y)], 1, 1, new_stop())
+        exponents_in_pairs([(lowered, y)], 1, 1, Stop())
 
 
 def _orbit(short: Scene) -> None:

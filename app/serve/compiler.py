@@ -66,7 +66,7 @@ class Compiler:
             return True
         compilation = self.ask(scene, piece)
         while not wait([compilation], timeout=STOP_LOOK).done:
-            if stop[0]:
+            if stop:
                 return False
         compilation.result()
         return True

@@ -21,6 +21,7 @@ from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..lower import Lowered, lower
 from ..scene import Scene
+from ..stop import Stop
 from .engine import State
 
 #: A period that no lane reaches.
@@ -43,7 +44,7 @@ def is_uniform(lowered: Lowered) -> bool:
 class Batch:
     """Eight places for scenes of one structure and one N, run by one thread."""
 
-    def __init__(self, example: Scene, stop: np.ndarray) -> None:
+    def __init__(self, example: Scene, stop: Stop) -> None:
         lowered = lower(example)
         self.stop = stop
         n, slots = example.N, lowered.slots
@@ -111,7 +112,7 @@ class Batch:
 
     def run(self) -> tuple[int, bool]:
         """Run until a lane should be looked at; its number, and whether it is finite."""
-        status, lane = kernels.run_batch(self.lanes, self.state, self.stop)
+        status, lane = kernels.run_batch(self.lanes, self.state, self.stop.flag)
         if status == CANCELLED:
             raise Cancelled
         return int(lane), status == 0
@@ -119,7 +120,7 @@ class Batch:
     def run_pairs(self, start: float, periods: int) -> np.ndarray:
         """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (4, periods)."""
         growth = np.zeros((LANES // 2, periods))
-        status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop)
+        status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop.flag)
         if status == CANCELLED:
             raise Cancelled
         return growth if status == 0 else np.full_like(growth, np.nan)

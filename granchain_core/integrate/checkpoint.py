@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..scene import Scene
+from ..stop import Stop
 from .engine import Engine
 from .methods import METHODS, Setting
 
@@ -69,7 +70,7 @@ def checkpoint(engine: Engine) -> Checkpoint:
                       float(engine.elapsed))
 
 
-def resumed(scene: Scene, kept: Checkpoint, stop: np.ndarray | None = None) -> Engine:
+def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:
     """A new engine that goes on from a checkpoint of the same scene; `BadInput` for one of another scene."""
     if scene.digest != kept.digest:
         raise BadInput(f"This checkpoint belongs to scene {kept.digest}, not to {scene.digest} ({scene.name}); "

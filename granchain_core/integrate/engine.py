@@ -22,10 +22,11 @@ from ..kernels.samples import Samples
 from ..kernels.simd.vector import LANES, aligned
 from ..lower import Lowered, lower
 from ..scene import Scene
+from ..stop import Stop
 from .failures import check_start, raise_for
 from .flushed import flushed
 from .methods import METHODS, Setting
-from .state import Counts, State, new_stop, rest
+from .state import Counts, State, rest
 
 #: The certified method makes at least this many steps a period, so that the driver is never stepped over.
 _LEAST_STEPS = 16
@@ -42,19 +43,19 @@ _FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split, "rk4-naive": Rk4Nai
 class Engine:
     """Carries a state of `scene` through time; all arrays are allocated here, none in a kernel.
 
-    `samples` is the number of recorded samples a period. `stop` is a flag from `new_stop`. `lowered` may be given where
-    more than the scene's own chain moves.
+    `samples` is the number of recorded samples a period. `stop` ends a call from another thread. `lowered` may be
+    given where more than the scene's own chain moves.
     """
 
     def __init__(self, scene: Scene, setting: Setting, samples: int = 1, balance: bool = False,
-                 stop: np.ndarray | None = None, lowered: Lowered | None = None) -> None:
+                 stop: Stop | None = None, lowered: Lowered | None = None) -> None:
         self._in_uv = METHODS[setting.method].variables == "uv"
         self.lowered = (lower(scene, balance and not self._in_uv) if lowered is None else lowered).own()
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
         self.log = new_log()
-        self.stop = new_stop() if stop is None else stop
+        self.stop = Stop() if stop is None else stop
         self.y = np.zeros(self.lowered.size)
         self._adaptive = METHODS[setting.method].adaptive
         if self._adaptive:
@@ -193,11 +194,11 @@ class Engine:
         if self._adaptive:
             status, rows = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, work, self.clock,
                                          self.grid_index, count * every, self.grid, every, samples, self.log,
-                                         self.counts.array, self.stop)
+                                         self.counts.array, self.stop.flag)
         else:
             status, rows = run_samples(self.method, lo.slots, self.drive, self.h, self.y, work,
                                                 self.grid_index, every, samples, self.log, self.counts.array,
-                                                self.stop)
+                                                self.stop.flag)
         self.grid_index = (self.grid_index + count * every) % self.grid
         raise_for(self, status, max(0, rows - 1) / self.samples, self._before)
         self.elapsed += count / self.samples
@@ -253,7 +254,7 @@ class Engine:
             self._certified_periods(strobes, tops, watch)
         else:
             status, done = run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
-                                                strobes, self.log, tops, self.counts.array, self.stop)
+                                                strobes, self.log, tops, self.counts.array, self.stop.flag)
             raise_for(self, status, done, self._before)
         self.elapsed += count
         return strobes[:, :, 1:-1], tops
@@ -265,7 +266,7 @@ class Engine:
             next_period(self.log.peaks)
             status, _ = run_certified(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
                                   self.grid, self.grid, self.grid if watch else 0, keep, self.log,
-                                  self.counts.array, self.stop)
+                                  self.counts.array, self.stop.flag)
             self.raise_for(status, p)
             strobes[p + 1] = self.y[:row], self.work.k[0, :row]
             if watch:

@@ -15,6 +15,7 @@ from ..errors import Cancelled, NumbersFailed
 from ..kernels import status as outcome
 from ..kernels.forces.largest import new_log
 from ..kernels.rk4.run import run_samples
+from ..stop import Stop
 from .methods import METHODS
 
 if TYPE_CHECKING:
@@ -122,6 +123,6 @@ def _steps(engine: Engine, y: np.ndarray, slope: np.ndarray, first: int, last: i
     while j < last:
         stride = min(last, (j // n + 1) * n) - j
         run_samples(engine.method, engine.lowered.slots, engine.drive, engine.h, now, work, j % n, stride,
-                             kept, log, np.zeros(4, dtype=np.int64), np.zeros(1, dtype=np.uint8))
+                             kept, log, np.zeros(4, dtype=np.int64), Stop().flag)
         j += stride
     return now, work.k

@@ -1,4 +1,4 @@
-"""Where a chain is, what its motion cost, and the flag that stops a kernel."""
+"""Where a chain is, and what its motion cost."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..kernels.status import EVALUATIONS, EVENTS, STEPS
 from ..scene import Scene
 
 
@@ -44,17 +45,17 @@ class Counts:
     @property
     def steps(self) -> int:
         """Accepted steps."""
-        return int(self.array[0])
+        return int(self.array[STEPS])
 
     @property
     def rhs(self) -> int:
         """Evaluations of the equations of motion."""
-        return int(self.array[1])
+        return int(self.array[EVALUATIONS])
 
     @property
     def events(self) -> int:
         """Contact events located."""
-        return int(self.array[2])
+        return int(self.array[EVENTS])
 
 
 def rest(scene: Scene) -> State:
@@ -63,8 +64,3 @@ def rest(scene: Scene) -> State:
     for bead, v in scene.start_velocity:
         velocity[bead - 1] = v
     return State(np.zeros(scene.N), velocity)
-
-
-def new_stop() -> np.ndarray:
-    """A stop flag for kernels: one byte, polled; set it to 1 from any thread."""
-    return np.zeros(1, dtype=np.uint8)

@@ -20,6 +20,7 @@ from ..kernels.samples import Samples, first_not_finite
 from ..kernels.status import CANCELLED, NOT_FINITE
 from ..lower import lower
 from ..scene import Scene
+from ..stop import Stop
 from .record import ForceRecord
 
 #: More steps than this are refused: minutes of computing.
@@ -29,7 +30,7 @@ MOST_STEPS = 200_000_000
 class PushedChain:
     """A scene's chain without its driver, pushed by a record's force; `counts` adds up over its runs."""
 
-    def __init__(self, scene: Scene, record: ForceRecord, stop: np.ndarray, counts: Counts | None = None) -> None:
+    def __init__(self, scene: Scene, record: ForceRecord, stop: Stop, counts: Counts | None = None) -> None:
         driven = lower(scene)
         self.lowered = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
         self.record = record
@@ -68,7 +69,7 @@ class PushedChain:
         rows = len(self._spans) + 1
         samples = Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
         status, done = run_observed(Rk4Split(0), lo.slots, self._spans, self._pieces, substeps, y, stages,
-                                    np.zeros((0, 2)), samples, self._log, self.counts.array, self._stop)
+                                    np.zeros((0, 2)), samples, self._log, self.counts.array, self._stop.flag)
         if status == CANCELLED:
             raise Cancelled
         if status == NOT_FINITE:

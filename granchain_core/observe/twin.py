@@ -19,6 +19,7 @@ from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
 from ..steady.settle import settle
+from ..stop import Stop
 from .pair import Pair
 
 #: Distances between these are small enough to be linear and large enough not to be rounding.
@@ -109,7 +110,7 @@ class Twin:
 
 
 def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,
-         stop: np.ndarray | None = None) -> Twin:
+         stop: Stop | None = None) -> Twin:
     """Chain and observer of `scene` over `periods` drive periods, `samples` samples each, or until they are in step.
 
     The chain starts on its settled orbit. `perturbation` is the observer's first distance: a number moves its beads at

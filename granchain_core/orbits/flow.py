@@ -18,6 +18,7 @@ from ..kernels.saltation import VelocityTangent
 from ..kernels.simd.vector import LANES, aligned
 from ..lower import Lowered
 from ..scene import Scene
+from ..stop import Stop
 
 #: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
 TOLERANCE = 1e-13
@@ -53,7 +54,7 @@ class StroboscopicMap:
     Raises `BadInput` for a scene that cuts tension: it knows contacts that are open and contacts that press.
     """
 
-    def __init__(self, scene: Scene, periods: int, stop: np.ndarray | None = None) -> None:
+    def __init__(self, scene: Scene, periods: int, stop: Stop | None = None) -> None:
         refuse_cut(scene)
         self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), 1, stop=stop)
         self.periods = periods
@@ -114,7 +115,7 @@ class StroboscopicMap:
         engine.clock[0] = min(0.1, lo.period / STAGES)
         status, done, trace = run_flow(engine.method, lo.slots, lo.beta, lo.period, self.periods, engine.y,
                                        self._work, self._path, engine.clock, tangent, engine.counts.array,
-                                       engine.stop)
+                                       engine.stop.flag)
         engine.raise_for(status, done)
         return float(trace)
 

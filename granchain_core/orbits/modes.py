@@ -20,6 +20,7 @@ from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting
 from ..integrate.batch import scaled_state
 from ..steady.poincare import Section
+from ..stop import Stop
 from .flow import TOLERANCE, StroboscopicMap
 from .krylov import derivative_at
 from .orbit import DENSE, Orbit
@@ -45,7 +46,7 @@ class Mode:
     closure: float
 
 
-def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: np.ndarray | None = None) -> Mode:
+def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = None) -> Mode:
     """The mode of the multiplier at place `rank` by modulus; of a complex pair the one with positive imaginary part.
 
     Raises `BadInput` for a rank that is not there, `NumbersFailed`, `Cancelled`.
@@ -90,7 +91,7 @@ def leading_pairs(strobe: StroboscopicMap, x: np.ndarray, count: int) -> tuple[n
 
 
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
-             stop: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+             stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
     """δu (n·samples + 1, N) and δx (2N,) at the end that start as `direction`, as a central difference."""
     engine = Engine(orbit.scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop)
     row, ways = engine.lowered.row, []
@@ -102,7 +103,7 @@ def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, sa
     return (u_plus - u_minus) / (2.0 * size), (x_plus - x_minus) / (2.0 * size)
 
 
-def orbit_section(orbit: Orbit, samples: int = 48, stop: np.ndarray | None = None) -> Section:
+def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
     """The orbit's own n points at every phase, by the certified method: n periods of an unstable orbit stay on it."""
     strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
     engine = Engine(orbit.scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop)

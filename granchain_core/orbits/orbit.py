@@ -19,6 +19,7 @@ from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settle import settle
+from ..stop import Stop
 from .flow import Flow, StroboscopicMap, refuse_cut
 from .krylov import leading_multipliers, newton_step
 
@@ -90,7 +91,7 @@ class Orbit:
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
-                   stop: np.ndarray | None = None) -> Orbit:
+                   stop: Stop | None = None) -> Orbit:
     """A periodic orbit by Newton's method on the stroboscopic map, stable or not. Also called `orbit`.
 
     Its Floquet multipliers are the eigenvalues of the map's derivative, computed with the orbit (docs/orbits.md).
@@ -105,7 +106,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
         Newton's method begins here; in the steady state reached from rest if not given.
     observer : bool
         Whether to compute the multipliers of the observer, model (4) of Zhang et al. 2016.
-    stop : numpy.ndarray, shape (1,), optional
+    stop : Stop, optional
         A byte that another thread sets to 1 to end the computation.
 
     Returns

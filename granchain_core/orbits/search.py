@@ -16,6 +16,7 @@ from ..errors import NumbersFailed
 from ..integrate import State
 from ..integrate.batch import scaled_state
 from ..scene import Scene
+from ..stop import Stop
 from .flow import StroboscopicMap
 from .orbit import Orbit, periodic_orbit
 
@@ -28,7 +29,7 @@ _SAME = 1e-8
 
 
 def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
-                 stop: np.ndarray | None = None) -> Orbit:
+                 stop: Stop | None = None) -> Orbit:
     """An orbit of `period` drive periods near `start` or near where its section passes one.
 
     `strobes` (P, 2, N) are states at phase 0 in SI, the transient left out; P may be 0. Of an orbit that repeats sooner
@@ -72,7 +73,7 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
             return
 
 
-def least_period(orbit: Orbit, stop: np.ndarray | None = None) -> int:
+def least_period(orbit: Orbit, stop: Stop | None = None) -> int:
     """The smallest number of drive periods after which the orbit is back."""
     for shorter in range(1, orbit.period):
         if orbit.period % shorter:

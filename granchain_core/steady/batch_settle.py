@@ -20,6 +20,7 @@ from ..integrate.engine import rest
 from ..kernels.batch.run import LANES
 from ..lower import lower
 from ..scene import Scene
+from ..stop import Stop
 from .batch_job import BatchResult, Job, Start, check_coarse, draft_result, failed
 from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
 from .lyapunov import MOST_APART, exponents_in_pairs
@@ -41,7 +42,7 @@ _PAIRS = LANES // 2
 class _Lanes:
     """A block of lanes with the jobs in them, those waiting for a lane and those whose regime is in doubt."""
 
-    def __init__(self, first: Start, starts: Iterator[Start], stop: np.ndarray, draft: bool) -> None:
+    def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
         self.block = Batch(first.scene, stop)
         self.draft = draft
         self.stop = stop
@@ -130,7 +131,7 @@ class _Lanes:
                                  doubtful=unclear and job.affordable)
 
 
-def batch_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False) -> Iterator[BatchResult]:
+def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[BatchResult]:
     """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
 
     See `batch_states`.
@@ -138,7 +139,7 @@ def batch_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False
     return batch_states((Start(scene) for scene in scenes), stop, draft)
 
 
-def batch_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) -> Iterator[BatchResult]:
+def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[BatchResult]:
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
     What is found does not depend on which starts share the lanes, but for rounding. A draft ends with the coarse run
@@ -161,7 +162,7 @@ def batch_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False)
                 yield result
 
 
-def confirmed(result: BatchResult, stop: np.ndarray) -> BatchResult:
+def confirmed(result: BatchResult, stop: Stop) -> BatchResult:
     """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
     if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:

@@ -16,6 +16,7 @@ import numpy as np
 from ..integrate import Engine, Setting, State
 from ..integrate.engine import rest
 from ..scene import Scene
+from ..stop import Stop
 
 #: Most values of displacement that a section keeps: it holds fewer periods of a longer chain.
 MOST_VALUES = 1_500_000
@@ -58,7 +59,7 @@ def most_periods(scene: Scene, samples: int, wanted: int) -> int:
 
 
 def iter_section(scene: Scene, start: State | None, periods: int, samples: int = 48, seconds: float = 0.15,
-                 stop: np.ndarray | None = None) -> Iterator[Section]:
+                 stop: Stop | None = None) -> Iterator[Section]:
     """The section from `start` (None is the scene's own start), by the live method, ever longer: about every `seconds`.
 
     It ends after `most_periods` of `periods`. Raises `NumbersFailed`, `Cancelled`.

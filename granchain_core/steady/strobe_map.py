@@ -14,6 +14,7 @@ import numpy as np
 from ..errors import NumbersFailed
 from ..integrate import Engine, Setting
 from ..scene import Scene
+from ..stop import Stop
 
 #: Steps for one of the live method's: multipliers are then right to some 1e-6, next to a tangent flow's.
 _REFINE = 4.0
@@ -34,7 +35,7 @@ _HALVINGS = 5
 class StrobeMap:
     """x → the state n drive periods later, for scaled x = (u, w) at phase 0, (2N,)."""
 
-    def __init__(self, scene: Scene, periods: int, stop: np.ndarray | None = None, refine: float = _REFINE) -> None:
+    def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, refine: float = _REFINE) -> None:
         setting = Setting("dop853", tolerance=_TOLERANCE) if scene.cuts_tension else Setting("rk4-split", refine=refine)
         self.engine = Engine(scene, setting, 1, stop=stop)
         self.periods = periods

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from granchain_core import Cancelled, scene
 from granchain_core.accuracy import effect_cost as module
 from granchain_core.accuracy.effect_cost import CODE, Variant, effect_cost
-from granchain_core.integrate.engine import new_stop
+from granchain_core.stop import Stop
 from granchain_core.warm import ACCURACY, COST, compile_piece, is_warm
 
 CHAIN = scene("sec2")
@@ -22,7 +21,7 @@ class Clocked:
 
     made = 0
 
-    def __init__(self, variant: Variant, method: str, stop: np.ndarray) -> None:
+    def __init__(self, variant: Variant, method: str, stop: Stop) -> None:
         Clocked.made += 1
         self.own = 60.0 if variant.scene.dissipation == "none" else 90.0
         self.own += 12.0 if (Clocked.made - 1) // 2 % 2 else 0.0
@@ -49,11 +48,12 @@ def test_what_is_timed_are_the_steps_that_were_taken() -> None:
 
 
 def test_timing_stops_at_once_and_is_held_up() -> None:
-    stop, held = new_stop(), []
+    stop, held = Stop(), []
 
     def pause() -> None:
         held.append(1)
-        stop[0] = len(held) == 3
+        if len(held) == 3:
+            stop.set()
 
     with pytest.raises(Cancelled):
         effect_cost(Variant(CHAIN), Variant(CHAIN), CODE, stop, pause)

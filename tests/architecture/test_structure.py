@@ -12,18 +12,18 @@ CORE = sorted((ROOT / "granchain_core").rglob("*.py"))
 ALL = [*CORE, *sorted((ROOT / "app").rglob("*.py"))]
 #: Each layer with those it may import, besides itself; what stands higher knows what stands lower, never back.
 LAYERS = {
-    "errors": set(), "version": set(), "kernels": set(), "laws": {"kernels"}, "quantities": {"errors", "laws"},
+    "errors": set(), "stop": {"errors"}, "version": set(), "kernels": set(), "laws": {"kernels"}, "quantities": {"errors", "laws"},
     "scene": {"errors", "laws", "quantities"}, "lower": {"errors", "laws", "scene", "kernels"},
-    "integrate": {"errors", "scene", "kernels", "lower"},
+    "integrate": {"errors", "stop", "scene", "kernels", "lower"},
     "result": {"scene", "kernels", "integrate", "steady.regime"},
-    "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
-    "run": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady"},
-    "warm": {"scene", "kernels", "lower", "integrate", "steady", "orbits", "observe", "accuracy"},
-    "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady"},
-    "diagram": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits"},
-    "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment"},
+    "steady": {"errors", "stop", "scene", "kernels", "lower", "integrate", "result"},
+    "run": {"errors", "stop", "scene", "kernels", "lower", "integrate", "result", "steady"},
+    "warm": {"stop", "scene", "kernels", "lower", "integrate", "steady", "orbits", "observe", "accuracy"},
+    "orbits": {"errors", "stop", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady"},
+    "diagram": {"errors", "stop", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits"},
+    "observe": {"errors", "stop", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment"},
     "hard": {"errors", "laws", "scene", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
-    "accuracy": {"errors", "scene", "kernels", "lower", "integrate"}, "experiment": {"errors", "scene"},
+    "accuracy": {"errors", "stop", "scene", "kernels", "lower", "integrate"}, "experiment": {"errors", "scene"},
     "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", "version"},
 }
 

@@ -19,11 +19,11 @@ from granchain_core import BadInput, Cancelled, NumbersFailed, State, run, scene
 from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.integrate import Engine, Setting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
-from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits import periodic_orbit
 from granchain_core.run.budget import estimate
 from granchain_core.run.run import warnings
 from granchain_core.scene.validity import ONSET_OF_YIELD, YIELD_STRESS, peak_pressures
+from granchain_core.stop import Stop
 from granchain_core.store import load, save
 
 
@@ -34,8 +34,8 @@ def test_done_with_its_figures() -> None:
 
 
 def test_cancelled() -> None:
-    stop = new_stop()
-    stop[0] = 1
+    stop = Stop()
+    stop.set()
     with pytest.raises(Cancelled):
         run(scene("sec2"), periods=5, record=1, samples=8, stop=stop)
 

@@ -7,12 +7,12 @@ import pytest
 
 from granchain_core import resonance_curve, run, scene, settled
 from granchain_core.integrate.batch import scaled_state
-from granchain_core.integrate.engine import new_stop
 from granchain_core.lower import lower
 from granchain_core.orbits import periodic_orbit
 from granchain_core.steady.nearby_orbit import NearbyOrbit, orbit_of
 from granchain_core.steady.settle import settle
 from granchain_core.steady.strobe_map import StrobeMap, fixed_point, sizes
+from granchain_core.stop import Stop
 from tests.numerics.label_honesty import judged
 
 
@@ -31,7 +31,7 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
     exact = periodic_orbit(chain, period)
     x = StrobeMap(chain, period).inner(scaled_state(lower(chain), exact.state))
     shape = np.random.default_rng(1).standard_normal(len(x))
-    found = orbit_of(chain, period, x + offset * sizes(x) * shape, new_stop())
+    found = orbit_of(chain, period, x + offset * sizes(x) * shape, Stop())
     assert found is not None
     return found
 
@@ -57,7 +57,7 @@ def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
     """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period."""
     chain = scene("sec2").evolve(f=340.0)
     x = StrobeMap(chain, 4).inner(scaled_state(lower(chain), settled(chain).state))
-    found = orbit_of(chain, 4, x, new_stop())
+    found = orbit_of(chain, 4, x, Stop())
     assert found is not None and found.period == 1 and found.modulus == pytest.approx(0.361, abs=1e-3)
 
 

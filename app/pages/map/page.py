@@ -176,7 +176,7 @@ class MapTab:
         job.compile(scene, LIVE, CERTIFIED, CURVE, *(() if scene.cuts_tension else (ORBIT,)))
         job.say("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
-        found = attractors(scene, starts, stop=lambda: bool(job.stop[0]))
+        found = attractors(scene, starts, stop=job.stop)
         job.later(self._arrived, scene, found, [described(one) for one in found])
 
     def _say_search(self, status: str, sentence: str) -> None:
@@ -207,7 +207,7 @@ def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], Non
     """Cells as they come, a lot at a time."""
     rows: list[np.ndarray] = []
     last = time.monotonic()
-    for result in iter_diagram(grid, missing, lambda: bool(stop[0]), 1, pause):
+    for result in iter_diagram(grid, missing, stop, 1, pause):
         rows.append(cell_of(result))
         if time.monotonic() - last > CELLS_EVERY:
             yield np.array(rows)

@@ -19,6 +19,7 @@ from granchain_core.observe.twin import (
     share_of_translation,
 )
 from granchain_core.orbits import Orbit, periodic_orbit
+from granchain_core.stop import Stop
 
 from ...page.frames import samples_for
 
@@ -47,7 +48,7 @@ class Step:
 class ObserverRun:
     """One chain with one observer; `went_on` begins with the states of another run, as when a knob was turned."""
 
-    def __init__(self, scene: Scene, picture: Settled | None, stop: np.ndarray, went_on: ObserverRun | None) -> None:
+    def __init__(self, scene: Scene, picture: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
         self.scene = scene
         self.orbit: Orbit | None = None
         self.failure = ""

@@ -106,7 +106,7 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tup
         engine.start_scaled(x)
         record = OrbitRecord(np.zeros((room, 4)), np.zeros(PEAKS))
         status, done, found = record_orbit(engine.method, lo.slots, lo.beta, lo.period, equations.period, engine.y,
-                                           engine.work, engine.clock, record, engine.counts.array, engine.stop)
+                                           engine.work, engine.clock, record, engine.counts.array, engine.stop.flag)
         if status != FULL:
             engine.raise_for(status, done)
             return engine, record._replace(turns=record.turns[:found].copy())

@@ -10,8 +10,9 @@ import pytest
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch, scaled_state
-from granchain_core.integrate.engine import new_stop, rest
+from granchain_core.integrate.engine import rest
 from granchain_core.lower import lower
+from granchain_core.stop import Stop
 
 FREQUENCIES = (200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0)
 PERIODS = 3
@@ -37,7 +38,7 @@ def put(block: Batch, lane: int, one, refine: float) -> None:
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
     """Displacements at the strobes (8, PERIODS + 1, N) and largest forces of all periods (8, 3)."""
-    block = Batch(scenes[0], new_stop())
+    block = Batch(scenes[0], Stop())
     for lane, one in enumerate(scenes):
         put(block, lane, one, refine)
     strobes, tops = {}, {}
@@ -115,7 +116,7 @@ def test_a_lane_does_not_know_of_the_others(case):
     assert (np.roll(turned, 3, axis=0) == together).all()
     same = run_all([scenes[3]] * 8, 1.0)[0]
     assert (same == together[3]).all()
-    block = Batch(scenes[0], new_stop())
+    block = Batch(scenes[0], Stop())
     put(block, 5, scenes[3], 1.0)
     assert block.run() == (5, True)
     assert (block.strobes(5)[: PERIODS + 1, 0] == together[3]).all()
