@@ -18,7 +18,7 @@ import numpy as np
 
 from .accuracy.effect_cost import CODE, MOTION
 from .accuracy.work_precision import compile_methods
-from .integrate import Engine, Setting
+from .integrate import Engine, Setting, certified, live
 from .integrate.batch import Batch, can_share_batch, is_uniform, scaled_state
 from .integrate.engine import rest
 from .kernels.jit import CACHE_FOLDER
@@ -49,11 +49,11 @@ def structure(shown: Scene) -> str:
     return "+".join([*law, *effects, *beads]) + f", {width}"
 
 
-def _engine(method: str) -> Callable[[Scene], None]:
+def _engine(setting: Setting) -> Callable[[Scene], None]:
     """A piece: whole periods and samples with one method."""
 
     def compile_engine(short: Scene) -> None:
-        engine = Engine(short, Setting(method, tolerance=1e-3), 2)
+        engine = Engine(short, setting, 2)
         engine.periods(1)
         engine.record(2)
 
@@ -63,8 +63,8 @@ def _engine(method: str) -> Callable[[Scene], None]:
 def _curve(short: Scene) -> None:
     """A curve: the shadow for irregular motions, the batch where the scene can use it, located jumps."""
     if short.forces_jump:
-        Engine(short, Setting("rk4-split"), 1).record(1)
-    exponents(Engine(short, Setting("rk4-split"), 1), 1, 1)
+        Engine(short, live(), 1).record(1)
+    exponents(Engine(short, live(), 1), 1, 1)
     if can_share_batch(short):
         block = Batch(short, Stop())
         lowered = lower(short)
@@ -108,7 +108,7 @@ def _cost(balance: bool) -> Callable[[Scene], None]:
 
 #: Every piece with what compiles it by running it shortly, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
-    CURVE: _curve, CERTIFIED: _engine("dop853"), LIVE: _engine("rk4-split"),
+    CURVE: _curve, CERTIFIED: _engine(certified(1e-3)), LIVE: _engine(live()),
     ORBIT: _orbit, BRANCH: _branch, OBSERVER: _observer,
     ACCURACY: compile_methods, COST: _cost(balance=False), COST_ACCOUNT: _cost(balance=True),
 }

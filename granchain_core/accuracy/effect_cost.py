@@ -15,13 +15,14 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..integrate import Engine, Setting
+from ..integrate.methods import LIVE
 from ..scene import Scene
 from ..stop import Stop
 
 #: Pairs of freshly allocated chains, turns for each, and seconds one run of a turn should take. Where an array happens
 #: to lie in memory can make a step a fifth slower, and stays so: hence several chains. About half a second in all.
 _CHAINS, _TURNS, _RUN = 7, 7, 0.004
-CODE, MOTION = "rk4", "rk4-split"
+CODE, MOTION = "rk4", LIVE
 """The methods that show the cost of an effect's code, and its cost in the live picture's motion."""
 
 #: Drive periods that are run before, so that the chain is in motion.

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import METHODS, Engine, Setting
+from ..integrate import METHODS, Engine, Setting, certified
 from ..lower import Lowered
 from ..scene import Scene
 from ..stop import Stop
@@ -21,7 +21,7 @@ NATURAL_STEPS = (100, 200, 500, 1000, 2000)
 _SAMPLES = 100
 #: Drive periods from rest that are run, and the last ones that are shown.
 _RUN, _SHOWN = 10, 2
-_TRUE = Setting("dop853", tolerance=1e-11)
+_TRUE = certified(1e-11)
 
 
 @dataclass(frozen=True)

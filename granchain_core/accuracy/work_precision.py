@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..integrate import METHODS, Engine, Setting
+from ..integrate import METHODS, Engine, Setting, certified
 from ..scene import Scene
 from ..stop import Stop
 from .limit import Limited
@@ -24,7 +24,7 @@ from .ways import SCIPY, Choice, choices
 
 #: Periods from rest, and samples a period at which displacements are compared.
 PERIODS, SAMPLES = 10, 16
-_REFERENCE = Setting("dop853", tolerance=3e-15)
+_REFERENCE = certified(3e-15)
 _SECOND = ("DOP853", 1e-14)
 #: Seconds after which a setting is given up, and a reference.
 _ROW_LIMIT, _REFERENCE_LIMIT = 8.0, 60.0

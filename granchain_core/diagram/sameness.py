@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from ..errors import BadInput, NumbersFailed
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, Setting, State, certified, live
 from ..integrate.batch import scaled_state
 from ..lower import lower
 from ..orbits import Orbit, periodic_orbit
@@ -29,7 +29,7 @@ _REPEATS = 1e-6
 #: Sections that are so many times further apart than their own states are different; those of motions that are not
 #: periodic have so many states, after as many periods more.
 _APART, _SECTION = 3.0, 400
-LIVE, _CERTIFIED = Setting("rk4-split"), Setting("dop853", tolerance=1e-11)
+LIVE, _CERTIFIED = live(), certified(1e-11)
 
 
 @dataclass(eq=False)

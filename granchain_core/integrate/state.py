@@ -43,6 +43,11 @@ class Counts:
     array: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
 
     @property
+    def by_name(self) -> dict[str, int]:
+        """All four."""
+        return dict(zip(("steps", "rhs", "events", "rejected"), map(int, self.array), strict=True))
+
+    @property
     def steps(self) -> int:
         """Accepted steps."""
         return int(self.array[STEPS])

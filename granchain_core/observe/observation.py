@@ -19,6 +19,7 @@ import numpy as np
 from ..errors import BadInput
 from ..integrate import State
 from ..integrate.engine import rest
+from ..integrate.methods import LIVE
 from ..result import Cost
 from ..scene import Scene
 from ..stop import Stop
@@ -210,7 +211,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         integration_error=integration,
         interpolation_error=_UNEVEN * _difference(now.displacement[kept], coarse.displacement),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",
-        cost=Cost.of(clock.perf_counter() - began, chain.counts, "rk4-split"),
+        cost=Cost.of(clock.perf_counter() - began, chain.counts, LIVE),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, State, certified
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import FAR
 from ..kernels.effects.given_force import ObserverCoupling
@@ -49,7 +49,7 @@ class Pair:
 
     def __init__(self, scene: Scene, samples: int, stop: Stop | None = None) -> None:
         self.scene = scene
-        self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop,
+        self.engine = Engine(scene, certified(TOLERANCE), samples, stop=stop,
                              lowered=lower_pair(scene))
 
     def start(self, chain: State, observer: State) -> None:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import State
+from ..integrate.methods import CERTIFIED
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
@@ -140,7 +141,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
         observer_output_force=force[:, -1] * scales.force, distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
         translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
-        cost=Cost.of(time.perf_counter() - began, pair.engine.counts, "dop853"),
+        cost=Cost.of(time.perf_counter() - began, pair.engine.counts, CERTIFIED),
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import Engine, Setting
+from ..integrate import Engine, certified
 from ..kernels.dop853.event_step import Path
 from ..kernels.dop853.flow import run_flow
 from ..kernels.dop853.tableau import STAGES
@@ -56,13 +56,13 @@ class StroboscopicMap:
 
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None) -> None:
         refuse_cut(scene)
-        self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), 1, stop=stop)
+        self.engine = Engine(scene, certified(TOLERANCE), 1, stop=stop)
         self.periods = periods
         row = self.engine.lowered.row
         self._path = Path(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
                           np.zeros((_EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))
-        held = self.engine.work.forces._replace(held=Held(self._path.closed))
-        self._work = self.engine.work._replace(forces=held)
+        held = self.engine.stepper.work.forces._replace(held=Held(self._path.closed))
+        self._work = self.engine.stepper.work._replace(forces=held)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
@@ -112,9 +112,9 @@ class StroboscopicMap:
         engine = self.engine
         engine.start_scaled(x)
         lo = engine.lowered
-        engine.clock[0] = min(0.1, lo.period / STAGES)
-        status, done, trace = run_flow(engine.method, lo.slots, lo.beta, lo.period, self.periods, engine.y,
-                                       self._work, self._path, engine.clock, tangent, engine.counts.array,
+        engine.stepper.clock[0] = min(0.1, lo.period / STAGES)
+        status, done, trace = run_flow(engine.stepper.method, lo.slots, lo.beta, lo.period, self.periods, engine.y,
+                                       self._work, self._path, engine.stepper.clock, tangent, engine.counts.array,
                                        engine.stop.flag)
         engine.raise_for(status, done)
         return float(trace)

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
 from ..errors import BadInput, NumbersFailed
-from ..integrate import Engine, Setting
+from ..integrate import Engine, certified
 from ..integrate.batch import scaled_state
 from ..steady.poincare import Section
 from ..stop import Stop
@@ -93,7 +93,7 @@ def leading_pairs(strobe: StroboscopicMap, x: np.ndarray, count: int) -> tuple[n
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
              stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
     """δu (n·samples + 1, N) and δx (2N,) at the end that start as `direction`, as a central difference."""
-    engine = Engine(orbit.scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop)
+    engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
     row, ways = engine.lowered.row, []
     for sign in (1.0, -1.0):
         engine.start_scaled(x + sign * size * direction)
@@ -106,7 +106,7 @@ def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, sa
 def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
     """The orbit's own n points at every phase, by the certified method: n periods of an unstable orbit stay on it."""
     strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
-    engine = Engine(orbit.scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop)
+    engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
     engine.start_scaled(strobe.inner(scaled_state(strobe.engine.lowered, orbit.state)))
     record, scales = engine.record(orbit.period * samples), engine.lowered.scales
     shape = (orbit.period, samples, -1)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, State, live
 from ..integrate.engine import rest
 from ..result import Cost, Jumps, Run, run_from
 from ..scene import Scene
@@ -62,7 +62,7 @@ class LiveChain:
             self._index = round(start.phase * samples) % samples
 
     def _new_engine(self, scene: Scene, state: State) -> Engine:
-        engine = Engine(scene, Setting("rk4-split", refine=2), self.samples)
+        engine = Engine(scene, live(2), self.samples)
         engine.start(state)
         return engine
 

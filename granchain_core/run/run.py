@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import Engine, Setting, State, method_for
+from ..integrate import Engine, Setting, State, live, method_for
 from ..integrate.engine import Counts, rest
 from ..integrate.methods import jump_errors, setting_of, typical_error
 from ..kernels.samples import Samples
@@ -218,7 +218,7 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime
     regime = replace(find_period(attempt.strobes, rounding=min(1e-6, tolerance)), periods_run=periods)
     if periods < _ENOUGH or attempt.engine.grid_index != 0:
         return regime
-    engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
+    engine = Engine(scene, live(), 1, stop=stop)
     engine.start(attempt.engine.state)
     return as_it_stands(engine, attempt.strobes, regime)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, State, live
 from ..integrate.batch import Batch, state_of
 from ..integrate.engine import rest
 from ..integrate.methods import AT_A_JUMP, jump_errors
@@ -18,7 +18,7 @@ from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
 
 #: How the largest forces on an orbit are found where they jump: finer than the lanes that found the orbit.
-_LOCATED = Setting("rk4-split", refine=8)
+_LOCATED = live(8)
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
 

@@ -65,8 +65,10 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     growth = np.zeros((blocks + 1) * block)
     strobes = np.zeros((len(growth), 2, row))
     # step by step, whatever vectors the engine has: one kernel for chains of every length
-    one, other = engine.work._replace(along=None), shadow.work._replace(along=None)
-    status, done = run_two_trajectories(engine.method, engine.lowered.slots, engine.drive, engine.h, engine.y, shadow.y,
-                                one, other, growth, strobes, new_log(), engine.counts.array, engine.stop.flag)
+    stepper = engine.stepper
+    one, other = stepper.work._replace(along=None), shadow.stepper.work._replace(along=None)
+    status, done = run_two_trajectories(stepper.method, engine.lowered.slots, stepper.drive, stepper.h, engine.y,
+                                        shadow.y, one, other, growth, strobes, new_log(), engine.counts.array,
+                                        engine.stop.flag)
     engine.raise_for(status, done)
     return growth[block:].reshape(blocks, block).mean(axis=1), strobes[:, :, 1:-1]

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, State, live
 from ..integrate.engine import rest
 from ..scene import Scene
 from ..stop import Stop
@@ -64,7 +64,7 @@ def iter_section(scene: Scene, start: State | None, periods: int, samples: int =
 
     It ends after `most_periods` of `periods`. Raises `NumbersFailed`, `Cancelled`.
     """
-    engine = Engine(scene, Setting("rk4-split"), samples, stop=stop)
+    engine = Engine(scene, live(), samples, stop=stop)
     engine.start(start if start is not None else rest(scene))
     most = most_periods(scene, samples, periods)
     displacement = np.zeros((most, samples, scene.N), dtype=np.float32)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, method_for
+from ..integrate import Engine, Setting, State, live, method_for
 from ..integrate.engine import rest
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, Cost, Run, relative_changes, run_from
@@ -75,7 +75,7 @@ class Settling:
 
     def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
         self.scene = scene
-        self.engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
+        self.engine = Engine(scene, live(), 1, stop=stop)
         self.stop = self.engine.stop
         self.engine.start(start if start is not None else rest(scene))
         self._steps = self.engine.grid

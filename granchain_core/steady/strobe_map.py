@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import Engine, Setting
+from ..integrate import Engine, certified, live
 from ..scene import Scene
 from ..stop import Stop
 
@@ -36,7 +36,7 @@ class StrobeMap:
     """x → the state n drive periods later, for scaled x = (u, w) at phase 0, (2N,)."""
 
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, refine: float = _REFINE) -> None:
-        setting = Setting("dop853", tolerance=_TOLERANCE) if scene.cuts_tension else Setting("rk4-split", refine=refine)
+        setting = certified(_TOLERANCE) if scene.cuts_tension else live(refine)
         self.engine = Engine(scene, setting, 1, stop=stop)
         self.periods = periods
 

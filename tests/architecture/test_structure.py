@@ -24,7 +24,7 @@ LAYERS = {
     "observe": {"errors", "stop", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment"},
     "hard": {"errors", "laws", "scene", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
     "accuracy": {"errors", "stop", "scene", "kernels", "lower", "integrate"}, "experiment": {"errors", "scene"},
-    "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", "version"},
+    "store": {"errors", "integrate", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", "version"},
 }
 
 

@@ -103,7 +103,7 @@ def test_a_step_in_the_middle_of_a_long_call_is_found_again() -> None:
     engine = Engine(scene("sec2"), Setting("rk4-split"), 1)
     engine.periods(3)
     step = engine.grid // 3
-    engine.drive[2 * step + 2] = np.nan
+    engine.stepper.drive[2 * step + 2] = np.nan
     with pytest.raises(NumbersFailed) as caught:
         engine.periods(4)
     assert (caught.value.bead, caught.value.step) == (1, step)
@@ -114,7 +114,7 @@ def test_step_too_small() -> None:
     engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
     engine.record(1)
     engine.lowered.slots.chain.stiffness[:] = 1e30
-    engine.clock[0] = 1e-14
+    engine.stepper.clock[0] = 1e-14
     with pytest.raises(NumbersFailed, match="shrank to nothing") as caught:
         engine.record(8)
     assert caught.value.status == "step-too-small"

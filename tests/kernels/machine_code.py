@@ -75,8 +75,9 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     """Types of the arguments of both kernels for section 2's chain with these knobs."""
     chain = scene("sec2").evolve(**knobs)
     e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, Stop())
-    one = (e.work.along, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0], e.work.forces.e, e.log,
-           e.counts.array, e.stop.flag)
+    stepper = e.stepper
+    one = (stepper.work.along, e.lowered.slots, stepper.drive, 0, 4, 0.01, stepper.h, e.y, stepper.work.k[0],
+           stepper.work.forces.e, e.log, e.counts.array, e.stop.flag)
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
 
 

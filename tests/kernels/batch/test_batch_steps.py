@@ -57,7 +57,7 @@ def true(case: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     engines = [Engine(one, Setting("rk4-split", refine=32), 1) for one in scenes_of(case)]
     found = [engine.periods(PERIODS) for engine in engines]
     return (np.array([s[:, 0] for s, _ in found]), np.array([t.max(axis=0) for _, t in found]),
-            np.array([engine.work.forces.e[-1] for engine in engines]))
+            np.array([engine.stepper.work.forces.e[-1] for engine in engines]))
 
 
 @functools.cache
