@@ -22,7 +22,6 @@ from .version import __version__
 if TYPE_CHECKING:
     from .accuracy import WorkPrecision, work_precision
     from .diagram import Attractor, Diagram, attractors, diagram
-    from .integrate import State
     from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from .result import Cost, Run
     from .run.live import LiveChain
     from .run.run import run
+    from .state import State
     from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
     from .steady.regime import Regime
     from .steady.settle import Settled, settled, settling
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 #: Public names by module. They are imported when they are first asked for, so that `import granchain_core` is quick.
 _MODULES = {
-    "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "integrate.state": ("State",),
+    "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
     "stop": ("Stop",),
     "steady.settle": ("Settled", "settled", "settling"), "steady.regime": ("Regime",),
     "steady.curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),

@@ -19,8 +19,7 @@ import numpy as np
 from .accuracy.effect_cost import CODE, MOTION
 from .accuracy.work_precision import compile_methods
 from .integrate import Engine, Setting, certified, live
-from .integrate.batch import Batch, can_share_batch, is_uniform, scaled_state
-from .integrate.engine import rest
+from .integrate.batch import Batch, can_share_batch, is_uniform
 from .kernels.jit import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
 from .lower import lower
@@ -31,6 +30,7 @@ from .orbits.branch.point import record_along
 from .orbits.flow import StroboscopicMap
 from .scene import Scene, scene, scene_names
 from .scene.effects import effects_of
+from .state import rest
 from .steady.lyapunov import exponents, exponents_in_pairs
 from .stop import Stop
 
@@ -68,7 +68,7 @@ def _curve(short: Scene) -> None:
     if can_share_batch(short):
         block = Batch(short, Stop())
         lowered = lower(short)
-        y = scaled_state(lowered, rest(short))
+        y = lowered.scaled(rest(short))
         block.put(0, lowered, y, 1, look=1)
         block.run()
         exponents_in_pairs([(lowered, y)], 1, 1, Stop())

@@ -10,12 +10,12 @@ from scipy.integrate import DOP853, LSODA, RK45
 from scipy.optimize import brentq
 
 from ..errors import Cancelled, NumbersFailed
-from ..integrate.batch import scaled_state
-from ..integrate.engine import Counts, rest
+from ..integrate import Counts
 from ..kernels.dop853.step import evaluate
 from ..kernels.status import EVALUATIONS
 from ..lower import Lowered, lower
 from ..scene import Scene
+from ..state import rest
 from ..stop import Stop
 
 
@@ -92,7 +92,7 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
     """
     lowered = lower(scene)
     motion = Motion(lowered, Stop() if stop is None else stop)
-    inner = motion.inner(scaled_state(lowered, rest(scene)))
+    inner = motion.inner(lowered.scaled(rest(scene)))
     out = np.full((periods * samples + 1, scene.N), np.nan)
     out[0] = inner[: scene.N]
     for p in range(periods):

@@ -14,10 +14,10 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, State
-from ..integrate.engine import rest
 from ..orbits import Orbit
 from ..result import ForceErrors
 from ..scene import Scene
+from ..state import rest
 from ..steady.batch_job import BatchResult, Start
 from ..steady.regime import Regime
 from ..stop import Stop

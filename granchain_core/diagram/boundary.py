@@ -23,7 +23,6 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
 from ..integrate import State
-from ..integrate.batch import scaled_state
 from ..orbits.flow import StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene
@@ -145,7 +144,7 @@ def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: i
     _check(scene, kind, x, y)
     branch = _Branch(scene, x, float(scene.knobs[x]), period, stop)
     strobe = StroboscopicMap(scene, period, stop)
-    inner = state if isinstance(state, np.ndarray) else strobe.inner(scaled_state(strobe.engine.lowered, state))
+    inner = state if isinstance(state, np.ndarray) else strobe.inner(strobe.engine.lowered.scaled(state))
     along = np.append(np.zeros(len(inner)), 1.0)
     return _nearest(branch, kind, np.append(inner, 1.0), along, y)
 

@@ -16,7 +16,6 @@ from scipy.spatial.distance import cdist
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting, State, certified, live
-from ..integrate.batch import scaled_state
 from ..lower import lower
 from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
@@ -71,10 +70,10 @@ def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.n
     """The next `periods` stroboscopic states of displacement and w, scaled, (periods, 2, N)."""
     engine, lowered = Engine(scene, setting, 1), lower(scene)
     engine.start(state)
-    rows = [scaled_state(lowered, state)]
+    rows = [lowered.scaled(state)]
     for _ in range(periods - 1):
         engine.periods(1, watch=False)
-        rows.append(scaled_state(lowered, engine.state))
+        rows.append(lowered.scaled(engine.state))
     return np.array(rows).reshape(periods, 2, -1)[:, :, 1:-1]
 
 

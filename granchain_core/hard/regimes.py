@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine, certified
-from ..integrate.batch import scaled_state
 from ..observe.drift import observer_drift
 from ..orbits import periodic_orbit
 from ..orbits.flow import StroboscopicMap
@@ -214,7 +213,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
     """
     orbit = periodic_orbit(scene(base), observer=True)
     strobe = StroboscopicMap(orbit.scene, orbit.period)
-    start = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    start = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
     derivative, beads = strobe(start, observer=True).derivative, orbit.scene.N
     difference, found = np.concatenate([np.full(beads, 1e-6), np.zeros(beads)]), np.empty(count)
     for i in range(count):

@@ -41,9 +41,8 @@ class Adaptive:
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: errors are measured on its scale."""
-        row = self.lowered.row
-        self.work.scale[0] = max(_LEAST_SCALE, float(np.abs(y[1 : row - 1]).max()))
-        self.work.scale[1] = max(_LEAST_SCALE, float(np.abs(y[row + 1 : 2 * row - 1]).max()))
+        for i, values in enumerate(self.lowered.rows(y)):
+            self.work.scale[i] = max(_LEAST_SCALE, float(np.abs(values).max()))
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +11,6 @@ from ..kernels.batch import run as kernels
 from ..kernels.batch.period_end import FINE, FORCES, FORGET, REMEMBERED
 from ..kernels.batch.run import LANES
 from ..kernels.effects.unequal import Unequal
-from ..kernels.equations.motion import place
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.simd.vector import aligned
@@ -22,7 +20,6 @@ from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..lower import Lowered, lower
 from ..scene import Scene
 from ..stop import Stop
-from .engine import State
 
 #: A period that no lane reaches.
 NEVER = int(np.iinfo(np.int64).max)
@@ -147,21 +144,3 @@ class Batch:
         run = int(self.state.periods[lane])
         places = np.arange(max(1, run - min(periods, REMEMBERED) + 1), run + 1) % REMEMBERED
         return self.state.tops[lane, places].max(axis=0)
-
-
-def state_of(lowered: Lowered, y: np.ndarray) -> State:
-    """The state in SI of a scaled (u, w) array at phase 0."""
-    slope, row, scales = np.zeros_like(y), lowered.row, lowered.scales
-    place(lowered.slots, 0.0, y.copy(), slope, lowered.forces(), False)
-    return State(y[1 : row - 1] * scales.length, slope[1 : row - 1] * scales.velocity)
-
-
-def scaled_state(lowered: Lowered, state: State) -> np.ndarray:
-    """The scaled (u, w) array of a state at phase 0."""
-    row, scales = lowered.row, lowered.scales
-    y: Any = np.zeros(2 * row)
-    y[1 : row - 1] = state.displacement / scales.length
-    y[row + 1 : 2 * row - 1] = state.velocity / scales.velocity
-    place(lowered.slots, 0.0, y, np.zeros_like(y), lowered.forces(), True)
-    y[0] = 0.0
-    return y

@@ -12,11 +12,12 @@ from ..kernels.samples import Samples
 from ..kernels.status import DONE, NOT_FINITE
 from ..lower import Lowered, lower
 from ..scene import Scene
+from ..state import State, rest
 from ..stop import Stop
+from .counts import Counts
 from .failure import Failure, not_finite
 from .flushed import flushed
 from .methods import METHODS, Setting
-from .state import Counts, State, rest
 from .stepper import Output, Start, empty_samples
 
 #: Places for closings of a contact in one period; one that bounces more often does so ever more gently.
@@ -59,22 +60,21 @@ class Engine:
 
     def start(self, state: State) -> None:
         """Put the chain into `state`; the energy account starts at zero."""
-        lo, row = self.lowered, self.lowered.row
+        scales = self.lowered.scales
         self.grid_index = round(state.phase * self.grid) % self.grid
-        self.y[:] = 0.0
-        self.y[1 : row - 1] = state.displacement / lo.scales.length
-        self.y[row + 1 : 2 * row - 1] = state.velocity / lo.scales.velocity
-        self._begin(from_velocity=True)
+        self._begin(state.displacement / scales.length, state.velocity / scales.velocity, from_velocity=True)
 
     def start_scaled(self, x: np.ndarray) -> None:
         """Put the chain into a scaled state (2N,) of displacements, then w, at phase 0."""
-        row, n = self.lowered.row, self.lowered.beads
+        n = self.lowered.beads
         self.grid_index = 0
-        self.y[:] = 0.0
-        self.y[1 : row - 1], self.y[row + 1 : 2 * row - 1] = x[:n], x[n:]
-        self._begin(from_velocity=False)
+        self._begin(x[:n], x[n:], from_velocity=False)
 
-    def _begin(self, from_velocity: bool) -> None:
+    def _begin(self, displacement: np.ndarray, other: np.ndarray, from_velocity: bool) -> None:
+        """Start from scaled displacements and velocities, or w."""
+        self.y[:] = 0.0
+        first, second = self.lowered.rows(self.y)
+        first[:], second[:] = displacement, other
         self.elapsed = 0.0
         self.place(from_velocity)
         self.stepper.prepare(self.y)
@@ -89,9 +89,9 @@ class Engine:
     @property
     def state(self) -> State:
         """The present state in SI."""
-        lo, row = self.lowered, self.lowered.row
+        lo = self.lowered
         self.place(from_velocity=False)
-        return State(self.y[1 : row - 1] * lo.scales.length, self.stepper.work.k[0, 1 : row - 1] * lo.scales.velocity,
+        return State(lo.rows(self.y)[0] * lo.scales.length, lo.rows(self.stepper.work.k[0])[0] * lo.scales.velocity,
                      self.grid_index / self.grid)
 
     @property

@@ -18,10 +18,10 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import State
-from ..integrate.engine import rest
 from ..integrate.methods import LIVE
 from ..result import Cost
 from ..scene import Scene
+from ..state import rest
 from ..stop import Stop
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared

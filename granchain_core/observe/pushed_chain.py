@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..integrate import State
-from ..integrate.engine import Counts
+from ..integrate import Counts, State
 from ..kernels.effects.given_force import Sampled
 from ..kernels.equations.motion import place
 from ..kernels.forces.largest import new_log
@@ -59,8 +58,8 @@ class PushedChain:
             raise BadInput(f"The record needs {float(substeps.sum()):.1e} steps; at most {MOST_STEPS:.0e} are allowed: "
                            "give a shorter record or ask for less accuracy.")
         y = np.zeros(lo.size)
-        y[1 : row - 1] = start.displacement / lo.scales.length
-        y[row + 1 : 2 * row - 1] = start.velocity / lo.scales.velocity
+        displacement, velocity = lo.rows(y)
+        displacement[:], velocity[:] = start.displacement / lo.scales.length, start.velocity / lo.scales.velocity
         stages = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), np.zeros((ENDS, row - 1)),
                         lo.forces(), None)
         lo.slots.driver.piece[:] = self._pieces[0]

@@ -66,8 +66,7 @@ class StroboscopicMap:
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
-        row = self.engine.lowered.row
-        return np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
+        return self.engine.lowered.beads_of(y)
 
     def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
         """The flow from x with the derivative, or its product with the columns of `directions` (2N, columns).

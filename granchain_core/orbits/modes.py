@@ -18,7 +18,6 @@ from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, certified
-from ..integrate.batch import scaled_state
 from ..steady.poincare import Section
 from ..stop import Stop
 from .flow import TOLERANCE, StroboscopicMap
@@ -55,7 +54,7 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
         raise BadInput(f"mode {rank} is outside 0 to {len(orbit.multipliers) - 1}; the nearest valid value is "
                        f"{min(max(rank, 0), len(orbit.multipliers) - 1)}.")
     strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
     value, vector = _eigenpair(strobe, x, rank)
     if value.imag < 0.0:
         value, vector = value.conjugate(), vector.conj()
@@ -94,11 +93,11 @@ def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, sa
              stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
     """δu (n·samples + 1, N) and δx (2N,) at the end that start as `direction`, as a central difference."""
     engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
-    row, ways = engine.lowered.row, []
+    ways = []
     for sign in (1.0, -1.0):
         engine.start_scaled(x + sign * size * direction)
         record = engine.record(orbit.period * samples)
-        ways.append((record.displacement, np.concatenate([engine.y[1 : row - 1], engine.y[row + 1 : 2 * row - 1]])))
+        ways.append((record.displacement, engine.lowered.beads_of(engine.y)))
     (u_plus, x_plus), (u_minus, x_minus) = ways
     return (u_plus - u_minus) / (2.0 * size), (x_plus - x_minus) / (2.0 * size)
 
@@ -107,7 +106,7 @@ def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> 
     """The orbit's own n points at every phase, by the certified method: n periods of an unstable orbit stay on it."""
     strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
     engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
-    engine.start_scaled(strobe.inner(scaled_state(strobe.engine.lowered, orbit.state)))
+    engine.start_scaled(strobe.inner(strobe.engine.lowered.scaled(orbit.state)))
     record, scales = engine.record(orbit.period * samples), engine.lowered.scales
     shape = (orbit.period, samples, -1)
     return Section(orbit.scene, record.displacement[:-1].reshape(shape) * scales.length,

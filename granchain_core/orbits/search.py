@@ -14,7 +14,6 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import State
-from ..integrate.batch import scaled_state
 from ..scene import Scene
 from ..stop import Stop
 from .flow import StroboscopicMap
@@ -79,7 +78,7 @@ def least_period(orbit: Orbit, stop: Stop | None = None) -> int:
         if orbit.period % shorter:
             continue
         strobe = StroboscopicMap(orbit.scene, shorter, stop)
-        x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+        x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
         end = strobe(x, directions=np.zeros((len(x), 0))).end
         if np.abs(end - x).max() < _SAME * np.abs(x).max():
             return shorter

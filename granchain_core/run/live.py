@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..integrate import Engine, State, live
-from ..integrate.engine import rest
 from ..result import Cost, Jumps, Run, run_from
 from ..scene import Scene
+from ..state import rest
 from ..steady.regime import Regime
 
-_NOT_ASKED = Regime("unsettled", None, None, None, 0)
+_NOT_ASKED = Regime.unsettled(0)
 
 
 class LiveChain:

@@ -14,13 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import Engine, Setting, State, live, method_for
-from ..integrate.engine import Counts, rest
+from ..integrate import Counts, Engine, Setting, State, live, method_for
 from ..integrate.methods import jump_errors, setting_of, typical_error
 from ..kernels.samples import Samples
 from ..result import Cost, Run, relative_changes, residual, run_from
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
+from ..state import rest
 from ..steady.decide import as_it_stands
 from ..steady.regime import Regime, find_period
 from ..stop import Stop

@@ -15,11 +15,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate.batch import NEVER, Batch, scaled_state, state_of
-from ..integrate.engine import rest
+from ..integrate.batch import NEVER, Batch
 from ..kernels.batch.run import LANES
 from ..lower import lower
 from ..scene import Scene
+from ..state import rest
 from ..stop import Stop
 from .batch_job import BatchResult, Job, Start, check_coarse, draft_result, failed
 from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
@@ -127,7 +127,7 @@ class _Lanes:
                 self.waiting.append(job)
             else:
                 unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
-                yield BatchResult(job.scene, job.tops, regime, None, state_of(job.lowered, y), number=job.number,
+                yield BatchResult(job.scene, job.tops, regime, None, job.lowered.unscaled(y), number=job.number,
                                  doubtful=unclear and job.affordable)
 
 
@@ -167,7 +167,7 @@ def confirmed(result: BatchResult, stop: Stop) -> BatchResult:
     regime, scene = result.regime, result.scene
     if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:
         return result
-    y = scaled_state(lower(scene), result.state).reshape(2, -1)
+    y = lower(scene).scaled(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
     return result if largest < _SURE else replace(result, doubtful=True)
 
@@ -179,7 +179,7 @@ def _steps(job: Job) -> int:
 def _new_job(start: Start) -> Job:
     lowered = lower(start.scene)
     state = rest(start.scene) if start.state is None else start.state
-    return Job(start.scene, lowered, scaled_state(lowered, state), number=start.number)
+    return Job(start.scene, lowered, lowered.scaled(state), number=start.number)
 
 
 def _job_or_none(starts: Iterator[Start]) -> Job | None:

@@ -156,7 +156,7 @@ def safe_point(scene: Scene, start: State | None, stop: Stop) -> CurvePoint:
     try:
         return curve_point(scene, start, stop)
     except NumbersFailed as failed:
-        nothing = Regime("unsettled", None, None, None, 0)
+        nothing = Regime.unsettled(0)
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
         return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, ForceErrors(), start or resting, failed.sentence,
                           failed.status)

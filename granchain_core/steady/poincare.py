@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..integrate import Engine, State, live
-from ..integrate.engine import rest
 from ..scene import Scene
+from ..state import rest
 from ..stop import Stop
 
 #: Most values of displacement that a section keeps: it holds fewer periods of a longer chain.

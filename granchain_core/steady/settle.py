@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..integrate import Engine, Setting, State, live, method_for
-from ..integrate.engine import rest
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, Cost, Run, relative_changes, run_from
 from ..scene import Scene
+from ..state import rest
 from ..stop import Stop
 from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
@@ -89,7 +89,7 @@ class Settling:
         first, scales = self.engine.state, self.engine.lowered.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
         self._run, self._stop_at = run, MOST_PERIODS
-        self.regime = Regime("unsettled", None, None, None, run)
+        self.regime = Regime.unsettled(run)
 
     @property
     def _here(self) -> int:

@@ -62,8 +62,7 @@ class StrobeMap:
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
-        row = self.engine.lowered.row
-        return np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
+        return self.engine.lowered.beads_of(y)
 
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by differences; those to one side take half the time and are right to some 1e-4."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from granchain_core.integrate.failure import not_finite
 
 from granchain_core import NumbersFailed, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.failure import not_finite
 from granchain_core.kernels.samples import first_not_finite
 
 

@@ -7,11 +7,11 @@ import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, Cancelled, scene
-from granchain_core.integrate.engine import rest
 from granchain_core.orbits import orbit as orbits
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.orbits.orbit import sorted_multipliers
+from granchain_core.state import rest
 from granchain_core.stop import Stop
 
 

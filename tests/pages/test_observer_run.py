@@ -10,7 +10,7 @@ import pytest
 from app.pages.observer.view import step_message
 from app.pages.observer.work import NUDGE, ObserverRun
 from granchain_core import scene, settled
-from granchain_core.integrate.engine import rest
+from granchain_core.state import rest
 from granchain_core.stop import Stop
 
 FOUNDED = scene("fig11-founded")

@@ -97,7 +97,7 @@ def test_motions_that_do_not_repeat_have_no_multipliers() -> None:
     assert "+0.265 ± 0.023" in no_multipliers(chaotic)
     quasi = replace(still, regime=Regime("quasi-periodic", None, None, None, 620, (0.0001, 0.0004)))
     assert "neither part nor meet" in no_multipliers(quasi)
-    assert "not settled after 620 periods" in no_multipliers(replace(still, regime=Regime("unsettled", None, None, None, 620)))
+    assert "not settled after 620 periods" in no_multipliers(replace(still, regime=Regime.unsettled(620)))
 
 
 def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from granchain_core import BadInput, Cancelled, NumbersFailed, Run, Scene, run
 from granchain_core.errors import OverBudget
 from granchain_core.integrate import Engine, Setting, method_for
-from granchain_core.integrate.engine import rest
+from granchain_core.state import rest
 from granchain_core.stop import Stop
 
 from . import oracle, properties

@@ -16,7 +16,6 @@ import numpy as np
 
 from ...errors import BadInput
 from ...integrate import State
-from ...integrate.batch import scaled_state
 from ...scene import Scene
 from ...stop import Stop
 from ..orbit import periodic_orbit
@@ -144,7 +143,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
     orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
     equations = BranchEquations(axis, orbit.period, stop)
     strobe = equations.strobe(seed_at)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
     _refuse_shorter(equations, x, seed_at)
     return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
-from ...integrate import Engine, State, certified, live
-from ...integrate.batch import state_of
+from ...integrate import Engine, State, certified
 from ...kernels.dop853.orbit_record import FULL, OrbitRecord, record_orbit
 from ...kernels.forces.peaks import MEMORY, PEAKS, ROWS
+from ...lower import lower
 from ...scene import Scene
 from ..orbit import sorted_multipliers
 from .equations import BranchEquations, Solved
@@ -91,11 +91,8 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
 
 def state_at(scene: Scene, x: np.ndarray) -> State:
     """The scaled state x of a scene at phase 0 in SI."""
-    lowered = Engine(scene, live()).lowered
-    y = np.zeros(2 * lowered.row)
-    n = scene.N
-    y[1 : n + 1], y[lowered.row + 1 : lowered.row + n + 1] = x[:n], x[n:]
-    return state_of(lowered, y)
+    lowered = lower(scene)
+    return lowered.unscaled(lowered.embed(x))
 
 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:

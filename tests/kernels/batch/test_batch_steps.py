@@ -9,9 +9,9 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.batch import NEVER, Batch, scaled_state
-from granchain_core.integrate.engine import rest
+from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.lower import lower
+from granchain_core.state import rest
 from granchain_core.stop import Stop
 
 FREQUENCIES = (200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0)
@@ -33,7 +33,7 @@ def scenes_of(case: str):
 def put(block: Batch, lane: int, one, refine: float) -> None:
     """Start a scene from rest; it is looked at after its periods."""
     lowered = lower(one)
-    block.put(lane, lowered, scaled_state(lowered, rest(one)), refine, look=PERIODS, earliest=NEVER)
+    block.put(lane, lowered, lowered.scaled(rest(one)), refine, look=PERIODS, earliest=NEVER)
 
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:

@@ -8,9 +8,9 @@ import numpy as np
 
 from granchain_core import Scene, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.batch import NEVER, Batch, scaled_state
-from granchain_core.integrate.engine import rest
+from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.lower import lower
+from granchain_core.state import rest
 from granchain_core.stop import Stop
 
 PERIODS = 3
@@ -29,7 +29,7 @@ def test_unlike_beads_in_lanes() -> None:
     block = Batch(scenes[0], Stop())
     assert block.lanes.unequal is not None
     for lane, one in enumerate(scenes):
-        block.put(lane, lower(one), scaled_state(lower(one), rest(one)), 12.0, look=PERIODS, earliest=NEVER)
+        block.put(lane, lower(one), lower(one).scaled(rest(one)), 12.0, look=PERIODS, earliest=NEVER)
     for _ in scenes:
         lane, finite = block.run()
         assert finite
@@ -43,6 +43,6 @@ def test_the_drive_phase_in_lanes_is_set_right_every_period() -> None:
     """Sine and cosine are turned from step to step; at the end of a period they are 0 and 1, not what turning left."""
     one = scene("sec2").evolve(N=1, f=1130.0)
     block = Batch(one, Stop())
-    block.put(3, lower(one), scaled_state(lower(one), rest(one)), 1.0, look=200, earliest=NEVER)
+    block.put(3, lower(one), lower(one).scaled(rest(one)), 1.0, look=200, earliest=NEVER)
     assert block.run() == (3, True)
     assert tuple(block.state.phase[:, 3]) == (0.0, 1.0)

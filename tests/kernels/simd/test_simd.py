@@ -7,9 +7,9 @@ import pytest
 
 from granchain_core import Scene, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.batch import Batch, can_share_batch, scaled_state
-from granchain_core.integrate.engine import rest
+from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.lower import lower
+from granchain_core.state import rest
 from granchain_core.steady.batch_settle import batch_results
 from granchain_core.steady.curve import curve_point
 from granchain_core.stop import Stop
@@ -54,7 +54,7 @@ def test_a_lane_that_is_not_finite_does_not_lose_the_others() -> None:
     scenes = [scene("sec2").evolve(f=f) for f in (1000.0, 1130.0)]
     block = Batch(scenes[0], Stop())
     for lane, one in enumerate(scenes):
-        y = scaled_state(lower(one), rest(one))
+        y = lower(one).scaled(rest(one))
         block.put(lane, lower(one), y * (np.nan if lane == 0 else 1.0), 1, look=5, earliest=5)
     block.state.y[1, 0] = np.nan
     lane, finite = block.run()

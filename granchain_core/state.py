@@ -1,13 +1,12 @@
-"""Where a chain is, and what its motion cost."""
+"""Where a chain is at one instant, in SI."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..kernels.status import EVALUATIONS, EVENTS, STEPS
-from ..scene import Scene
+from .scene import Scene
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,33 +33,6 @@ class State:
     displacement: np.ndarray
     velocity: np.ndarray
     phase: float = 0.0
-
-
-@dataclass
-class Counts:
-    """What a computation cost: accepted steps, evaluations of the equations, contact events, rejected steps."""
-
-    array: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
-
-    @property
-    def by_name(self) -> dict[str, int]:
-        """All four."""
-        return dict(zip(("steps", "rhs", "events", "rejected"), map(int, self.array), strict=True))
-
-    @property
-    def steps(self) -> int:
-        """Accepted steps."""
-        return int(self.array[STEPS])
-
-    @property
-    def rhs(self) -> int:
-        """Evaluations of the equations of motion."""
-        return int(self.array[EVALUATIONS])
-
-    @property
-    def events(self) -> int:
-        """Contact events located."""
-        return int(self.array[EVENTS])
 
 
 def rest(scene: Scene) -> State:
