@@ -18,8 +18,9 @@ from ..orbits import Orbit
 from ..result import ForceErrors
 from ..scene import Scene
 from ..state import rest
-from ..steady.batch_job import BatchResult, Start
+from ..steady.batch_job import Start
 from ..steady.regime import Regime
+from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .compute import settle_on_all_cores
 from .sameness import LIVE, Found, found, merged
@@ -116,7 +117,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     seed : int
         Of the random states; the same seed gives the same answer.
     stop : Stop, optional
-        Asked between starts; where it returns true the search ends with what there is.
+        Looked at between starts; once it is set the search ends with what there is.
     progress : callable, optional
         Called with the part that is done.
 
@@ -161,9 +162,9 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
 
 
 def _settled(starts: list[Start], stop: Stop | None,
-             progress: Callable[[float], None] | None = None) -> list[BatchResult]:
+             progress: Callable[[float], None] | None = None) -> list[SteadyState]:
     """Where starts lead, in their order."""
-    results: list[BatchResult] = []
+    results: list[SteadyState] = []
     for result in settle_on_all_cores(starts, stop):
         results.append(result)
         if progress is not None:

@@ -44,7 +44,7 @@ class Engine:
         self.stepper: Any = method.stepper(setting, ready, samples)
         self.grid: int = self.stepper.grid
         self.start(rest(scene) if lowered is None else State(np.zeros(ready.beads), np.zeros(ready.beads)))
-        self._before = self._here
+        self._remember()
 
     @property
     def lowered(self) -> Lowered:
@@ -94,11 +94,6 @@ class Engine:
         return State(lo.rows(self.y)[0] * lo.scales.length, lo.rows(self.stepper.work.k[0])[0] * lo.scales.velocity,
                      self.grid_index / self.grid)
 
-    @property
-    def _here(self) -> Start:
-        """The state from which a failure would have to be searched."""
-        return Start(self.y.copy(), self.stepper.work.k[0].copy(), self.grid_index)
-
     # --- motion --------------------------------------------------------------------------------------------
 
     def empty_samples(self, rows: int) -> Samples:
@@ -112,11 +107,13 @@ class Engine:
         Raises `NumbersFailed`, `Cancelled`.
         """
         self._remember()
-        samples, periods = empty_samples(self.lowered, count + 1), count / self.samples
-        out = self._output(round(_CLOSINGS * (1.0 + periods) * self.lowered.row))
-        status, rows = self.stepper.samples(self.y, self.grid_index, samples, out)
+        stepper, periods = self.stepper, count / self.samples
+        samples = empty_samples(stepper.lowered, count + 1)
+        out = self._output(round(_CLOSINGS * (1.0 + periods) * stepper.lowered.row))
+        status, rows = stepper.samples(self.y, self.grid_index, samples, out)
         self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid
-        self.raise_for(status, max(0, rows - 1) / self.samples, self._before)
+        if status != DONE:
+            self.raise_for(status, max(0, rows - 1) / self.samples, self._before)
         self.elapsed += periods
         return samples
 
@@ -129,9 +126,11 @@ class Engine:
         not look for the forces and they are NaN.
         """
         self._remember()
-        strobes, tops = np.zeros((count + 1, 2, self.lowered.row)), np.full((count, 3), np.nan)
-        status, done = self.stepper.periods(self.y, strobes, tops, watch, self._output())
-        self.raise_for(status, done, self._before)
+        stepper = self.stepper
+        strobes, tops = np.zeros((count + 1, 2, stepper.lowered.row)), np.full((count, 3), np.nan)
+        status, done = stepper.periods(self.y, strobes, tops, watch, self._output())
+        if status != DONE:
+            self.raise_for(status, done, self._before)
         self.elapsed += count
         return strobes[:, :, 1:-1], tops
 
@@ -191,10 +190,11 @@ class Engine:
 
     def _remember(self) -> None:
         """Keep where a call begins; a number that is not finite there already is said at once."""
-        bead = not_finite(self.y, self.lowered.row)
+        stepper = self.stepper
+        bead = not_finite(self.y, stepper.lowered.row)
         if bead:
-            raise self._failure(NOT_FINITE, 0.0, bead, self.stepper.step_at(self.grid_index)).error
-        self._before = self._here
+            raise self._failure(NOT_FINITE, 0.0, bead, stepper.step_at(self.grid_index)).error
+        self._before: Start = self.y.copy(), stepper.work.k[0].copy(), self.grid_index
 
     def _failure(self, status: int, done: float, bead: int, step: int | None) -> Failure:
         return Failure(status, self.elapsed + done, bead, step, self.counts.by_name, self.lowered.scene,

@@ -10,13 +10,8 @@ from ..kernels.forces.largest import ForceLog
 from ..kernels.samples import Samples
 from ..lower import Lowered
 
-
-class Start(NamedTuple):
-    """Where a call began: state and slope (M,), and the grid index."""
-
-    y: np.ndarray
-    slope: np.ndarray
-    grid_index: int
+#: Where a call began: state and slope (M,), and the grid index.
+Start = tuple[np.ndarray, np.ndarray, int]
 
 
 class Output(NamedTuple):
