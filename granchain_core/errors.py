@@ -90,14 +90,13 @@ class OverBudget(BadInput):
 
 
 class Cancelled(Exception):
-    """The stop flag was raised while a computation was running.
+    """`Stop.set` was called while a computation was running.
 
     Examples
     --------
-    >>> from granchain_core import Cancelled, run, scene
-    >>> from granchain_core.integrate.state import new_stop
-    >>> stop = new_stop()
-    >>> stop[0] = 1
+    >>> from granchain_core import Cancelled, Stop, run, scene
+    >>> stop = Stop()
+    >>> stop.set()
     >>> try:
     ...     run(scene("sec2").evolve(N=2, f=2000.0), stop=stop)
     ... except Cancelled:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .integrate.engine import Counts, Engine
+from .integrate import Counts
+from .integrate.engine import Engine
 from .kernels.samples import Samples
 from .scene import Scene
 from .steady.regime import Regime

@@ -15,8 +15,7 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from ..errors import BadInput, NumbersFailed
-from ..integrate import Engine, Setting, State
-from ..integrate.batch import scaled_state
+from ..integrate import Engine, Setting, State, certified, live
 from ..lower import lower
 from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
@@ -29,7 +28,7 @@ _REPEATS = 1e-6
 #: Sections are different if their distance exceeds that of their own neighbouring states by this factor; states in the
 #: section of a motion that is not periodic, taken after as many further periods.
 _APART, _SECTION = 3.0, 400
-LIVE, _CERTIFIED = Setting("rk4-split"), Setting("dop853", tolerance=1e-11)
+LIVE, _CERTIFIED = live(), certified(1e-11)
 
 
 @dataclass(eq=False)
@@ -71,10 +70,10 @@ def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.n
     """The next `periods` stroboscopic states of displacement and w, scaled, (periods, 2, N)."""
     engine, lowered = Engine(scene, setting, 1), lower(scene)
     engine.start(state)
-    rows = [scaled_state(lowered, state)]
+    rows = [lowered.scaled(state)]
     for _ in range(periods - 1):
         engine.periods(1, watch=False)
-        rows.append(scaled_state(lowered, engine.state))
+        rows.append(lowered.scaled(engine.state))
     return np.array(rows).reshape(periods, 2, -1)[:, :, 1:-1]
 
 

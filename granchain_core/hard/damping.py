@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import Engine, Setting
+from ..integrate import Engine, Setting, certified
 from ..laws import LAWS
 from ..run.run import run
 from ..scene import Scene, scene
@@ -82,7 +82,7 @@ def _pulls(periods: int) -> list[Figure]:
     """The largest pull of any contact over the largest push, cut; and that without the cut there is one."""
     forces = {}
     for tension in ("cut", "allowed"):
-        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), Setting("dop853", tolerance=1e-10), 256)
+        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), certified(1e-10), 256)
         force = engine.record(256 * periods).force
         forces[tension] = float(max(0.0, -force.min()) / force.max())
     return [Figure("largest pull of a cut contact over its largest push", forces["cut"], 1e-14),

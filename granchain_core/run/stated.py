@@ -53,7 +53,7 @@ class Computations:
         seen = differences
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
-        even = setting.method == "rk4-split" and not self.cuts_tension
+        even = METHODS[setting.method].even and not self.cuts_tension
         self.stated = np.maximum((_CAUTION if even else _UNEVEN) * seen, np.maximum(least, self.rounding))
         self._before = differences
         self.settings.append(setting)

@@ -6,19 +6,19 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
-from ..integrate.batch import Batch, state_of
-from ..integrate.engine import rest
+from ..integrate import Engine, State, live
+from ..integrate.batch import Batch
 from ..integrate.methods import AT_A_JUMP, jump_errors
 from ..lower import Lowered
 from ..result import CAUTION, relative_changes
 from ..scene import Scene
+from ..state import rest
 from .decide import MOST_PERIODS, SLOW_PERIODS
 from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
 
 #: How the largest forces on an orbit are found where they jump: finer than the batch that found the orbit.
-_LOCATED = Setting("rk4-split", refine=8)
+_LOCATED = live(8)
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
 
@@ -99,7 +99,7 @@ class Job:
         # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
         errors += 1.5 * max(distance, regime.distance)
         tops = tops * self.lowered.scales.force
-        return BatchResult(self.scene, tops, replace(regime, distance=distance), errors, state_of(self.lowered, y),
+        return BatchResult(self.scene, tops, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
                           number=self.number)
 
     def _located_tops(self, y: np.ndarray, regime: Regime) -> tuple[np.ndarray, np.ndarray]:
@@ -109,8 +109,8 @@ class Job:
         shows by how much the forces still change on the way from the lanes' orbit to this method's.
         """
         assert regime.period is not None
-        engine, row = Engine(self.scene, _LOCATED, 1, lowered=self.lowered), self.lowered.row
-        engine.start_scaled(np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]]))
+        engine = Engine(self.scene, _LOCATED, 1, lowered=self.lowered)
+        engine.start_scaled(self.lowered.beads_of(y))
         first = engine.largest_forces(regime.period)
         tops = engine.largest_forces(regime.period)
         moved = relative_changes(tops, first) / (1.0 - regime.slowness)
@@ -125,7 +125,7 @@ def draft_result(job: Job, block: Batch, lane: int) -> BatchResult:
         return unsettled(job, block, lane, run)
     regime = _periodic(block, lane, run)
     tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
-    return BatchResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]), number=job.number)
+    return BatchResult(job.scene, tops, regime, None, job.lowered.unscaled(block.state.y[:, lane]), number=job.number)
 
 
 def check_coarse(job: Job, block: Batch, lane: int) -> BatchResult | Job | None:
@@ -164,13 +164,13 @@ def _in_doubt(job: Job, block: Batch, lane: int, run: int, record: np.ndarray) -
 def unsettled(job: Job, block: Batch, lane: int, run: int) -> BatchResult:
     """What a lane has come to when its budget of steps is spent."""
     tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
-    state = state_of(job.lowered, block.state.y[:, lane])
-    return BatchResult(job.scene, tops, Regime("unsettled", None, None, None, run), None, state,
+    state = job.lowered.unscaled(block.state.y[:, lane])
+    return BatchResult(job.scene, tops, Regime.unsettled(run), None, state,
                       number=job.number)
 
 
 def failed(job: Job) -> BatchResult:
     """A lane whose numbers stopped being finite."""
-    nothing = Regime("unsettled", None, None, None, 0)
+    nothing = Regime.unsettled(0)
     sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping or ask for higher accuracy."
     return BatchResult(job.scene, np.full(3, np.nan), nothing, None, rest(job.scene), sentence, job.number)

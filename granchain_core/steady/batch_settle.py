@@ -15,11 +15,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate.batch import NEVER, Batch, scaled_state, state_of
-from ..integrate.engine import rest
+from ..integrate.batch import NEVER, Batch
 from ..kernels.batch.run import LANES
 from ..lower import lower
 from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
 from .batch_job import BatchResult, Job, Start, check_coarse, draft_result, failed
 from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
 from .lyapunov import MOST_APART, exponents_in_pairs
@@ -41,7 +42,7 @@ _PAIRS = LANES // 2
 class _Lanes:
     """A block of lanes with the jobs in them, those waiting for a lane and those whose regime is in doubt."""
 
-    def __init__(self, first: Start, starts: Iterator[Start], stop: np.ndarray, draft: bool) -> None:
+    def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
         self.block = Batch(first.scene, stop)
         self.draft = draft
         self.stop = stop
@@ -126,11 +127,11 @@ class _Lanes:
                 self.waiting.append(job)
             else:
                 unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
-                yield BatchResult(job.scene, job.tops, regime, None, state_of(job.lowered, y), number=job.number,
+                yield BatchResult(job.scene, job.tops, regime, None, job.lowered.unscaled(y), number=job.number,
                                  doubtful=unclear and job.affordable)
 
 
-def batch_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False) -> Iterator[BatchResult]:
+def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[BatchResult]:
     """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
 
     See `batch_states`.
@@ -138,7 +139,7 @@ def batch_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False
     return batch_states((Start(scene) for scene in scenes), stop, draft)
 
 
-def batch_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) -> Iterator[BatchResult]:
+def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[BatchResult]:
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
     What is found does not depend on which starts share the lanes, but for rounding. A draft ends with the coarse run
@@ -161,12 +162,12 @@ def batch_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False)
                 yield result
 
 
-def confirmed(result: BatchResult, stop: np.ndarray) -> BatchResult:
+def confirmed(result: BatchResult, stop: Stop) -> BatchResult:
     """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
     if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:
         return result
-    y = scaled_state(lower(scene), result.state).reshape(2, -1)
+    y = lower(scene).scaled(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
     return result if largest < _SURE else replace(result, doubtful=True)
 
@@ -178,7 +179,7 @@ def _steps(job: Job) -> int:
 def _new_job(start: Start) -> Job:
     lowered = lower(start.scene)
     state = rest(start.scene) if start.state is None else start.state
-    return Job(start.scene, lowered, scaled_state(lowered, state), number=start.number)
+    return Job(start.scene, lowered, lowered.scaled(state), number=start.number)
 
 
 def _job_or_none(starts: Iterator[Start]) -> Job | None:

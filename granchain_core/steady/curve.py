@@ -13,10 +13,10 @@ import numpy as np
 from ..errors import BadInput, NumbersFailed, unknown_name
 from ..integrate import Engine, State
 from ..integrate.batch import can_share_batch
-from ..integrate.engine import new_stop
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, ForceErrors, relative_changes
 from ..scene import Scene
+from ..stop import Stop
 from .batch_job import BatchResult
 from .batch_settle import batch_results
 from .regime import Regime
@@ -122,7 +122,7 @@ def coarse_first(count: int) -> list[int]:
     return order
 
 
-def curve_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
+def curve_point(scene: Scene, start: State | None, stop: Stop) -> CurvePoint:
     """The steady state of `scene` from rest or from `start`, certified where it is periodic."""
     way = settle(scene, start, stop)
     if way.regime.name == "periodic":
@@ -151,12 +151,12 @@ def _point(scene: Scene, tops: np.ndarray, regime: Regime, errors: np.ndarray | 
                       engine.state)
 
 
-def safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
+def safe_point(scene: Scene, start: State | None, stop: Stop) -> CurvePoint:
     """A point, or a point that says why there is none: one failed frequency does not lose a curve."""
     try:
         return curve_point(scene, start, stop)
     except NumbersFailed as failed:
-        nothing = Regime("unsettled", None, None, None, 0)
+        nothing = Regime.unsettled(0)
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
         return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, ForceErrors(), start or resting, failed.sentence,
                           failed.status)
@@ -170,7 +170,7 @@ def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray)
 
 
 def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
-               stop: Callable[[], bool] | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
+               stop: Stop | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
     """Points of a resonance curve as they are finished.
 
     Parameters
@@ -181,7 +181,7 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
         Drive frequencies [Hz].
     start : str
         "rest": points come coarse first, from all cores; "up" or "down": the state is carried along in that direction.
-    stop : callable, optional
+    stop : Stop, optional
         Asked between points; where it returns true the curve ends, and a running point is given up.
     workers : int, optional
         Threads; one for each core if not given.
@@ -206,40 +206,40 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     if start not in STARTS:
         raise unknown_name("start", start, STARTS)
     scenes = checked_frequencies(scene, frequencies)
-    flag = new_stop()
+    ended = Stop()
     if start == "rest":
-        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], flag, stop, workers)
+        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], ended, stop, workers)
         return
     state: State | None = None
     for one in sorted(scenes, key=lambda s: s.f, reverse=start == "down"):
-        if stop is not None and stop():
+        if stop:
             return
-        point = safe_point(one, state, flag)
+        point = safe_point(one, state, ended)
         state = point.state if not point.failure else None
         yield point
 
 
-def _from_rest(scenes: list[Scene], flag: np.ndarray, stop: Callable[[], bool] | None,
+def _from_rest(scenes: list[Scene], ended: Stop, stop: Stop | None,
                workers: int | None) -> Iterator[CurvePoint]:
     """Independent points on all cores: by lanes where they can, else one by one; closing the generator stops them."""
-    yield from on_all_cores(lambda shared: _points(shared, flag), scenes, flag, stop,
+    yield from on_all_cores(lambda shared: _points(shared, ended), scenes, ended, stop,
                             min(workers or os.cpu_count() or 1, len(scenes)))
 
 
-def _points(scenes: Iterator[Scene], flag: np.ndarray) -> Iterator[CurvePoint]:
+def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
     first = next(scenes, None)
     if first is None:
         return
     rest_of_them = itertools.chain([first], scenes)
     if can_share_batch(first):
-        yield from (_from_lane(result) if not result.doubtful else second_look(result, flag)
-                    for result in batch_results(rest_of_them, flag))
+        yield from (_from_lane(result) if not result.doubtful else second_look(result, ended)
+                    for result in batch_results(rest_of_them, ended))
         return
     for one in rest_of_them:
-        yield safe_point(one, None, flag)
+        yield safe_point(one, None, ended)
 
 
-def second_look(result: BatchResult, stop: np.ndarray) -> CurvePoint:
+def second_look(result: BatchResult, stop: Stop) -> CurvePoint:
     """The point of a result that the batch left undecided: its chain alone, continued from the same state."""
     point = safe_point(result.scene, result.state, stop)
     run = result.regime.periods_run + point.regime.periods_run
@@ -253,11 +253,11 @@ def _from_lane(result: BatchResult) -> CurvePoint:
                       "not-finite" if result.failure else "done")
 
 
-def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: np.ndarray) -> list[CurvePoint]:
+def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
     """A first impression of the curve from rest, on one core, to be drawn while a knob still moves.
 
     Coarse steps and few periods: no errors are claimed, and what is not periodic by then is unsettled. Empty for scenes
-    that lanes cannot run. `stop` is a flag from `new_stop`. Raises `BadInput` and `Cancelled`.
+    that lanes cannot run. Raises `BadInput` and `Cancelled`.
     """
     if not can_share_batch(scene):
         return []
@@ -266,7 +266,7 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: n
 
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
-                    stop: Callable[[], bool] | None = None, on_point: Callable[[CurvePoint], None] | None = None,
+                    stop: Stop | None = None, on_point: Callable[[CurvePoint], None] | None = None,
                     workers: int | None = None) -> Curve:
     """The resonance curve: largest forces of the steady state over the drive frequency.
 
@@ -279,7 +279,7 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     start : str
         "rest": every point begins at rest, all cores work; "up" or "down": the state is carried along that way, so
         that hysteresis shows.
-    stop : callable, optional
+    stop : Stop, optional
         Asked between points; where it returns true the curve ends with what there is.
     on_point : callable, optional
         Called with each `CurvePoint` as it is finished.

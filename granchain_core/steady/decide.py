@@ -128,7 +128,7 @@ def as_it_stands(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
             return regime
         orbit = orbit_of(scene, regime.period, scaled(engine), stop)
         if orbit is None or not orbit.stable:
-            return Regime("unsettled", None, None, None, regime.periods_run)
+            return Regime.unsettled(regime.periods_run)
         return replace(regime, period=orbit.period, multiplier=orbit.modulus)
     if scene.N <= MOST_BEADS:
         for orbit in orbits_beside(scene, strobes, scaled(engine), stop):
@@ -154,5 +154,4 @@ def _told_apart(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
 
 def scaled(engine: Engine) -> np.ndarray:
     """The engine's state (2N,) of displacements, then w."""
-    row = engine.lowered.row
-    return np.concatenate([engine.y[1 : row - 1], engine.y[row + 1 : 2 * row - 1]])
+    return engine.lowered.beads_of(engine.y)

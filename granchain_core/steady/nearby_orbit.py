@@ -16,6 +16,7 @@ import numpy as np
 from ..errors import NumbersFailed
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scene import Scene
+from ..stop import Stop
 from .regime import changes
 from .strobe_map import FixedPoint, StrobeMap, fixed_point, sizes
 
@@ -125,7 +126,7 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(offsets @ rows.T if len(rows) else offsets, axis=1))
 
 
-def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray) -> NearbyOrbit | None:
+def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
     """The orbit of `period` drive periods, or of a part of them, that Newton's method leads to from x; if any."""
     strobe = StrobeMap(scene, period, stop)
     found = fixed_point(strobe, x)
@@ -140,13 +141,13 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray) -> Near
     return NearbyOrbit(strobe, found, x, found.modulus)
 
 
-def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray, refine: float) -> float:
+def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
     """The largest |μ| at a state that is on its orbit to what is called settled, in a hurry: right to some 1e-4."""
     matrix = StrobeMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
 
-def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: np.ndarray) -> Iterator[NearbyOrbit]:
+def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) -> Iterator[NearbyOrbit]:
     """Orbits beside a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
     moved = [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]
     if not moved or min(moved) > _BESIDE:

@@ -10,7 +10,7 @@ import pytest
 
 from granchain_core import Cancelled, State, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.engine import new_stop
+from granchain_core.stop import Stop
 
 METHODS = [("rk4", 2e-6), ("rk4-split", 2e-6), ("dop853", 1e-9)]
 
@@ -103,7 +103,7 @@ def test_drive_displacement_column_is_exact_at_any_time():
 def test_stop_flag_ends_a_long_run_soon(method, recording):
     """A flag raised from another thread, once the kernel counts steps, ends it in the middle of a long period: it is asked
     every 4096 steps at least, two of which may be left when it is raised."""
-    stop = new_stop()
+    stop = Stop()
     quick = Engine(scene("sec2").evolve(f=1e5, N=300), Setting(method, tolerance=1e-3), 1)
     quick.record(1) if recording else quick.periods(1)  # compiling asks no flag
     slow = Engine(scene("sec2").evolve(f=0.5, N=300), Setting(method, refine=16, tolerance=1e-11), 1, stop=stop)
@@ -113,7 +113,7 @@ def test_stop_flag_ends_a_long_run_soon(method, recording):
         while slow.counts.rhs == 0:
             time.sleep(0.001)
         steps.append(slow.counts.steps)
-        stop[0] = 1
+        stop.set()
 
     threading.Thread(target=raise_flag, daemon=True).start()
     with pytest.raises(Cancelled):
@@ -123,8 +123,8 @@ def test_stop_flag_ends_a_long_run_soon(method, recording):
 
 def test_run_passes_its_stop_flag_on():
     """A flag that is up from the start ends `run` with Cancelled, not with a result."""
-    stop = new_stop()
-    stop[0] = 1
+    stop = Stop()
+    stop.set()
     with pytest.raises(Cancelled):
         run(scene("sec2"), periods=5, record=5, stop=stop)
 

@@ -13,7 +13,7 @@ from app.pages.check.view import described, described_cases, figure_beside, figu
 from app.pages.check.work import CaseProcess, Ended, case_of
 from granchain_core import Cancelled, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Figure, Picture, Trace, run_case
-from granchain_core.integrate.engine import new_stop
+from granchain_core.stop import Stop
 
 
 def measured(*found: Figure) -> list[Check]:
@@ -77,16 +77,16 @@ def test_a_picture_is_one_array_with_its_gaps() -> None:
 def test_the_process_answers_is_stopped_and_an_end_is_noticed() -> None:
     long = case_of("near a bifurcation")
     assert long is not None
-    process, stop = CaseProcess(), new_stop()
-    stop[0] = 1
+    process, stop = CaseProcess(), Stop()
+    stop.set()
     with pytest.raises(Cancelled):
         next(process.measure(long, stop))
     # ended from outside: said, and the next case has a new process
-    stop[0] = 0
+    stop = Stop()
     answers = process.measure(Case("not in the table", "h", "n", "o", lambda _: []), stop)
     with pytest.raises(Ended):
         next(answers)
-    threading.Timer(1.0, stop.__setitem__, (0, 1)).start()
+    threading.Timer(1.0, stop.set).start()
     with pytest.raises(Cancelled):
         list(process.measure(long, stop))
     assert process._process is not None

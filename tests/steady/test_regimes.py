@@ -7,6 +7,8 @@ import pytest
 
 from granchain_core import NumbersFailed, resonance_curve, run, scene, settled
 from granchain_core.steady import regime as regimes
+from granchain_core.steady.curve import CurvePoint
+from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
@@ -192,7 +194,13 @@ def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start, c
 def test_a_cancelled_curve_keeps_what_it_has(start):
     """Stopped after the third point: those points and soon an end."""
     seen: list[float] = []
-    found = resonance_curve(scene("sec2").evolve(N=3), np.linspace(300.0, 900.0, 60), start,
-                            stop=lambda: len(seen) >= 3, on_point=lambda p: seen.append(p.frequency))
+    stop = Stop()
+
+    def look(point: CurvePoint) -> None:
+        seen.append(point.frequency)
+        if len(seen) >= 3:
+            stop.set()
+
+    found = resonance_curve(scene("sec2").evolve(N=3), np.linspace(300.0, 900.0, 60), start, stop=stop, on_point=look)
     assert 3 <= len(found.points) < 60
     assert sorted(seen) == [p.frequency for p in found.points]

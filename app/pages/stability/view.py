@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from granchain_core import Settled
+from granchain_core.integrate.methods import LIVE
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
 from granchain_core.steady.poincare import Section
@@ -120,7 +121,7 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
     cost = picture.run.cost
     row("settled by", f"{cost.method}, {cost.steps} steps, {duration(cost.wall_s)}", "What the settled picture took.")
     if section is not None:
-        row("section", f"{section.periods} periods at {section.samples} phases, rk4-split",
+        row("section", f"{section.periods} periods at {section.samples} phases, {LIVE}",
             "Computed once more from the same start by the live method.")
     return rows
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..effects.preload import overlap
 from ..jit import inline_numba, kernel
-from ..status import DONE, NOT_FINITE, STEP_TOO_SMALL
+from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .event_step import attempt_in_time, first_change
 from .tableau import STAGES
 from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
@@ -54,7 +54,7 @@ def locate_change(method, slots, beta, time, h, y, work, path, tangent, c, count
             break
         h -= d / speed
         attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
     return h
 
 
@@ -81,7 +81,7 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     error, landed = np.inf, False
     for _ in range(_TRIALS):
         error = attempt_in_time(method, slots, beta, time, time.s, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, time, 0.0, -1, goal
         d, speed = overlap(slots.preload, work.end, c), work.slope[c] - work.slope[c + 1]
@@ -100,15 +100,15 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     if goal > limit:
         landed = False
         error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
     while error > 1.0:
         landed = False
-        counts[3] += 1
+        counts[REJECTED] += 1
         h = shrunk(h, error)
         if not t + 0.1 * (time_at(time, h) - t) > t:
             return STEP_TOO_SMALL, time, h, -1, goal
         error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
     return DONE, time, h, c if landed else -1, goal
 
 
@@ -139,11 +139,11 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
                 return status, time, h, -1
         else:
             error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-            counts[1] += STAGES
+            counts[EVALUATIONS] += STAGES
             if not np.isfinite(error):
                 return NOT_FINITE, time, h, -1
             if error > 1.0:
-                counts[3] += 1
+                counts[REJECTED] += 1
                 h = shrunk(h, error)
                 dt = time_at(time, h) - t
                 if not t + 0.1 * dt > t:
@@ -165,7 +165,7 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
             continue
         h *= x
         attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
         return DONE, time, locate_change(method, slots, beta, time, h, y, work, path, tangent, contact, counts), contact
     return STEP_TOO_SMALL, time, h, -1
 

@@ -16,6 +16,7 @@ from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import OUTPUT
 from ..jit import inline_numba, kernel
 from ..simd.functions import root
+from ..status import EVALUATIONS
 from .step import dense_value, evaluate, prepare_dense
 from .tableau import STAGES
 
@@ -86,7 +87,7 @@ def top_in_step(slots, beta, t, h, y, work, q, counts):
             low, a, fa = a, b, fb
             b = low + _RATIO * (high - low)
             fb = forces_in_step(slots, beta, t, h, y, work, b)[q]
-    counts[1] += _SECTIONS + 2
+    counts[EVALUATIONS] += _SECTIONS + 2
     return max(fa, fb)
 
 
@@ -121,9 +122,9 @@ def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
         return ready
     if not ready:
         prepare_dense(slots, beta, t, h, y, work)
-        counts[1] += 3
+        counts[EVALUATIONS] += 3
     middle = forces_in_step(slots, beta, t, h, y, work, 0.5)
-    counts[1] += 1
+    counts[EVALUATIONS] += 1
     for q in range(3):
         peaks[q * OUTPUT] = max(peaks[q * OUTPUT], middle[q])
         guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], h))

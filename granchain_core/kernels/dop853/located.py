@@ -17,7 +17,7 @@ from ..equations.motion import copy
 from ..forces.largest import note_closings
 from ..jit import by_slot, inline_numba, kernel
 from ..samples import first_not_finite, keep
-from ..status import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL
+from ..status import CANCELLED, CHATTER, DONE, EVALUATIONS, EVENTS, NOT_FINITE, REJECTED, STEP_TOO_SMALL, STEPS
 from .bracket import between, narrowed
 from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
@@ -114,7 +114,7 @@ def first_event(slots, beta, t, h, y, work, counts):
             continue
         if not dense_ready:
             prepare_dense(slots, beta, t, h, y, work)
-            counts[1] += 3
+            counts[EVALUATIONS] += 3
             dense_ready = True
         high = 1.0
         if turns:
@@ -160,7 +160,7 @@ def locate_event(method, slots, beta, t, h, limit, y, work, c, counts):
             break
         h += change
         attempt(method, slots, beta, t, h, y, work)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
         target *= 2.0
     return h
 
@@ -176,12 +176,12 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     aimed, kinked, again, factor = -1, False, False, 1.0
     while True:
         error = attempt(method, slots, beta, t, h, y, work)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, h, -1
         if error > 1.0:
             aimed, kinked = -1, False
-            counts[3] += 1
+            counts[REJECTED] += 1
             h *= max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
             if t + 0.1 * h == t:
                 return STEP_TOO_SMALL, h, -1
@@ -205,12 +205,12 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     if aimed >= 0:
         h = locate_event(method, slots, beta, t, h, limit, y, work, aimed, counts)
         clock[0] = min(clock[0], 2.0 * method.tolerance**0.4)
-        counts[2] += 1
+        counts[EVENTS] += 1
     elif kinked:
-        counts[2] += 1  # the motion is smooth on both sides: the next step need not start small
+        counts[EVENTS] += 1  # the motion is smooth on both sides: the next step need not start small
     elif h < limit - t or factor < 1.0 or clock[0] <= h:
         clock[0] = h * factor
-    counts[0] += 1
+    counts[STEPS] += 1
     return DONE, h, aimed
 
 
@@ -260,7 +260,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
             if every > 0 and g % every == 0:
                 if not ready:
                     prepare_dense(slots, beta, t, h, y, work)
-                    counts[1] += 3
+                    counts[EVALUATIONS] += 3
                     ready = True
                 look_inside(slots, beta, t, h, g * spacing, y, work)
                 keep(slots, row, work.probe, work.slope, work.forces.e, samples)

@@ -7,16 +7,16 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate.batch import Batch
-from granchain_core.integrate.engine import new_stop
 from granchain_core.kernels.batch import contact_correction, period_end
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from granchain_core.stop import Stop
 
 LANE, ROW = 5, 4
 
 
 def seen(record: np.ndarray) -> Batch:
     """A block of two-bead chains in one lane of which all numbers of the beads were `record`, strobe by strobe."""
-    block = Batch(scene("sec2").evolve(N=2), new_stop())
+    block = Batch(scene("sec2").evolve(N=2), Stop())
     block.state.strobes[LANE, : len(record), :, 1:-1] = record[:, None, None]
     block.state.kept[LANE] = block.state.periods[LANE] = len(record)
     block.state.y[[1, 2, ROW + 1, ROW + 2], LANE] = record[-1]
