@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ..integrate.batch import can_share_batch
 from ..scene import Scene
-from ..steady.batch_job import BatchResult, Start
+from ..steady.batch_job import Start
 from ..steady.batch_settle import batch_states
-from ..steady.curve import CurvePoint, safe_point, second_look
+from ..steady.curve import safe_state, second_look
+from ..steady.steady_state import SteadyState
 from ..steady.threads import on_all_cores
 from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells
@@ -31,7 +33,7 @@ def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
     return list(groups.values())
 
 
-def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[BatchResult]:
+def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
     """Where starts of one structure lead: by lanes where they can share them, else one by one."""
     rest_of_them = iter(starts)
     first = next(rest_of_them, None)
@@ -40,25 +42,15 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[BatchResult]:
     together = _chained(first, rest_of_them)
     if can_share_batch(first.scene):
         for result in batch_states(together, stop):
-            yield result if not result.doubtful else _as_result(Start(result.scene, number=result.number),
-                                                                second_look(result, stop))
+            yield second_look(result, stop) if result.doubtful else result
         return
     for one in together:
-        yield _as_result(one, safe_point(one.scene, one.state, stop))
+        yield replace(safe_state(one.scene, one.state, stop), number=one.number)
 
 
 def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
     yield first
     yield from others
-
-
-def _as_result(start: Start, point: CurvePoint) -> BatchResult:
-    tops = np.array([point.max_input_force, point.max_output_force, point.max_output_force_elastic])
-    return BatchResult(start.scene, tops, point.regime, _errors(point), point.state, point.failure, start.number)
-
-
-def _errors(point: CurvePoint) -> np.ndarray | None:
-    return None if point.error_estimate is None else np.array(point.force_errors.row)
 
 
 def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
@@ -71,7 +63,7 @@ def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) ->
 
 def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
                  stop: Stop | None = None, workers: int | None = None,
-                 pause: Callable[[], None] | None = None) -> Iterator[BatchResult]:
+                 pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
     """Cells of the diagram as they are decided, coarse first; `missing` are those wanted, else all.
 
     The result's `number` is the cell's. `stop` is looked at between cells and may end the computation; running cells
@@ -86,7 +78,7 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
 
 
 def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,
-                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[BatchResult]:
+                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
     """Where starts of one structure lead, as they are found; closing the generator ends it."""
     ended = Stop()
     return on_all_cores(lambda shared: settle_starts(shared, ended), starts, ended, stop, workers, pause)

@@ -19,7 +19,7 @@ from ..integrate import Engine, Setting, State, certified, live
 from ..lower import lower
 from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
-from ..steady.batch_job import BatchResult
+from ..steady.steady_state import SteadyState
 
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are one; coarser ones where it failed.
 _SAME = 1e-7
@@ -35,7 +35,7 @@ LIVE, _CERTIFIED = live(), certified(1e-11)
 class Found:
     """One result with its section: n strobes of a periodic orbit, or the record of another motion, (P, 2, N)."""
 
-    result: BatchResult
+    result: SteadyState
     section: np.ndarray
     orbit: Orbit | None = None
 
@@ -52,13 +52,13 @@ class Found:
         return self.orbit is not None and not self.orbit.stable
 
 
-def found(result: BatchResult) -> Found:
+def found(result: SteadyState) -> Found:
     """A result with the section of its motion."""
     period = result.regime.period
     return Found(result, _strobes(result.scene, result.state, period, LIVE) if period else _section(result))
 
 
-def _section(result: BatchResult) -> np.ndarray:
+def _section(result: SteadyState) -> np.ndarray:
     """Stroboscopic states of displacement and velocity, scaled, of what is not periodic, (P, 2, N)."""
     engine = Engine(result.scene, LIVE, 1)
     engine.start(result.state)

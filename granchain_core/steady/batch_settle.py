@@ -21,11 +21,12 @@ from ..lower import lower
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
-from .batch_job import BatchResult, Job, Start, check_coarse, draft_result, failed
+from .batch_job import Job, Start, check_coarse, draft_result, failed
 from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
 from .lyapunov import MOST_APART, exponents_in_pairs
 from .nearby_orbit import MOST_BEADS, seen_modulus
 from .regime import agree, clearly_chaotic, find_period, irregular
+from .steady_state import SteadyState
 
 #: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
 #: which is what is claimed.
@@ -71,7 +72,7 @@ class _Lanes:
         rate = max(1e-3, regime.slowness)
         self.block.put_fine(lane, job.lowered, job.y, _FINER, regime.period, rate, tops)
 
-    def step(self) -> BatchResult | None:
+    def step(self) -> SteadyState | None:
         """Run until a lane is due for a check, and check it."""
         lane, finite = self.block.run()
         job = self.jobs[lane]
@@ -86,7 +87,7 @@ class _Lanes:
         if outcome is None:
             return None
         self._free(lane)
-        if isinstance(outcome, BatchResult):
+        if isinstance(outcome, SteadyState):
             return confirmed(outcome, self.stop)
         (self.doubtful if outcome.in_doubt else self.waiting).append(outcome)
         return None
@@ -104,7 +105,7 @@ class _Lanes:
                 return jobs[i : i + _PAIRS]
         return [] if self.jobs else [job for job in jobs if _steps(job) <= MOST_APART * _steps(jobs[0])]
 
-    def decide(self, jobs: list[Job]) -> Iterator[BatchResult]:
+    def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
         """Tell doubtful jobs apart; one whose neighbours come closer is given more time."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
         found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], BLOCKS, BLOCK, self.stop)
@@ -127,11 +128,11 @@ class _Lanes:
                 self.waiting.append(job)
             else:
                 unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
-                yield BatchResult(job.scene, job.tops, regime, None, job.lowered.unscaled(y), number=job.number,
+                yield SteadyState(job.scene, job.tops, regime, None, job.lowered.unscaled(y), number=job.number,
                                  doubtful=unclear and job.affordable)
 
 
-def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[BatchResult]:
+def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
     """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
 
     See `batch_states`.
@@ -139,7 +140,7 @@ def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> I
     return batch_states((Start(scene) for scene in scenes), stop, draft)
 
 
-def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[BatchResult]:
+def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
     What is found does not depend on which starts share the lanes, but for rounding. A draft ends with the coarse run
@@ -162,7 +163,7 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
                 yield result
 
 
-def confirmed(result: BatchResult, stop: Stop) -> BatchResult:
+def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
     """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
     if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:

@@ -17,10 +17,10 @@ from ..integrate.methods import jump_errors
 from ..result import CAUTION, ForceErrors, relative_changes
 from ..scene import Scene
 from ..stop import Stop
-from .batch_job import BatchResult
 from .batch_settle import batch_results
 from .regime import Regime
 from .settle import Settling, relax, settle
+from .steady_state import SteadyState
 from .threads import on_all_cores
 
 STARTS = ("rest", "up", "down")
@@ -68,6 +68,13 @@ class CurvePoint:
     state: State
     failure: str = ""
     status: str = "done"
+
+    @classmethod
+    def of(cls, found: SteadyState) -> CurvePoint:
+        """The point of a steady state."""
+        entered, arrived, elastic = map(float, found.tops)
+        return cls(found.scene.f, arrived, elastic, entered, found.regime, found.force_errors, found.state,
+                   found.failure, found.status)
 
     @property
     def error_estimate(self) -> float | None:
@@ -122,16 +129,16 @@ def coarse_first(count: int) -> list[int]:
     return order
 
 
-def curve_point(scene: Scene, start: State | None, stop: Stop) -> CurvePoint:
+def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     """The steady state of `scene` from rest or from `start`, certified where it is periodic."""
     way = settle(scene, start, stop)
     if way.regime.name == "periodic":
-        return _certified_point(way)
+        return _certified(way)
     tops = way.tops[-min(len(way.tops), 100) :].max(axis=0) * way.engine.lowered.scales.force
-    return _point(scene, tops, way.regime, None, way.engine)
+    return SteadyState(scene, tops, way.regime, None, way.engine.state)
 
 
-def _certified_point(way: Settling) -> CurvePoint:
+def _certified(way: Settling) -> SteadyState:
     """Largest forces on the certified orbit; the error is what they still change plus the distance's share."""
     engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
     n = way.regime.period
@@ -143,23 +150,24 @@ def _certified_point(way: Settling) -> CurvePoint:
     # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
     errors = CAUTION * relative_changes(tops, before) + 1.5 * distance
     errors += jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
-    return _point(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer)
+    return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
 
 
-def _point(scene: Scene, tops: np.ndarray, regime: Regime, errors: np.ndarray | None, engine: Engine) -> CurvePoint:
-    return CurvePoint(scene.f, float(tops[1]), float(tops[2]), float(tops[0]), regime, ForceErrors.of(errors),
-                      engine.state)
-
-
-def safe_point(scene: Scene, start: State | None, stop: Stop) -> CurvePoint:
-    """A point, or a point that says why there is none: one failed frequency does not lose a curve."""
+def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
+    """A steady state, or one that says why there is none: one failed frequency does not lose a curve."""
     try:
-        return curve_point(scene, start, stop)
+        return steady_state(scene, start, stop)
     except NumbersFailed as failed:
-        nothing = Regime.unsettled(0)
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
-        return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, ForceErrors(), start or resting, failed.sentence,
-                          failed.status)
+        return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(0), None, start or resting, failed.sentence,
+                           failed.status)
+
+
+def second_look(doubtful: SteadyState, stop: Stop) -> SteadyState:
+    """What a batch left in doubt: the chain by itself, from where the batch left it."""
+    found = safe_state(doubtful.scene, doubtful.state, stop)
+    run = doubtful.regime.periods_run + found.regime.periods_run
+    return replace(found, regime=replace(found.regime, periods_run=run), number=doubtful.number)
 
 
 def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray) -> list[Scene]:
@@ -182,7 +190,7 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     start : str
         "rest": points come coarse first, from all cores; "up" or "down": the state is carried along in that direction.
     stop : Stop, optional
-        Asked between points; where it returns true the curve ends, and a running point is given up.
+        Looked at between points; once it is set the curve ends, and a running point is given up.
     workers : int, optional
         Threads; one for each core if not given.
 
@@ -214,9 +222,9 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     for one in sorted(scenes, key=lambda s: s.f, reverse=start == "down"):
         if stop:
             return
-        point = safe_point(one, state, ended)
-        state = point.state if not point.failure else None
-        yield point
+        found = safe_state(one, state, ended)
+        state = found.state if not found.failure else None
+        yield CurvePoint.of(found)
 
 
 def _from_rest(scenes: list[Scene], ended: Stop, stop: Stop | None,
@@ -232,25 +240,11 @@ def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
         return
     rest_of_them = itertools.chain([first], scenes)
     if can_share_batch(first):
-        yield from (_from_lane(result) if not result.doubtful else second_look(result, ended)
-                    for result in batch_results(rest_of_them, ended))
+        for found in batch_results(rest_of_them, ended):
+            yield CurvePoint.of(second_look(found, ended) if found.doubtful else found)
         return
     for one in rest_of_them:
-        yield safe_point(one, None, ended)
-
-
-def second_look(result: BatchResult, stop: Stop) -> CurvePoint:
-    """The point of a result that the batch left undecided: its chain alone, continued from the same state."""
-    point = safe_point(result.scene, result.state, stop)
-    run = result.regime.periods_run + point.regime.periods_run
-    return replace(point, regime=replace(point.regime, periods_run=run))
-
-
-def _from_lane(result: BatchResult) -> CurvePoint:
-    tops = result.tops
-    return CurvePoint(result.scene.f, float(tops[1]), float(tops[2]), float(tops[0]), result.regime,
-                      ForceErrors.of(result.errors), result.state, result.failure,
-                      "not-finite" if result.failure else "done")
+        yield CurvePoint.of(safe_state(one, None, ended))
 
 
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
@@ -262,7 +256,7 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: S
     if not can_share_batch(scene):
         return []
     scenes = iter(checked_frequencies(scene, frequencies))
-    return [_from_lane(result) for result in batch_results(scenes, stop, draft=True)]
+    return [CurvePoint.of(result) for result in batch_results(scenes, stop, draft=True)]
 
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
@@ -280,7 +274,7 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
         "rest": every point begins at rest, all cores work; "up" or "down": the state is carried along that way, so
         that hysteresis shows.
     stop : Stop, optional
-        Asked between points; where it returns true the curve ends with what there is.
+        Looked at between points; once it is set the curve ends with what there is.
     on_point : callable, optional
         Called with each `CurvePoint` as it is finished.
     workers : int, optional

@@ -8,16 +8,16 @@ import pytest
 from granchain_core import scene
 from granchain_core.kernels.batch import period_end
 from granchain_core.steady import batch_settle
-from granchain_core.steady.batch_job import BatchResult
 from granchain_core.steady.curve import draft_curve, resonance_curve
 from granchain_core.steady.settle import settle
+from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 
 #: Between 1580 and 1640 Hz two attractors stand side by side; below 1000 Hz and on the peaks approaches are slow.
 FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620.0, 1640.0, 1900.0]
 
 
-def results(frequencies: list[float]) -> dict[float, BatchResult]:
+def results(frequencies: list[float]) -> dict[float, SteadyState]:
     """What lanes find at these frequencies of section 2."""
     scenes = (scene("sec2").evolve(f=f) for f in frequencies)
     return {found.scene.f: found for found in batch_settle.batch_results(scenes, Stop())}

@@ -163,14 +163,14 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
     """Its point carries the sentence and NaN; the others are there, in every start."""
     from granchain_core.steady import curve as module
 
-    true = module.curve_point
+    true = module.steady_state
 
     def fails_at_600(one, start, stop):
         if one.f == 600.0:
             raise NumbersFailed("made to fail", "not-finite")
         return true(one, start, stop)
 
-    monkeypatch.setattr(module, "curve_point", fails_at_600)
+    monkeypatch.setattr(module, "steady_state", fails_at_600)
     # with a tension cut points are computed one by one from rest too
     for start, chain in (("up", scene("sec2")), ("rest", scene("sec2").evolve(tension="cut"))):
         found = resonance_curve(chain.evolve(N=3), [500.0, 600.0, 700.0], start)

@@ -11,7 +11,7 @@ from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.lower import lower
 from granchain_core.state import rest
 from granchain_core.steady.batch_settle import batch_results
-from granchain_core.steady.curve import curve_point
+from granchain_core.steady.curve import CurvePoint, steady_state
 from granchain_core.stop import Stop
 
 CHAINS: list[dict[str, object]] = [
@@ -41,7 +41,7 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
 def test_a_curve_by_lanes_is_what_each_frequency_gives_by_itself() -> None:
     frequencies = np.array([340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0])
     for point in iter_curve(scene("sec2"), frequencies):
-        alone = curve_point(scene("sec2").evolve(f=point.frequency), None, Stop())
+        alone = CurvePoint.of(steady_state(scene("sec2").evolve(f=point.frequency), None, Stop()))
         assert point.regime.period == alone.regime.period
         assert point.error_estimate is not None and alone.error_estimate is not None
         allowed = point.error_estimate + alone.error_estimate
