@@ -22,7 +22,6 @@ from .version import __version__
 if TYPE_CHECKING:
     from .accuracy import WorkPrecision, work_precision
     from .diagram import Attractor, Diagram, attractors, diagram
-    from .integrate import State
     from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
@@ -30,15 +29,18 @@ if TYPE_CHECKING:
     from .result import Cost, Run
     from .run.live import LiveChain
     from .run.run import run
+    from .state import State
     from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
     from .steady.regime import Regime
     from .steady.settle import Settled, settled, settling
     from .steady.settle import settled as settle
+    from .stop import Stop
     from .store import load, save
 
 #: Public names by module. They are imported when they are first asked for, so that `import granchain_core` is quick.
 _MODULES = {
-    "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "integrate.state": ("State",),
+    "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
+    "stop": ("Stop",),
     "steady.settle": ("Settled", "settled", "settling"), "steady.regime": ("Regime",),
     "steady.curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"),
@@ -51,7 +53,7 @@ _SHORT = {"settle": "settled", "orbit": "periodic_orbit", "branch": "continue_br
 
 __all__ = [
     "Attractor", "BadInput", "Bead", "Branch", "Cancelled", "Cost", "Curve", "CurvePoint", "Diagram", "LiveChain",
-    "NumbersFailed", "Observation", "Orbit", "OverBudget", "Regime", "Run", "Scene", "Settled", "State",
+    "NumbersFailed", "Observation", "Orbit", "OverBudget", "Regime", "Run", "Scene", "Settled", "State", "Stop",
     "WorkPrecision", "__version__", "attractors", "branch", "continue_branch", "diagram", "iter_curve", "load",
     "observe", "orbit", "periodic_orbit", "resonance_curve", "run", "save", "scene", "scene_names", "settle",
     "settled", "settling", "work_precision",

@@ -90,14 +90,13 @@ class OverBudget(BadInput):
 
 
 class Cancelled(Exception):
-    """The stop flag was raised while a computation was running.
+    """`Stop.set` was called while a computation was running.
 
     Examples
     --------
-    >>> from granchain_core import Cancelled, run, scene
-    >>> from granchain_core.integrate.state import new_stop
-    >>> stop = new_stop()
-    >>> stop[0] = 1
+    >>> from granchain_core import Cancelled, Stop, run, scene
+    >>> stop = Stop()
+    >>> stop.set()
     >>> try:
     ...     run(scene("sec2").evolve(N=2, f=2000.0), stop=stop)
     ... except Cancelled:
@@ -107,7 +106,7 @@ class Cancelled(Exception):
 
 
 def outcome_of(problem: NumbersFailed | OverBudget) -> dict[str, Any]:
-    """What a script is told of a computation that failed or was not begun: outcome, sentence, and what is known."""
+    """The JSON object of a computation that failed or was not begun: status, message, and where and when if known."""
     if isinstance(problem, OverBudget):
         return {"status": problem.status, "message": str(problem), "estimate_s": problem.estimate,
                 "budget_s": problem.budget}

@@ -24,7 +24,7 @@ class Law:
 
     def __post_init__(self) -> None:
         if self.slot not in SLOTS:
-            raise TypeError(f"damping law {self.name!r}: {self.slot.__name__} is not among LAWS of "
+            raise TypeError(f"damping law {self.name!r}: {self.slot.__name__} has no `exponent` and no `power` in "
                             "kernels/effects/dissipation.py.")
 
     @property

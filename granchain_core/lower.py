@@ -22,10 +22,11 @@ from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import no_tension
-from .kernels.equations.motion import Forces, Slots
+from .kernels.equations.motion import Forces, Slots, place
 from .laws import LAWS
 from .scene import Scene
 from .scene.effects import EFFECTS, effects_of
+from .state import State
 
 #: Step of the live method in scaled time where overlaps are about one drive amplitude; RK4 in w is then good to
 #: a few 1e-5 of the displacement with its steps split at contact events, at half the step to a few 1e-6.
@@ -97,6 +98,38 @@ class Lowered:
         contacts = self.row - 1
         return Forces(np.zeros(contacts), np.zeros(contacts) if self.slots.dissipation is not None else None)
 
+    def rows(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and w of the beads (N,), as views into a state array y."""
+        row = self.row
+        return y[1 : row - 1], y[row + 1 : 2 * row - 1]
+
+    def beads_of(self, y: np.ndarray) -> np.ndarray:
+        """The same in one array x (2N,)."""
+        return np.concatenate(self.rows(y))
+
+    def embed(self, x: np.ndarray) -> np.ndarray:
+        """The state array (2(N + 2),) of x (2N,), the driver and the wall at zero."""
+        y = np.zeros(2 * self.row)
+        for row, values in zip(self.rows(y), (x[: self.beads], x[self.beads :]), strict=True):
+            row[:] = values
+        return y
+
+    def scaled(self, state: State) -> np.ndarray:
+        """The scaled (u, w) array (2(N + 2),) of a state at phase 0."""
+        y = np.zeros(2 * self.row)
+        displacement, velocity = self.rows(y)
+        displacement[:] = state.displacement / self.scales.length
+        velocity[:] = state.velocity / self.scales.velocity
+        place(self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
+        y[0] = 0.0
+        return y
+
+    def unscaled(self, y: np.ndarray) -> State:
+        """The state in SI of a scaled (u, w) array at phase 0."""
+        slope = np.zeros_like(y)
+        place(self.slots, 0.0, y.copy(), slope, self.forces(), False)
+        return State(self.rows(y)[0] * self.scales.length, self.rows(slope)[0] * self.scales.velocity)
+
     @cached_property
     def step(self) -> float:
         """The live method's step in scaled time."""
@@ -159,11 +192,11 @@ def lower(scene: Scene, balance: bool = False) -> Lowered:
     beta = 2 * math.pi * scene.f / scales.rate
     inverse_mass = np.zeros(scene.N + 2)
     inverse_mass[1:-1] = scene.bead(1).mass / scene.masses()
-    absent = dict.fromkeys(Slots._fields)
     filled = {effect.slot: _FILLED[effect.slot](scene, scales) for effect in effects_of(scene)}
-    slots = Slots(**absent | filled | {
-        "chain": Chain(inverse_mass, scene.contact_stiffness() / scene.K),
-        "driver": Harmonic(1.0, beta),
-        "balance": Balance(1) if balance else None,
-    })
+    slots = Slots(
+        chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K),
+        driver=Harmonic(1.0, beta),
+        balance=Balance(1) if balance else None,
+        **filled,
+    )
     return Lowered(scene, scales, slots, beta)

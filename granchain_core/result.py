@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .integrate.engine import Counts, Engine
+from .integrate import Counts
+from .integrate.engine import Engine
 from .kernels.samples import Samples
 from .scene import Scene
 from .steady.regime import Regime
@@ -91,7 +92,7 @@ class ForceErrors:
         return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
 
 
-#: Methods are of uneven order at contact events: a force's error is not taken for less than so many times its change.
+#: The stated error of a force is at least this factor times its change: at contact events the order is uneven.
 CAUTION = 2.0
 
 

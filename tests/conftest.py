@@ -12,7 +12,7 @@ settings.register_profile("granchain", deadline=None, derandomize=True, max_exam
 settings.load_profile("granchain")
 
 HERE = Path(__file__).parent
-#: Folders and files of the inner loop, `python -m pytest -m quick`: a minute and a half once the kernels are compiled.
+#: Folders and files of the inner loop, `python -m pytest -m quick`: below 90 s once the kernels are compiled.
 #: Each part of the core has one that fails where that part is wrong; orders, random scenes and browsers are for the whole suite.
 QUICK = (
     "architecture", "public", "scene", "experiment", "store", "page", "integrate", "run/test_peaks.py",

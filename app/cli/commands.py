@@ -12,6 +12,7 @@ from dataclasses import asdict
 from typing import Any, TypeVar
 
 from granchain_core import BadInput, Scene, scene, scene_names
+from granchain_core.stop import Stop
 
 from .foundation import kept_spring
 
@@ -55,9 +56,8 @@ def show_json(data: dict[str, Any]) -> None:
 
 def in_background(work: Callable[[Any], T]) -> T:
     """Run `work(stop)` beside the main thread, so that Ctrl-C reaches a running kernel through its stop flag."""
-    from granchain_core.integrate.engine import new_stop
 
-    stop = new_stop()
+    stop = Stop()
     result: list[T] = []
     problem: list[BaseException] = []
 
@@ -73,7 +73,7 @@ def in_background(work: Callable[[Any], T]) -> T:
         while thread.is_alive():
             thread.join(0.1)
     except KeyboardInterrupt:
-        stop[0] = 1
+        stop.set()
         thread.join(5.0)
         raise
     if problem:
@@ -107,7 +107,7 @@ def scenes(arguments: argparse.Namespace) -> None:
 
 def warm(arguments: argparse.Namespace) -> None:
     """Compile and cache the kernels of all presets."""
-    from granchain_core.pieces import warm_presets
+    from granchain_core.warm import warm_presets
 
     for done in warm_presets():
         say("compiled", done)
@@ -199,7 +199,7 @@ def curve(arguments: argparse.Namespace) -> None:
 
     frequencies = np.linspace(low, high, arguments.points)
     swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start,
-                                                       stop=lambda: bool(stop[0]), on_point=count))
+                                                       stop=stop, on_point=count))
     if arguments.out:
         save_curve(swept, arguments.out)
     if arguments.json:

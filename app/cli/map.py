@@ -7,7 +7,7 @@ import json
 import math
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from granchain_core.diagram.blocks import Blocks, folder_of
 from granchain_core.diagram.cells import ERRORS, REGIMES, cell_of
 from granchain_core.diagram.grid import MOST_CELLS
 from granchain_core.quantities import QUANTITIES
+from granchain_core.stop import Stop
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -87,7 +88,7 @@ def map_scene(arguments: argparse.Namespace) -> None:
     else:
         client = _client(arguments.scheduler)
         blocks = Blocks.open(grid, arguments.out, arguments.resume)
-        found, computed = in_background(lambda stop: _filled(blocks, client, lambda: bool(stop[0])))
+        found, computed = in_background(lambda stop: _filled(blocks, client, stop))
         save_diagram(found, arguments.out)
         blocks.remove()
     _tell(found, computed, arguments)
@@ -101,7 +102,7 @@ def _client(address: str | None) -> Any:
     return connect(address)
 
 
-def _filled(blocks: Blocks, client: Any, stop: Callable[[], bool]) -> tuple[Diagram, int]:
+def _filled(blocks: Blocks, client: Any, stop: Stop) -> tuple[Diagram, int]:
     """The whole diagram, from the blocks that are there and what is computed now; and how many cells that were."""
     began, grid = time.perf_counter(), blocks.grid
     cells = blocks.cells()
@@ -123,7 +124,7 @@ def _filled(blocks: Blocks, client: Any, stop: Callable[[], bool]) -> tuple[Diag
     return Diagram(grid, cells, time.perf_counter() - began), len(missing)
 
 
-def _rows(grid: Grid, missing: list[int], client: Any, stop: Callable[[], bool]) -> Iterator[np.ndarray]:
+def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[np.ndarray]:
     """Finished cells, a few at a time."""
     if client is not None:
         from granchain_core.diagram.scheduled import iter_blocks

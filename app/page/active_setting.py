@@ -10,11 +10,11 @@ import numpy as np
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Row
 from granchain_core.accuracy.ways import label
-from granchain_core.integrate import METHODS, Setting, method_for
+from granchain_core.integrate import METHODS, Setting, live, method_for
 from granchain_core.steady.settle import certified_setting
 
 #: The live picture's steps (granchain_core.run.live).
-_LIVE = Setting("rk4-split", refine=2)
+_LIVE = live(2)
 
 
 @dataclass(frozen=True)

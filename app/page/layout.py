@@ -14,13 +14,13 @@ from granchain_core import Settled
 from ..pages.accuracy.view import Accuracy
 from ..pages.branches.view import Branches
 from ..pages.check.view import Hard, described_cases
+from ..pages.curve.bar import CurveBar
 from ..pages.curve.view import Curve
 from ..pages.observer.view import Observer, first_state
 from ..pages.stability.view import Stability
 from ..parts.badge import Badge
 from ..parts.chain import PALETTE, Chain
 from ..parts.component import text
-from ..parts.corner import Corner, CurveBar
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
 from ..parts.figures import BOTTOM, GAP, TOP, pane
@@ -29,6 +29,7 @@ from ..parts.knobs import Knobs
 from ..parts.regimes import REGIMES
 from ..parts.trains import Trains
 from ..pictures.theme import Theme
+from .corner import Corner
 
 #: Pages over the pictures; each has its place in page.html.
 PAGES = ("accuracy", "stability", "branches", "observer", "hard")

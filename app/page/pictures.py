@@ -8,8 +8,9 @@ from functools import partial
 from bokeh.document import Document
 
 from granchain_core import Run, Scene, Settled, State, settling
+from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
-from ..serve.compiler import CERTIFIED, COMPILER, CURVE, LIVE, SENTENCE
+from ..serve.compiler import COMPILER, SENTENCE
 from ..serve.pacing import Painter
 from ..serve.queues import LatestWins, Stop
 from ..serve.websocket import in_one_go

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import Any
 
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
-from granchain_core.integrate.engine import new_stop
 
 from ..serve.compiler import COMPILER
 from ..serve.queues import Queue, Stop
@@ -22,7 +21,7 @@ class Job:
     """One start of a task, as its work sees it from a worker thread."""
 
     def __init__(self, host: Host, say: Say) -> None:
-        self.stop: Stop = new_stop()
+        self.stop: Stop = Stop()
         self._host = host
         self._say = say
 
@@ -30,7 +29,7 @@ class Job:
         """Do something in the document's turn, unless the job is cancelled by then."""
 
         def act() -> None:
-            if not self.stop[0]:
+            if not self.stop:
                 action(*arguments, **named)
 
         self._host.later(act)
@@ -51,7 +50,7 @@ class Job:
     def give_way(self, to: Callable[[], bool] | None = None) -> None:
         """Wait as long as a knob's picture is not there yet, or as long as `to` says."""
         waits = to or (lambda: self._host.unsettled)
-        while waits() and not self.stop[0]:
+        while waits() and not self.stop:
             time.sleep(PICTURE_LOOK)
 
 
@@ -86,12 +85,12 @@ class Task:
         """Give up what is under way; nothing of it arrives any more. Says whether there was anything."""
         job, self._job = self._job, None
         if job is not None:
-            job.stop[0] = 1
+            job.stop.set()
         return job is not None
 
     def _run(self, work: Callable[[Job], None], job: Job) -> None:
         """In a thread of the queue."""
-        if job.stop[0]:
+        if job.stop:
             return
         try:
             work(job)

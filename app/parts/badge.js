@@ -2,8 +2,16 @@
 
 const ENTRIES = [
   ["start", (v) => v, "Where the steady state was started."],
-  ["accuracy", (v) => v, "Relative error of the displacements: the one asked for, the one reached; the computing time of this picture. Click: what accuracy costs."],
-  ["energy", (v) => v, "Work of the driver minus what was lost and stored, over the largest of them, for the periods shown."],
+  [
+    "accuracy",
+    (v) => v,
+    "Relative error of the displacements: the one asked for, the one reached; the computing time of this picture. Click: what accuracy costs.",
+  ],
+  [
+    "energy",
+    (v) => v,
+    "Work of the driver minus what was lost and stored, over the largest of them, for the periods shown.",
+  ],
   ["method", (v) => v, "Method of integration."],
   ["effects", (v) => v.join(" · "), "The effects that are computed; an absent one has no code and no cost."],
 ];
@@ -31,7 +39,11 @@ export function render({ model }) {
     badge.append(regime, Object.assign(document.createElement("i"), { className: "grow" }));
     for (const [name, write, meaning] of ENTRIES) {
       if (state[name] === undefined || state[name] === "") continue;
-      const entry = Object.assign(document.createElement(name === "accuracy" ? "button" : "span"), { textContent: write(state[name]), title: state[`${name}_hint`] ?? meaning, id: name });
+      const entry = Object.assign(document.createElement(name === "accuracy" ? "button" : "span"), {
+        textContent: write(state[name]),
+        title: state[`${name}_hint`] ?? meaning,
+        id: name,
+      });
       if (name === "accuracy") entry.addEventListener("click", () => window.granchain.cover("accuracy"));
       badge.append(entry);
     }

@@ -8,13 +8,14 @@ from granchain_core import Run, Settled
 from granchain_core.steady.resonance import Place, place_words, pushes
 
 from ..page.format import duration, short_error
+from ..scripts import module
 from .component import Component, text
 
 
 class Badge(Component):
     """One line at the bottom, and above it one sentence when something needs saying."""
 
-    _esm = text("badge.js")
+    _esm = module("badge.js")
     _stylesheets = [text("controls.css"), text("badge.css")]  # noqa: RUF012
 
 

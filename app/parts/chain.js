@@ -1,5 +1,8 @@
 // The chain on the page: bead i stands above column i of the map; its clock is the page's.
 
+import { ChainDrawing, unpack } from "./chaindrawing.js";
+import { Clock, Cursor } from "./stage.js";
+
 function afterFrame(act) {
   const channel = new MessageChannel();
   channel.port1.onmessage = act;
@@ -11,7 +14,9 @@ export function render({ model }) {
   const canvas = document.createElement("canvas");
   const drawing = new ChainDrawing(canvas, model.state.palette);
   let dirty = true;
-  const clock = new Clock(() => { dirty = true; });
+  const clock = new Clock(() => {
+    dirty = true;
+  });
   const cursor = new Cursor(clock);
   document.querySelector("#scale b").style.background =
     `linear-gradient(to right, ${model.state.palette.filter((_, i) => i % 15 === 0).join(",")})`;
@@ -40,21 +45,32 @@ export function render({ model }) {
       clock.show(message);
       dirty = true;
       // Bokeh paints in the next animation frame; a message posted in it arrives when that frame is done.
-      requestAnimationFrame(() => afterFrame(() => {
-        model.send_msg({ do: "painted", number: message.number });
-        page.emit("painted", { number: message.number, live: message.live, lag: Date.now() - 1000 * message.sent });
-      }));
+      requestAnimationFrame(() =>
+        afterFrame(() => {
+          model.send_msg({ do: "painted", number: message.number });
+          page.emit("painted", { number: message.number, live: message.live, lag: Date.now() - 1000 * message.sent });
+        }),
+      );
     }
   });
-  page.on("play", (playing) => { clock.playing = playing; });
-  page.on("speed", (speed) => { clock.speed = speed; });
+  page.on("play", (playing) => {
+    clock.playing = playing;
+  });
+  page.on("speed", (speed) => {
+    clock.speed = speed;
+  });
   page.on("period", () => {
     if (!clock.frames || clock.frames.live) return;
     const periods = (clock.frames.rows - 1) / clock.frames.samples;
     clock.moveTo(((clock.row / clock.frames.samples + 1) % periods) / periods);
   });
-  page.on("cover", () => { dirty = true; });
-  page.on("look", () => { drawing.look(); dirty = true; });
+  page.on("cover", () => {
+    dirty = true;
+  });
+  page.on("look", () => {
+    drawing.look();
+    dirty = true;
+  });
   document.addEventListener("visibilitychange", () => {
     if (!document.hidden) model.send_msg({ do: "visible" });
   });

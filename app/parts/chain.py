@@ -11,13 +11,14 @@ from bokeh.palettes import Inferno256
 from granchain_core import Scene
 
 from ..page.frames import Frames, prefixed
+from ..scripts import module
 from .component import Component, text
 
 
 class Chain(Component):
     """Beads, contacts, driver and wall; the frames come as single-precision arrays."""
 
-    _esm = text("stage.js") + text("chaindrawing.js") + text("chain.js")
+    _esm = module("chain.js")
     _stylesheets = [text("chain.css")]  # noqa: RUF012  (Panel's own class attribute)
 
 

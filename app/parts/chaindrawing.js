@@ -7,17 +7,22 @@ const nice = (value) => {
 };
 
 // The four series of a picture from their one array.
-function unpack(frames) {
+export function unpack(frames) {
   const { rows, beads, values } = frames;
   let at = 0;
-  for (const [name, width] of [["displacement", beads], ["force", beads + 1], ["energy", beads], ["drive", 1]]) {
+  for (const [name, width] of [
+    ["displacement", beads],
+    ["force", beads + 1],
+    ["energy", beads],
+    ["drive", 1],
+  ]) {
     // A plain array: Bokeh's own kind makes its parts start at the beginning again.
     frames[name] = new Float32Array(values.buffer, values.byteOffset + 4 * at, rows * width);
     at += rows * width;
   }
 }
 
-class ChainDrawing {
+export class ChainDrawing {
   constructor(canvas, palette) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
@@ -28,8 +33,14 @@ class ChainDrawing {
     const style = getComputedStyle(this.canvas);
     const read = (name) => style.getPropertyValue(name).trim();
     this.ink = {
-      text: read("--soft"), steel: read("--steel"), light: read("--steel-light"), drive: read("--drive"),
-      input: read("--input"), output: read("--output"), bold: parseFloat(read("--line")) || 1, small: read("--small"),
+      text: read("--soft"),
+      steel: read("--steel"),
+      light: read("--steel-light"),
+      drive: read("--drive"),
+      input: read("--input"),
+      output: read("--output"),
+      bold: parseFloat(read("--line")) || 1,
+      small: read("--small"),
     };
   }
 
@@ -51,7 +62,9 @@ class ChainDrawing {
   load(frames) {
     const { rows, beads } = frames;
     const u = frames.displacement;
-    let overlap = 0, largest = 0, force = 0;
+    let overlap = 0,
+      largest = 0,
+      force = 0;
     for (let row = 0; row < rows; row++)
       for (let c = 0; c <= beads; c++) {
         const l = c === 0 ? frames.drive[row] : u[row * beads + c - 1];
@@ -65,8 +78,8 @@ class ChainDrawing {
     const diameter = 2 * this.largest;
     const factor = fits * diameter;
     const running = frames.live && rows === 1;
-    const keep = this.factor && this.beads === beads && this.factor <= 1.25 * factor
-      && (running || this.factor > 0.3 * factor);
+    const keep =
+      this.factor && this.beads === beads && this.factor <= 1.25 * factor && (running || this.factor > 0.3 * factor);
     if (!keep) this.factor = nice(factor);
     this.exaggeration = this.factor / diameter;
     this.beads = beads;
@@ -86,35 +99,47 @@ class ChainDrawing {
     this.ground(frames, pitch, radius, y, place);
     for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, pitch, radius, y);
     this.bodies(place, pitch, radius, y, beads);
-    for (let i = 1; i <= beads; i++) this.bead(place(i), y, radius * (frames.radii[i - 1] / this.largest), at.energy(i) / frames.energy_high);
+    for (let i = 1; i <= beads; i++)
+      this.bead(place(i), y, radius * (frames.radii[i - 1] / this.largest), at.energy(i) / frames.energy_high);
     this.words();
   }
 
-  contact(c, force, frames, place, pitch, radius, y) {
+  contact(c, force, frames, place, _pitch, radius, y) {
     const { context: g, ink } = this;
     if (Math.abs(force) < 1e-6 * this.force) return;
     const from = c === 0 ? place(0) + radius : place(c);
     const to = c === frames.beads ? place(c + 1) - radius : place(c + 1);
     g.strokeStyle = c === 0 ? ink.input : c === frames.beads ? ink.output : ink.steel;
-    g.lineWidth = (2 + Math.min(1, Math.abs(force) / this.force) * 1.5 * radius);
+    g.lineWidth = 2 + Math.min(1, Math.abs(force) / this.force) * 1.5 * radius;
     g.setLineDash(force < 0 ? [3, 3] : []);
-    g.beginPath(); g.moveTo(from, y); g.lineTo(to, y); g.stroke();
+    g.beginPath();
+    g.moveTo(from, y);
+    g.lineTo(to, y);
+    g.stroke();
     g.setLineDash([]);
   }
 
   bead(x, y, radius, energy) {
     const { context: g, ink, palette } = this;
-    g.beginPath(); g.arc(x, y, radius, 0, 2 * Math.PI);
+    g.beginPath();
+    g.arc(x, y, radius, 0, 2 * Math.PI);
     g.fillStyle = palette[Math.max(0, Math.min(255, Math.round(255 * energy)))];
     g.fill();
-    g.lineWidth = 1.5 * ink.bold; g.strokeStyle = ink.steel; g.stroke();
-    g.beginPath(); g.arc(x - 0.35 * radius, y - 0.38 * radius, 0.16 * radius, 0, 2 * Math.PI);
-    g.fillStyle = ink.light; g.globalAlpha = 0.55; g.fill(); g.globalAlpha = 1;
+    g.lineWidth = 1.5 * ink.bold;
+    g.strokeStyle = ink.steel;
+    g.stroke();
+    g.beginPath();
+    g.arc(x - 0.35 * radius, y - 0.38 * radius, 0.16 * radius, 0, 2 * Math.PI);
+    g.fillStyle = ink.light;
+    g.globalAlpha = 0.55;
+    g.fill();
+    g.globalAlpha = 1;
   }
 
   bodies(place, pitch, radius, y, beads) {
     const { context: g, ink } = this;
-    const tall = 1.5 * radius, deep = Math.min(26, 0.8 * pitch + 6);
+    const tall = 1.5 * radius,
+      deep = Math.min(26, 0.8 * pitch + 6);
     const driver = place(0) + radius;
     g.fillStyle = ink.drive;
     g.fillRect(driver - deep, y - tall, deep, 2 * tall);
@@ -122,9 +147,13 @@ class ChainDrawing {
     const wall = place(beads + 1) - radius;
     g.fillStyle = ink.steel;
     g.fillRect(wall, y - tall, 5, 2 * tall);
-    g.strokeStyle = ink.steel; g.lineWidth = 1.5;
+    g.strokeStyle = ink.steel;
+    g.lineWidth = 1.5;
     g.beginPath();
-    for (let h = -tall; h < tall - 4; h += 9) { g.moveTo(wall + 5, y + h + 9); g.lineTo(wall + 15, y + h); }
+    for (let h = -tall; h < tall - 4; h += 9) {
+      g.moveTo(wall + 5, y + h + 9);
+      g.lineTo(wall + 15, y + h);
+    }
     g.stroke();
   }
 
@@ -132,10 +161,13 @@ class ChainDrawing {
     if (!frames.foundation) return;
     const { context: g, ink } = this;
     const floor = y + 1.9 * radius;
-    g.strokeStyle = ink.steel; g.lineWidth = 1.3 * ink.bold;
+    g.strokeStyle = ink.steel;
+    g.lineWidth = 1.3 * ink.bold;
     g.beginPath();
     for (let i = 1; i <= frames.beads; i++) {
-      const foot = this.left + (i - 0.5) * pitch, x = place(i), top = y + 0.9 * radius;
+      const foot = this.left + (i - 0.5) * pitch,
+        x = place(i),
+        top = y + 0.9 * radius;
       g.moveTo(x, top);
       for (let n = 1; n < 8; n++) {
         const s = n / 8;
@@ -143,17 +175,26 @@ class ChainDrawing {
       }
       g.lineTo(foot, floor);
     }
-    g.moveTo(this.left, floor); g.lineTo(this.left + this.span, floor);
+    g.moveTo(this.left, floor);
+    g.lineTo(this.left + this.span, floor);
     g.stroke();
   }
 
   words() {
     const { context: g, ink } = this;
     g.font = `${ink.small} system-ui, sans-serif`;
-    g.textBaseline = "top"; g.textAlign = "center"; g.fillStyle = ink.text;
-    g.fillText(`displacements × ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`, this.left + this.span / 2, 5);
-    g.textAlign = "left"; g.fillText("driver", 8, 5);
-    g.textAlign = "right"; g.fillText("wall", this.width - 8, 5);
+    g.textBaseline = "top";
+    g.textAlign = "center";
+    g.fillStyle = ink.text;
+    g.fillText(
+      `displacements × ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`,
+      this.left + this.span / 2,
+      5,
+    );
+    g.textAlign = "left";
+    g.fillText("driver", 8, 5);
+    g.textAlign = "right";
+    g.fillText("wall", this.width - 8, 5);
   }
 }
 

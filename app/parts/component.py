@@ -15,7 +15,7 @@ _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob(
 
 
 def text(name: str) -> str:
-    """The content of a JavaScript or style file of the app, whose names are unique."""
+    """The content of a style file of the app, or of a script that stands in the page; names are unique."""
     return _FILES[name].read_text(encoding="utf-8")
 
 

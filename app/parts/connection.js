@@ -4,7 +4,11 @@
   const page = window.granchain;
   // Milliseconds: between looks at the clock, from an answer to the next ping, until silence counts as loss (together
   // below 2 s), between tries to reach a lost server, and how long its socket may stay silent once it can be reached.
-  const TICK = 100, REST = 300, PATIENCE = 1300, TRY = 400, GRACE = 3000;
+  const TICK = 100,
+    REST = 300,
+    PATIENCE = 1300,
+    TRY = 400,
+    GRACE = 3000;
   const LOST = "Connection lost – trying again … These are the last pictures.";
   const BACK = "Connected again – building the page from its knobs …";
   const AGAIN = "granchain-again";
@@ -15,7 +19,7 @@
   const asked = new Map();
   const told = (query, answered) => {
     link = query;
-    answered.forEach((name) => asked.delete(name));
+    for (const name of answered) asked.delete(name);
   };
   const asks = (name, value) => {
     if (name === "scene") asked.clear();
@@ -26,7 +30,8 @@
     const url = new URL(location.href);
     const query = new URLSearchParams(link);
     // Another scene has knobs of its own.
-    if (asked.has("scene")) for (const name of [...query.keys()]) if (!["v", "mode", "start"].includes(name)) query.delete(name);
+    if (asked.has("scene"))
+      for (const name of [...query.keys()]) if (!["v", "mode", "start"].includes(name)) query.delete(name);
     for (const [name, value] of asked) {
       query.set(name, value);
       if (name === "k") query.delete("kappa");
@@ -50,33 +55,49 @@
     page.emit("lost", lost);
   };
 
-  let ping = null, closed = false, leaving = false;
-  let waited = null, rested = 0, tried = TRY, reached = 0;
+  let ping = null,
+    closed = false,
+    leaving = false;
+  let waited = null,
+    rested = 0,
+    tried = TRY,
+    reached = 0;
 
   // The last pictures as one image: they stay, grey, until the page built again has its own.
-  const canvases = (node) => [...node.querySelectorAll("*")].flatMap((element) => [
-    ...(element.tagName === "CANVAS" ? [element] : []), ...(element.shadowRoot ? canvases(element.shadowRoot) : [])]);
+  const canvases = (node) =>
+    [...node.querySelectorAll("*")].flatMap((element) => [
+      ...(element.tagName === "CANVAS" ? [element] : []),
+      ...(element.shadowRoot ? canvases(element.shadowRoot) : []),
+    ]);
   const photo = () => {
     const film = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
-    if (!page.covered) for (const one of ["stage", "curve"].flatMap((id) => canvases(document.getElementById(id)))) {
-      const { x, y, width, height } = one.getBoundingClientRect();
-      if (width && height && one.width && one.height) film.getContext("2d").drawImage(one, x, y, width, height);
-    }
+    if (!page.covered)
+      for (const one of ["stage", "curve"].flatMap((id) => canvases(document.getElementById(id)))) {
+        const { x, y, width, height } = one.getBoundingClientRect();
+        if (width && height && one.width && one.height) film.getContext("2d").drawImage(one, x, y, width, height);
+      }
     return film.toDataURL("image/webp", 0.7);
   };
   const rebuild = () => {
     leaving = true;
     try {
       sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, photo: photo() }));
-    } catch { /* without room for it, its sentence and its pictures are missing for a moment */ }
+    } catch {
+      /* without room for it, its sentence and its pictures are missing for a moment */
+    }
     location.replace(address());
   };
   const reach = async () => {
     try {
-      const { status } = await fetch(new URL("liveness", location.href), { cache: "no-store", signal: AbortSignal.timeout(2 * PATIENCE) });
+      const { status } = await fetch(new URL("liveness", location.href), {
+        cache: "no-store",
+        signal: AbortSignal.timeout(2 * PATIENCE),
+      });
       // Where nobody answers health checks it is "not found", which is an answer; a proxy without its server says 502.
       return status < 500;
-    } catch { return false; }
+    } catch {
+      return false;
+    }
   };
   const tryAgain = async () => {
     tried = -Infinity; // not while one is under way
@@ -90,17 +111,21 @@
   // Time is counted in ticks, none for more than four, so that a computer that slept or a page that was busy is no silent server.
   let last = performance.now();
   const tick = () => {
-    const now = performance.now(), passed = Math.min(now - last, 4 * TICK);
+    const now = performance.now(),
+      passed = Math.min(now - last, 4 * TICK);
     last = now;
     if (leaving || !ping || (document.hidden && !closed)) return;
-    if (!closed && waited === null && (rested += passed) >= REST) {
+    const resting = !closed && waited === null;
+    if (resting) rested += passed;
+    if (resting && rested >= REST) {
       waited = 0;
       ping();
     } else if (waited !== null) waited += passed;
     if (!page.lost && (closed || waited > PATIENCE)) show(true);
     if (!page.lost) return;
     if (reached) reached += passed;
-    if ((tried += passed) >= TRY) tryAgain();
+    tried += passed;
+    if (tried >= TRY) tryAgain();
   };
   setInterval(tick, TICK);
 
@@ -112,11 +137,20 @@
   };
   const connect = (send) => {
     ping = send;
-    for (const one of window.Bokeh.documents) one.on_event("connection_lost", () => { closed = true; tick(); });
+    for (const one of window.Bokeh.documents)
+      one.on_event("connection_lost", () => {
+        closed = true;
+        tick();
+      });
   };
 
   let again = null;
-  try { again = JSON.parse(sessionStorage.getItem(AGAIN)); sessionStorage.removeItem(AGAIN); } catch { /* nothing kept */ }
+  try {
+    again = JSON.parse(sessionStorage.getItem(AGAIN));
+    sessionStorage.removeItem(AGAIN);
+  } catch {
+    /* nothing kept */
+  }
   if (again) {
     const before = Object.assign(new Image(), { id: "last-pictures", alt: "", src: again.photo ?? "" });
     document.addEventListener("DOMContentLoaded", () => {

@@ -1,6 +1,6 @@
 // A Bokeh figure of its own in an element: made on the server by a function of app/pictures, filled here.
 
-class Embedded {
+export class Embedded {
   constructor(host, filled = () => {}) {
     this.host = host;
     this.filled = filled;
@@ -40,25 +40,30 @@ class Embedded {
 }
 
 // What the page and the corner show of the observer.
-function fillDistance(figure, { history, prediction }) {
-  for (const [name, points] of [["distance", history], ["prediction", prediction]])
-    figure.set(name, { data: { period: points.map(([period]) => period), distance: points.map(([, distance]) => distance) } });
+export function fillDistance(figure, { history, prediction }) {
+  for (const [name, points] of [
+    ["distance", history],
+    ["prediction", prediction],
+  ])
+    figure.set(name, {
+      data: { period: points.map(([period]) => period), distance: points.map(([, distance]) => distance) },
+    });
 }
 
 // The figure comes with its first points: axes of nothing have no range.
-function showDistance(figure, item, known) {
+export function showDistance(figure, item, known) {
   if (!known.history.length) return;
   if (figure.item !== item) figure.load(item, "distance between observer and chain over time");
   else fillDistance(figure, known);
 }
 
 // Error against time as it is known now: points by method, then what is asked, cheapest and used.
-function fillAccuracy(figure, { drawn, told }) {
+export function fillAccuracy(figure, { drawn, told }) {
   for (const [name, data] of Object.entries(drawn)) figure.set(name, { data });
   for (const [name, properties] of Object.entries(told?.marks ?? {})) figure.set(name, properties);
 }
 
-function showAccuracy(figure, item, known) {
+export function showAccuracy(figure, item, known) {
   if (!Object.values(known.drawn).some(({ ms }) => ms.length)) return;
   if (figure.item !== item) figure.load(item, "error against computing time");
   else fillAccuracy(figure, known);

@@ -23,7 +23,8 @@ const rounded = (value) => Number(value.toPrecision(4));
 
 const written = (value, factor) => {
   const shown = Number((value / factor).toPrecision(10));
-  if (shown !== 0 && (Math.abs(shown) < 1e-3 || Math.abs(shown) >= 1e6)) return Number(shown.toPrecision(6)).toExponential().replace("e+", "e");
+  if (shown !== 0 && (Math.abs(shown) < 1e-3 || Math.abs(shown) >= 1e6))
+    return Number(shown.toPrecision(6)).toExponential().replace("e+", "e");
   return String(Number(shown.toPrecision(6)));
 };
 
@@ -57,21 +58,31 @@ class Knob {
 
   number() {
     const { spec } = this;
-    this.field = Object.assign(document.createElement("input"), { type: "text", inputMode: "decimal", spellcheck: false });
+    this.field = Object.assign(document.createElement("input"), {
+      type: "text",
+      inputMode: "decimal",
+      spellcheck: false,
+    });
     this.field.setAttribute("aria-label", `${spec.label}, ${spec.unit}`);
     this.field.autocomplete = "off";
     const unit = Object.assign(document.createElement("span"), { className: "unit", textContent: spec.unit });
     this.slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: STEPS, step: 1 });
     this.slider.setAttribute("aria-label", spec.label);
     this.el.append(this.field, unit, this.slider);
-    this.field.addEventListener("input", () => { this.editing = true; });
-    this.field.addEventListener("blur", () => { this.editing = false; });
+    this.field.addEventListener("input", () => {
+      this.editing = true;
+    });
+    this.field.addEventListener("blur", () => {
+      this.editing = false;
+    });
     this.field.addEventListener("change", () => this.typed());
     this.field.addEventListener("focus", () => this.field.select());
     this.slider.addEventListener("input", () => {
       let value = RANGE[spec.scale].value(this.slider.value / STEPS, spec);
       if (spec.whole) value = Math.round(value);
-      this.set(Number(this.slider.value) === 0 ? spec.low : Number(this.slider.value) === STEPS ? spec.high : rounded(value));
+      this.set(
+        Number(this.slider.value) === 0 ? spec.low : Number(this.slider.value) === STEPS ? spec.high : rounded(value),
+      );
     });
     for (const input of [this.slider, this.field]) input.addEventListener("keydown", (event) => this.key(event));
   }
@@ -179,7 +190,10 @@ export function render({ model }) {
     // An answer to an older movement must not pull the knob from under the hand.
     if ((message.seq ?? sent) >= sent && !waiting.size) show(message);
   });
-  const disable = (lost) => root.querySelectorAll("input, select").forEach((input) => { input.disabled = lost; });
+  const disable = (lost) =>
+    root.querySelectorAll("input, select").forEach((input) => {
+      input.disabled = lost;
+    });
   page.on("lost", disable);
   build();
   return root;

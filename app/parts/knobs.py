@@ -8,6 +8,7 @@ from granchain_core import Scene, scene
 from granchain_core.quantities import QUANTITIES
 
 from ..page.session import slider_range
+from ..scripts import module
 from .component import Component, text
 from .foundation import beside_kappa, foundation_words
 
@@ -28,7 +29,7 @@ _CUBIC = ("k", "kappa")
 class Knobs(Component):
     """The knobs' drawing; every movement comes as a message {"set": name, "value": SI value}."""
 
-    _esm = text("knobs.js")
+    _esm = module("knobs.js")
     _stylesheets = [text("controls.css"), text("knobs.css")]  # noqa: RUF012
 
 

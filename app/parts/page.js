@@ -5,17 +5,28 @@ window.granchain = (() => {
     if (!listeners.has(name)) listeners.set(name, new Set());
     listeners.get(name).add(listener);
   };
-  const emit = (name, detail) => listeners.get(name)?.forEach((listener) => listener(detail));
+  const emit = (name, detail) => {
+    for (const listener of listeners.get(name) ?? []) listener(detail);
+  };
 
   const LOOKS = ["light", "dark", "projector"];
   const remembered = () => {
-    try { return localStorage.getItem("granchain-look"); } catch { return null; }
+    try {
+      return localStorage.getItem("granchain-look");
+    } catch {
+      return null;
+    }
   };
   const system = () => (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
   const setLook = (look, keep) => {
     if (!LOOKS.includes(look)) return;
     document.documentElement.dataset.look = look;
-    if (keep) try { localStorage.setItem("granchain-look", look); } catch { /* private browsing keeps nothing */ }
+    if (keep)
+      try {
+        localStorage.setItem("granchain-look", look);
+      } catch {
+        /* private browsing keeps nothing */
+      }
     emit("look", look);
   };
   const look = () => document.documentElement.dataset.look;
@@ -35,7 +46,9 @@ window.granchain = (() => {
     for (const one of document.querySelectorAll("[data-cover]")) one.hidden = one.dataset.cover !== name;
     emit("cover", name);
   };
-  document.addEventListener("keydown", (event) => { if (event.key === "Escape" && covered) cover(null); });
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && covered) cover(null);
+  });
   document.addEventListener("pointerdown", (event) => {
     const side = document.getElementById("side");
     const page = document.getElementById("page");
@@ -43,6 +56,15 @@ window.granchain = (() => {
   });
 
   return {
-    on, emit, cover, get covered() { return covered; }, look, setLook, nextLook: () => setLook(LOOKS[(LOOKS.indexOf(look()) + 1) % 3], true), drawer,
+    on,
+    emit,
+    cover,
+    get covered() {
+      return covered;
+    },
+    look,
+    setLook,
+    nextLook: () => setLook(LOOKS[(LOOKS.indexOf(look()) + 1) % 3], true),
+    drawer,
   };
 })();

@@ -1,5 +1,5 @@
 // The replay clock and the time cursor: one row of the frames is "now" in the chain and in all pictures.
-class Clock {
+export class Clock {
   constructor(onMove) {
     this.onMove = onMove;
     this.frames = null;
@@ -43,7 +43,7 @@ class Clock {
 }
 
 // The line across all time pictures; dragging it, or any of the pictures, stops time.
-class Cursor {
+export class Cursor {
   constructor(clock) {
     this.clock = clock;
     this.stage = document.getElementById("stage");

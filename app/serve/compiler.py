@@ -14,13 +14,11 @@ from concurrent.futures import Future, wait
 from pathlib import Path
 
 from granchain_core import Scene
-from granchain_core.pieces import compile_piece
-from granchain_core.warm import is_warm, structure
+from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, structure
 
 from .queues import COMPILATIONS, CURVES, Stop
 from .waiting import STOP_LOOK
 
-LIVE, CERTIFIED, CURVE = "live", "certified", "curve"
 SENTENCE = ("Compiling the kernels for this set of effects: about 10 s, only the first time on this computer; "
             "the picture follows by itself.")
 
@@ -29,7 +27,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 
 def _compile(scene: Scene, piece: str) -> None:
     """Compile in another process; where none can be started, in this one."""
-    command = [sys.executable, "-m", "app.serve.compile_piece", piece]
+    command = [sys.executable, "-m", "granchain_core.warm", piece]
     try:
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
@@ -68,7 +66,7 @@ class Compiler:
             return True
         compilation = self.ask(scene, piece)
         while not wait([compilation], timeout=STOP_LOOK).done:
-            if stop[0]:
+            if stop:
                 return False
         compilation.result()
         return True

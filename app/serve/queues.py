@@ -13,15 +13,11 @@ from concurrent.futures import Future
 from queue import SimpleQueue
 from typing import TypeVar
 
-import numpy as np
-
 from granchain_core import Cancelled
-from granchain_core.integrate.engine import new_stop
+from granchain_core.stop import Stop
 
 Result = TypeVar("Result")
 
-Stop = np.ndarray
-"""A flag of one byte that running kernels look at."""
 
 
 class Queue:
@@ -96,7 +92,7 @@ class LatestWins:
         self._running = False
         self._refining = False
         self._closed = False
-        self._stop = new_stop()
+        self._stop = Stop()
 
     @property
     def busy(self) -> bool:
@@ -110,7 +106,7 @@ class LatestWins:
                 return
             self._waiting = work
             if self._refining:
-                self._stop[0] = 1
+                self._stop.set()
             if self._running:
                 return
             self._running = True
@@ -121,15 +117,16 @@ class LatestWins:
         with self._lock:
             self._closed = True
             self._waiting = None
-            self._stop[0] = 1
+            self._stop.set()
 
     def _next(self) -> Work | None:
         with self._lock:
             work, self._waiting = self._waiting, None
             self._running = work is not None
             self._refining = False
-            self._stop = new_stop()
-            self._stop[0] = self._closed
+            self._stop = Stop()
+            if self._closed:
+                self._stop.set()
             return work
 
     def _drain(self) -> None:

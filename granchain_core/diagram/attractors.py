@@ -1,7 +1,7 @@
 """All steady states of one setting that are found from rest, from both sweeps and from random states.
 
-Every start is settled in lanes; what is one and the same is told by sameness.py. A start that ends on an unstable
-orbit, where a slow departure looks like rest, is put beside it and runs on.
+All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable
+orbit, where a slow departure looks like a steady state, is displaced and run further.
 """
 
 from __future__ import annotations
@@ -14,21 +14,23 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, State
-from ..integrate.engine import rest
 from ..orbits import Orbit
 from ..result import ForceErrors
 from ..scene import Scene
-from ..steady.batch_job import BatchResult, Start
+from ..state import rest
+from ..steady.batch_job import Start
 from ..steady.regime import Regime
+from ..steady.steady_state import SteadyState
+from ..stop import Stop
 from .compute import settle_on_all_cores
 from .sameness import LIVE, Found, found, merged
 
 #: Frequencies passed on the way in a sweep, periods at each, and how far away it begins.
 _SWEEP, _PASS, _AWAY = 8, 150, 0.08
-#: Random states lie within so many times the largest displacement and velocity on the way from rest.
+#: Size of the box of random states, in largest displacements and velocities seen on the way from rest.
 _BOX = 1.5
-#: A start that ended on an unstable orbit is put so far beside it, relative to the motion, and runs so many periods
-#: before it is looked at again: more than it takes to leave an orbit with |μ| = 1.003.
+#: Displacement from an unstable orbit, relative to the motion, and drive periods before the next check: enough to
+#: leave an orbit with |μ| = 1.003.
 _BESIDE, _RUN_ON = 1e-2, 3000
 #: Mean exponents per drive period above which a group is chaotic, and below which it may be quasi-periodic.
 _CLEARLY, _UNCLEAR = 0.01, 5e-3
@@ -99,7 +101,7 @@ class Attractor:
         return None if self.orbit is None else self.orbit.stable
 
 
-def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Callable[[], bool] | None = None,
+def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop | None = None,
                progress: Callable[[float], None] | None = None) -> list[Attractor]:
     """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
@@ -114,8 +116,8 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Calla
         How many random states, 0 to 10,000.
     seed : int
         Of the random states; the same seed gives the same answer.
-    stop : callable, optional
-        Asked between starts; where it returns true the search ends with what there is.
+    stop : Stop, optional
+        Looked at between starts; once it is set the search ends with what there is.
     progress : callable, optional
         Called with the part that is done.
 
@@ -159,10 +161,10 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Calla
     return sorted(listed, key=lambda one: (-len(one.origins), one.max_output_force))
 
 
-def _settled(starts: list[Start], stop: Callable[[], bool] | None,
-             progress: Callable[[float], None] | None = None) -> list[BatchResult]:
+def _settled(starts: list[Start], stop: Stop | None,
+             progress: Callable[[float], None] | None = None) -> list[SteadyState]:
     """Where starts lead, in their order."""
-    results: list[BatchResult] = []
+    results: list[SteadyState] = []
     for result in settle_on_all_cores(starts, stop):
         results.append(result)
         if progress is not None:
@@ -191,7 +193,7 @@ def share(count: int, of: int) -> tuple[float, float]:
     return count / of, math.sqrt(middle * (1.0 - middle) / (of + 4.0))
 
 
-def _origins(scene: Scene, random_states: int, seed: int, stop: Callable[[], bool] | None) -> list[Origin]:
+def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> list[Origin]:
     """Rest, the ends of both sweeps, and random states."""
     _, strobes, velocity = _run_on(scene, rest(scene))
     dice = np.random.default_rng(seed)
@@ -205,11 +207,11 @@ def _origins(scene: Scene, random_states: int, seed: int, stop: Callable[[], boo
     return origins
 
 
-def _swept(scene: Scene, factor: float, stop: Callable[[], bool] | None) -> State:
+def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
     """The state in which a sweep of the frequency from `factor` times it arrives."""
     state = rest(scene)
     for step in range(_SWEEP):
-        if stop is not None and stop():
+        if stop:
             break
         f = scene.f * (factor + (1.0 - factor) * step / _SWEEP)
         state, _, _ = _run_on(scene.evolve(f=f), state)

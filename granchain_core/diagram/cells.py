@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..result import ForceErrors
-from ..steady.batch_job import BatchResult
 from ..steady.regime import Regime
+from ..steady.steady_state import SteadyState
 from .grid import Grid
 
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
@@ -39,7 +39,7 @@ def empty_cells(grid: Grid) -> np.ndarray:
     return cells
 
 
-def cell_of(result: BatchResult) -> np.ndarray:
+def cell_of(result: SteadyState) -> np.ndarray:
     """The row () of one result."""
     regime = result.regime
     name = "failed" if result.failure else regime.name

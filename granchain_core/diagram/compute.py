@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ..integrate.batch import can_share_batch
-from ..integrate.engine import new_stop
 from ..scene import Scene
-from ..steady.batch_job import BatchResult, Start
+from ..steady.batch_job import Start
 from ..steady.batch_settle import batch_states
-from ..steady.curve import CurvePoint, safe_point, second_look
+from ..steady.curve import safe_state, second_look
+from ..steady.steady_state import SteadyState
 from ..steady.threads import on_all_cores
+from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells
 from .grid import Axis, Grid
 
@@ -31,7 +33,7 @@ def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
     return list(groups.values())
 
 
-def settle_starts(starts: Iterable[Start], stop: np.ndarray) -> Iterator[BatchResult]:
+def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
     """Where starts of one structure lead: by lanes where they can share them, else one by one."""
     rest_of_them = iter(starts)
     first = next(rest_of_them, None)
@@ -40,11 +42,10 @@ def settle_starts(starts: Iterable[Start], stop: np.ndarray) -> Iterator[BatchRe
     together = _chained(first, rest_of_them)
     if can_share_batch(first.scene):
         for result in batch_states(together, stop):
-            yield result if not result.doubtful else _as_result(Start(result.scene, number=result.number),
-                                                                second_look(result, stop))
+            yield second_look(result, stop) if result.doubtful else result
         return
     for one in together:
-        yield _as_result(one, safe_point(one.scene, one.state, stop))
+        yield replace(safe_state(one.scene, one.state, stop), number=one.number)
 
 
 def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
@@ -52,48 +53,39 @@ def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
     yield from others
 
 
-def _as_result(start: Start, point: CurvePoint) -> BatchResult:
-    tops = np.array([point.max_input_force, point.max_output_force, point.max_output_force_elastic])
-    return BatchResult(start.scene, tops, point.regime, _errors(point), point.state, point.failure, start.number)
-
-
-def _errors(point: CurvePoint) -> np.ndarray | None:
-    return None if point.error_estimate is None else np.array(point.force_errors.row)
-
-
-def block_cells(grid: Grid, numbers: Sequence[int], stop: np.ndarray | None = None) -> np.ndarray:
+def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
     """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
-    flag = new_stop() if stop is None else stop
+    stop = Stop() if stop is None else stop
     found = [cell_of(result) for group in by_structure(grid, numbers)
-             for result in settle_starts(starts_of(grid, group), flag)]
+             for result in settle_starts(starts_of(grid, group), stop)]
     return np.array(found)
 
 
 def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
-                 stop: Callable[[], bool] | None = None, workers: int | None = None,
-                 pause: Callable[[], None] | None = None) -> Iterator[BatchResult]:
+                 stop: Stop | None = None, workers: int | None = None,
+                 pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
     """Cells of the diagram as they are decided, coarse first; `missing` are those wanted, else all.
 
-    The result's `number` is the cell's. `stop` is asked between cells and may end the computation; running cells are
-    then given up. `pause` is called before a cell is begun and may wait.
+    The result's `number` is the cell's. `stop` is looked at between cells and may end the computation; running cells
+    are then given up. `pause` is called before a cell is begun and may wait.
     """
     wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
     groups = by_structure(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
     for group in groups:
         yield from settle_on_all_cores(starts_of(grid, group), stop, workers, pause)
-        if stop is not None and stop():
+        if stop:
             return
 
 
-def settle_on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None = None,
-                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[BatchResult]:
+def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,
+                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
     """Where starts of one structure lead, as they are found; closing the generator ends it."""
-    flag = new_stop()
-    return on_all_cores(lambda shared: settle_starts(shared, flag), starts, flag, stop, workers, pause)
+    ended = Stop()
+    return on_all_cores(lambda shared: settle_starts(shared, ended), starts, ended, stop, workers, pause)
 
 
 def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
-            stop: Callable[[], bool] | None = None, progress: Callable[[Diagram, float], None] | None = None,
+            stop: Stop | None = None, progress: Callable[[Diagram, float], None] | None = None,
             workers: int | None = None) -> Diagram:
     """Regime and largest forces over two knobs, every cell from rest, on all cores.
 
@@ -103,8 +95,8 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
         The chain.
     x, y : tuple of (str, iterable of float)
         A knob ("f", "A0", "D", "k", "kappa", "F0" or "wall") and its ascending values in SI.
-    stop : callable, optional
-        Asked between cells; where it returns true the diagram ends, and what is not computed has regime −1.
+    stop : Stop, optional
+        Looked at between cells; once it is set the diagram ends, and what is not computed has regime −1.
     progress : callable, optional
         Called with the diagram so far and the part of it that is done, after every cell.
     workers : int, optional

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import Engine, Setting
+from ..integrate import Engine, Setting, certified
 from ..laws import LAWS
 from ..run.run import run
 from ..scene import Scene, scene
@@ -15,7 +15,7 @@ from .oracle import Plain, restitution, solved
 
 
 def overdamped(times: float, beads: int = 3) -> Scene:
-    """The rig with so many times its damping."""
+    """The rig with a multiple of its damping."""
     return scene("rig").evolve(N=beads, D=35.4 * times, f=160.0, accuracy=1e-7)
 
 
@@ -82,7 +82,7 @@ def _pulls(periods: int) -> list[Figure]:
     """The largest pull of any contact over the largest push, cut; and that without the cut there is one."""
     forces = {}
     for tension in ("cut", "allowed"):
-        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), Setting("dop853", tolerance=1e-10), 256)
+        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), certified(1e-10), 256)
         force = engine.record(256 * periods).force
         forces[tension] = float(max(0.0, -force.min()) / force.max())
     return [Figure("largest pull of a cut contact over its largest push", forces["cut"], 1e-14),
@@ -91,7 +91,7 @@ def _pulls(periods: int) -> list[Figure]:
 
 
 def naive_bounce(strength: float, steps: float) -> float:
-    """The restitution with the dashpot that plain RK4 in (u, v) finds with so many steps in a contact."""
+    """The restitution with the dashpot by plain RK4 in (u, v), for a number of steps per contact."""
     h, state = contact_time(1.0, 1.0) / steps, np.array([-0.3 * contact_time(1.0, 1.0) / steps, 1.0])
 
     def slope(y: np.ndarray) -> np.ndarray:

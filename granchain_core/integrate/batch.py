@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -12,7 +11,6 @@ from ..kernels.batch import run as kernels
 from ..kernels.batch.period_end import FINE, FORCES, FORGET, REMEMBERED
 from ..kernels.batch.run import LANES
 from ..kernels.effects.unequal import Unequal
-from ..kernels.equations.motion import place
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.simd.vector import aligned
@@ -21,7 +19,7 @@ from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..lower import Lowered, lower
 from ..scene import Scene
-from .engine import State
+from ..stop import Stop
 
 #: A period that no lane reaches.
 NEVER = int(np.iinfo(np.int64).max)
@@ -43,7 +41,7 @@ def is_uniform(lowered: Lowered) -> bool:
 class Batch:
     """Eight places for scenes of one structure and one N, run by one thread."""
 
-    def __init__(self, example: Scene, stop: np.ndarray) -> None:
+    def __init__(self, example: Scene, stop: Stop) -> None:
         lowered = lower(example)
         self.stop = stop
         n, slots = example.N, lowered.slots
@@ -68,13 +66,13 @@ class Batch:
             change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
             triangle=np.zeros((ORBITS, ORBITS)),
         )
-        for lane in range(LANES):  # an empty lane runs the example, at rest, and is never looked at
+        for lane in range(LANES):  # an empty lane runs the example at rest and is never checked
             self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
 
     def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, look: int, earliest: int = 0) -> None:
         """Start a scene in a lane from the scaled state y at phase 0, with `refine` times the live method's steps.
 
-        It is looked at after `look` periods, or from `earliest` on when it may have settled.
+        It is checked after `look` periods, or from `earliest` on once it may have settled.
         """
         slots, lanes, state = lowered.slots, self.lanes, self.state
         steps = math.ceil(refine * lowered.steps_per_period())
@@ -103,15 +101,15 @@ class Batch:
                  tops: np.ndarray) -> None:
         """Start a scene on the orbit y of a coarser run, of `period` and decay `rate` per orbit, with its forces.
 
-        It is looked at when it has forgotten that orbit for its own.
+        It is checked once the difference from that orbit has decayed.
         """
         orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(FORGET) / math.log(rate))))
         self.put(lane, lowered, y, refine, NEVER, orbits * period)
         self.state.fine[lane] = period, rate, *tops, orbits, 0.0
 
     def run(self) -> tuple[int, bool]:
-        """Run until a lane should be looked at; its number, and whether it is finite."""
-        status, lane = kernels.run_batch(self.lanes, self.state, self.stop)
+        """Run until a lane is due for a check; its number, and whether it is finite."""
+        status, lane = kernels.run_batch(self.lanes, self.state, self.stop.flag)
         if status == CANCELLED:
             raise Cancelled
         return int(lane), status == 0
@@ -119,7 +117,7 @@ class Batch:
     def run_pairs(self, start: float, periods: int) -> np.ndarray:
         """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (4, periods)."""
         growth = np.zeros((LANES // 2, periods))
-        status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop)
+        status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop.flag)
         if status == CANCELLED:
             raise Cancelled
         return growth if status == 0 else np.full_like(growth, np.nan)
@@ -146,21 +144,3 @@ class Batch:
         run = int(self.state.periods[lane])
         places = np.arange(max(1, run - min(periods, REMEMBERED) + 1), run + 1) % REMEMBERED
         return self.state.tops[lane, places].max(axis=0)
-
-
-def state_of(lowered: Lowered, y: np.ndarray) -> State:
-    """The state in SI of a scaled (u, w) array at phase 0."""
-    slope, row, scales = np.zeros_like(y), lowered.row, lowered.scales
-    place(lowered.slots, 0.0, y.copy(), slope, lowered.forces(), False)
-    return State(y[1 : row - 1] * scales.length, slope[1 : row - 1] * scales.velocity)
-
-
-def scaled_state(lowered: Lowered, state: State) -> np.ndarray:
-    """The scaled (u, w) array of a state at phase 0."""
-    row, scales = lowered.row, lowered.scales
-    y: Any = np.zeros(2 * row)
-    y[1 : row - 1] = state.displacement / scales.length
-    y[row + 1 : 2 * row - 1] = state.velocity / scales.velocity
-    place(lowered.slots, 0.0, y, np.zeros_like(y), lowered.forces(), True)
-    y[0] = 0.0
-    return y

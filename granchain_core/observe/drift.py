@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..integrate.batch import scaled_state
 from ..orbits import Orbit
 from ..orbits.flow import StroboscopicMap
 
@@ -24,7 +23,7 @@ def observer_drift(orbit: Orbit) -> str | None:
     if found is None or abs(found[0]) < 1.0 - _NEAR:
         return None
     strobe = StroboscopicMap(orbit.scene, orbit.period)
-    flow = strobe(strobe.inner(scaled_state(strobe.engine.lowered, orbit.state)), observer=True)
+    flow = strobe(strobe.inner(strobe.engine.lowered.scaled(orbit.state)), observer=True)
     values, vectors = np.linalg.eig(flow.derivative)
     leading = int(np.argmax(np.abs(values)))
     moved = vectors[: orbit.scene.N, leading].real

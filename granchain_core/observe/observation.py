@@ -18,9 +18,11 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import State
-from ..integrate.engine import new_stop, rest
+from ..integrate.methods import LIVE
 from ..result import Cost
 from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
 
@@ -122,7 +124,7 @@ class Observation:
 
 
 def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,
-            offset: float | str = 0.0, gap: str = "refuse", stop: np.ndarray | None = None,
+            offset: float | str = 0.0, gap: str = "refuse", stop: Stop | None = None,
             progress: Callable[[float], None] | None = None) -> Observation:
     """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
 
@@ -145,7 +147,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         Subtracted from the force [N].
     gap : str
         What is done with a gap in the record: "refuse", "zero" or "interpolate".
-    stop : numpy.ndarray, shape (1,), optional
+    stop : Stop, optional
         A byte that another thread sets to 1 to end the computation.
     progress : callable, optional
         Called with the part that is done, 0 to 1.
@@ -180,9 +182,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_VALUES:.0e} values; "
                        f"give at most {MOST_VALUES // scene.N} samples.")
     began = clock.perf_counter()
-    flag = new_stop() if stop is None else stop
+    stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else start
-    chain = PushedChain(scene, record, flag)
+    chain = PushedChain(scene, record, stop)
     before, halvings = chain.run(begin, 0), 0
     while True:
         halvings += 1
@@ -194,7 +196,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
             break
         before = now
     thin = record.thinned()
-    coarse = PushedChain(scene, thin, flag, chain.counts).run(begin, halvings)
+    coarse = PushedChain(scene, thin, stop, chain.counts).run(begin, halvings)
     kept = np.searchsorted(record.time, thin.time)
     tops, scales = chain.tops, chain.lowered.scales
     displacement = now.displacement * scales.length
@@ -209,7 +211,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         integration_error=integration,
         interpolation_error=_UNEVEN * _difference(now.displacement[kept], coarse.displacement),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",
-        cost=Cost.of(clock.perf_counter() - began, chain.counts, "rk4-split"),
+        cost=Cost.of(clock.perf_counter() - began, chain.counts, LIVE),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, State, certified
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import FAR
 from ..kernels.effects.given_force import ObserverCoupling
@@ -19,6 +19,7 @@ from ..kernels.effects.preload import Preload
 from ..kernels.samples import Samples
 from ..lower import Lowered, lower
 from ..scene import Scene
+from ..stop import Stop
 
 #: Tolerance of one step, relative to the largest displacement and w: the pair is then followed to about 1e-11.
 TOLERANCE = 1e-13
@@ -46,9 +47,9 @@ class Pair:
     Both go through the same arithmetic: an observer that starts where its chain is stays there to the last bit.
     """
 
-    def __init__(self, scene: Scene, samples: int, stop: np.ndarray | None = None) -> None:
+    def __init__(self, scene: Scene, samples: int, stop: Stop | None = None) -> None:
         self.scene = scene
-        self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop,
+        self.engine = Engine(scene, certified(TOLERANCE), samples, stop=stop,
                              lowered=lower_pair(scene))
 
     def start(self, chain: State, observer: State) -> None:

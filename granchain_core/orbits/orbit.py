@@ -14,11 +14,11 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import State
-from ..integrate.batch import scaled_state, state_of
 from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settle import settle
+from ..stop import Stop
 from .flow import Flow, StroboscopicMap, refuse_cut
 from .krylov import leading_multipliers, newton_step
 
@@ -90,7 +90,7 @@ class Orbit:
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
-                   stop: np.ndarray | None = None) -> Orbit:
+                   stop: Stop | None = None) -> Orbit:
     """A periodic orbit by Newton's method on the stroboscopic map, stable or not. Also called `orbit`.
 
     Its Floquet multipliers are the eigenvalues of the map's derivative, computed with the orbit (docs/orbits.md).
@@ -105,7 +105,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
         Newton's method begins here; in the steady state reached from rest if not given.
     observer : bool
         Whether to compute the multipliers of the observer, model (4) of Zhang et al. 2016.
-    stop : numpy.ndarray, shape (1,), optional
+    stop : Stop, optional
         A byte that another thread sets to 1 to end the computation.
 
     Returns
@@ -142,7 +142,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
         start = way.engine.state
     n = n or 1
     strobe = StroboscopicMap(scene, n, stop)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, start))
+    x = strobe.inner(strobe.engine.lowered.scaled(start))
     x, flow, history = _newton(strobe, x)
     return _orbit(scene, n, strobe, x, flow, history, observer)
 
@@ -214,11 +214,9 @@ def _orbit(scene: Scene, n: int, strobe: StroboscopicMap, x: np.ndarray, flow: F
     else:
         multipliers = leading_multipliers(strobe, x)
         watched = leading_multipliers(strobe, x, observer=True) if observer else None
-    lowered, beads = strobe.engine.lowered, scene.N
-    y = np.zeros(2 * lowered.row)
-    y[1 : beads + 1], y[lowered.row + 1 : lowered.row + beads + 1] = x[:beads], x[beads:]
-    return Orbit(scene, n, state_of(lowered, y), history[-1], tuple(history), multipliers, liouville, flow.changes,
-                 watched)
+    lowered = strobe.engine.lowered
+    return Orbit(scene, n, lowered.unscaled(lowered.embed(x)), history[-1], tuple(history), multipliers, liouville,
+                 flow.changes, watched)
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:

@@ -21,14 +21,8 @@ from ..integrate import METHODS, Setting
 from ..lower import Lowered, lower
 from ..scene import Scene
 
-#: Seconds a run may take unless it is told otherwise.
+#: Default budget of a run [s].
 BUDGET = 86_400.0
-#: Seconds of one step of a method with fixed steps: so much, and so much for each contact.
-_STEP: dict[str, tuple[float, float]] = {"rk4-split": (450e-9, 45e-9), "rk4": (350e-9, 35e-9),
-                                         "rk4-naive": (120e-9, 40e-9), "verlet-naive": (80e-9, 12e-9)}
-#: The same of an accepted step with error control with what it rejects, steps in a unit of scaled time at a tolerance
-#: of 1e-8, and the power of the tolerance by which there are more.
-_ADAPTIVE: dict[str, tuple[float, float, float, float]] = {"dop853": (2.5e-6, 480e-9, 5.0, 0.1)}
 #: Seconds of one recorded sample, and of each bead in it.
 _SAMPLE = 0.6e-6, 40e-9
 #: Seconds of the measure of speed on the machine the figures above were taken on.
@@ -72,7 +66,7 @@ event.register("numba:compiler_lock", _COMPILER)
 
 
 class Stopwatch:
-    """What a computation in this thread takes by itself: a kernel's first use compiles it, which is no part of it."""
+    """Time of a computation in this thread, without that of compiling kernels at their first use."""
 
     def __init__(self) -> None:
         self._began, self._compiled = time.perf_counter(), _COMPILER.seconds
@@ -104,15 +98,15 @@ def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, re
     finer = setting.finer_than(lowered, samples)
     twice = _share(setting) + _share(finer)
     for one in (setting, finer):
+        cost = METHODS[one.method].cost
         if METHODS[one.method].adaptive:
-            fixed, each, rate, power = _ADAPTIVE[one.method]
             # with contacts open most of the time, as at low frequency, steps are longer
-            rate *= (1e-8 / max(one.tolerance, 1e-16)) ** power
+            rate = cost.rate * (1e-8 / max(one.tolerance, 1e-16)) ** cost.power
             count = periods * max(16.0, lowered.period * rate)
         else:
-            (fixed, each), count = _STEP[one.method], float(periods * one.steps_per_period(lowered, samples))
+            count = float(periods * one.steps_per_period(lowered, samples))
         steps += count
-        seconds += count * (fixed + each * (beads + 1))
+        seconds += count * (cost.fixed + cost.each * (beads + 1))
     often = np.sqrt(1.0 + _share(finer.finer_than(lowered, samples)) / twice)
     steps, seconds = steps * often, seconds * often
     seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
@@ -122,7 +116,7 @@ def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, re
 def _share(setting: Setting) -> float:
     """What a computation costs beside others of the same run."""
     if METHODS[setting.method].adaptive:
-        return float(max(setting.tolerance, 1e-16) ** -_ADAPTIVE[setting.method][3])
+        return float(max(setting.tolerance, 1e-16) ** -METHODS[setting.method].cost.power)
     return setting.refine
 
 

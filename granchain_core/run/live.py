@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
-from ..integrate.engine import rest
+from ..integrate import Engine, State, live
 from ..result import Cost, Jumps, Run, run_from
 from ..scene import Scene
+from ..state import rest
 from ..steady.regime import Regime
 
-_NOT_ASKED = Regime("unsettled", None, None, None, 0)
+_NOT_ASKED = Regime.unsettled(0)
 
 
 class LiveChain:
@@ -62,7 +62,7 @@ class LiveChain:
             self._index = round(start.phase * samples) % samples
 
     def _new_engine(self, scene: Scene, state: State) -> Engine:
-        engine = Engine(scene, Setting("rk4-split", refine=2), self.samples)
+        engine = Engine(scene, live(2), self.samples)
         engine.start(state)
         return engine
 

@@ -14,27 +14,28 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import Engine, Setting, State, method_for
-from ..integrate.engine import Counts, new_stop, rest
+from ..integrate import Counts, Engine, Setting, State, live, method_for
 from ..integrate.methods import jump_errors, setting_of, typical_error
 from ..kernels.samples import Samples
 from ..result import Cost, Run, relative_changes, residual, run_from
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
+from ..state import rest
 from ..steady.decide import as_it_stands
 from ..steady.regime import Regime, find_period
+from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
 from .stated import Computations
 
 #: Most periods in all and most recorded rows of one run.
 MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
-#: A motion whose error is stated larger than this may be chaotic: finer computations will not help then.
+#: Stated error above which a motion may be chaotic: finer computations do not help then.
 _LOST = 0.3
-#: It is then computed until its energy account closes to so many times the accuracy, energies being quadratic.
+#: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.
 _CLOSES = 10.0
 #: Periods whose stroboscopic states are kept to decide the regime, however long a run is.
 _KEPT = 420
-#: The next finer computation takes about so many times as long.
+#: Time of the next finer computation over that of the last.
 _TWICE = 2.0
 #: Fewest periods on which a run is called anything but unsettled.
 _ENOUGH = 40
@@ -50,7 +51,7 @@ class _Attempt:
 
 
 def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, method: str | None = None,
-        start: State | None = None, stop: np.ndarray | None = None,
+        start: State | None = None, stop: Stop | None = None,
         progress: Callable[[float], None] | None = None, budget: float = BUDGET) -> Run:
     """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
 
@@ -72,8 +73,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         "rk4-split", "dop853", "rk4", "rk4-naive" or "verlet-naive" in place of the one chosen from the accuracy.
     start : State, optional
         Where the motion begins; at rest, or with the scene's thrown beads, if not given.
-    stop : numpy.ndarray, shape (1,), optional
-        A byte that another thread sets to 1 to end the computation (`granchain_core.integrate.state.new_stop`).
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
     progress : callable, optional
         Called with the fraction of the present computation, 0 to 1.
     budget : float
@@ -109,16 +110,16 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     """
     _check_sizes(scene, periods, record, samples)
     began, spent = time.perf_counter(), Stopwatch()
-    flag = new_stop() if stop is None else stop
+    stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else start
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     check_budget(scene, setting, periods, record, samples, budget)
     total, status, shown = Counts(), "accuracy-not-reached", Computations(scene.cuts_tension)
     shown.begin(setting)
-    before = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
+    before = _attempt(scene, setting, begin, (periods, record, samples), stop, progress, total)
     while True:
         setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
-        now = _attempt(scene, setting, begin, (periods, record, samples), flag, progress, total)
+        now = _attempt(scene, setting, begin, (periods, record, samples), stop, progress, total)
         shown.add(setting, now.engine.counts.steps, _differences(now, before), _least(now, setting))
         error = float(shown.stated[0])
         lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
@@ -128,7 +129,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
             status = "over-budget"
             break
         before = now
-    regime = _regime(scene, now, periods + record, flag)
+    regime = _regime(scene, now, periods + record, stop)
     if error <= scene.accuracy:
         status = "done"
     error, *forces = shown.final(status == "done")
@@ -156,7 +157,7 @@ def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
                        f"{MOST_ROWS:.0e} are recorded: record {max(1, MOST_ROWS // (samples * scene.N))} periods.")
 
 
-def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int, int], stop: np.ndarray,
+def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int, int], stop: Stop,
              progress: Callable[[float], None] | None, total: Counts) -> _Attempt:
     periods, record, samples = sizes
     engine = Engine(scene, setting, samples, balance=True, stop=stop)
@@ -211,13 +212,13 @@ def _least(now: _Attempt, setting: Setting) -> np.ndarray:
     return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])
 
 
-def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: np.ndarray) -> Regime:
-    """The regime as far as these periods show it; a slow one is told apart by multipliers or its Lyapunov exponent."""
+def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime:
+    """The regime shown by these periods; a slow motion is classified by multipliers or its Lyapunov exponent."""
     tolerance = 10.0 * scene.accuracy
     regime = replace(find_period(attempt.strobes, rounding=min(1e-6, tolerance)), periods_run=periods)
     if periods < _ENOUGH or attempt.engine.grid_index != 0:
         return regime
-    engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
+    engine = Engine(scene, live(), 1, stop=stop)
     engine.start(attempt.engine.state)
     return as_it_stands(engine, attempt.strobes, regime)
 

@@ -11,27 +11,27 @@ from ..integrate.methods import METHODS, Setting, typical_error
 #: What the difference of two computations is multiplied by for a method whose order is even across contact events,
 #: and for others.
 _CAUTION, _UNEVEN = 1.5, 3.0
-#: Rounding enters as so many times what the roundings of all steps come to as a random walk, times the growth of
-#: errors; that is counted from what few scenes exceed, eight times what is usual.
+#: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors. It is
+#: chosen so that few scenes exceed it: eight times the usual rounding.
 _ROUNDINGS = 32.0
 #: Where the typical error of the steps is above this, rounding is no part of the difference.
 _SMOOTH = 1e-10
-#: A motion whose error is larger than this when it ends has none worth the name: then twice all of it is stated, since
-#: either computation may be wherever chaos leads, to the other side too.
+#: Relative error above which a motion counts as chaotic at its end, and what is stated then, in amplitudes of the
+#: motion: two chaotic computations may differ by twice the amplitude.
 _WORTHLESS, _ALL = 0.05, 2.0
 
 
 @dataclass(eq=False)
 class Computations:
-    """What computations of one motion have shown of their errors, in several quantities at once.
+    """The errors of several computations of one motion, for several quantities at once.
 
-    Two may agree by chance, and where a finer one is computed until two agree, chance has many tries. So no less is
-    stated than
-      - the difference, with a factor;
-      - what the method's order leaves of the difference before it;
-      - what is typical of the steps;
-      - the rounding of the steps, grown as the errors of the first steps grew on their way.
-    The first of the quantities decides how errors grow.
+    Two computations may agree by chance, and a search that stops at agreement favours such chances. The stated error is
+    the largest of
+      - the difference of the last two, times a factor;
+      - the previous difference, reduced by the method's order;
+      - the typical error of a method with such steps;
+      - the rounding of the steps, magnified as the errors of the first computation were.
+    The first quantity determines how errors grow.
     """
 
     cuts_tension: bool
@@ -46,14 +46,14 @@ class Computations:
         self.settings.append(setting)
 
     def add(self, setting: Setting, steps: int, differences: np.ndarray, least: np.ndarray) -> None:
-        """A finer one in so many steps: relative differences from the one before, and what errors are at least."""
+        """Add a finer computation of `steps` steps: its relative differences from the last one, and least errors."""
         coarser = self.settings[-1]
         self._see_growth(coarser, float(differences[0]))
         self.rounding = _ROUNDINGS * self._growth * np.finfo(float).eps * float(np.sqrt(steps))
         seen = differences
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
-        even = setting.method == "rk4-split" and not self.cuts_tension
+        even = METHODS[setting.method].even and not self.cuts_tension
         self.stated = np.maximum((_CAUTION if even else _UNEVEN) * seen, np.maximum(least, self.rounding))
         self._before = differences
         self.settings.append(setting)

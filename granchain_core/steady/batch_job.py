@@ -1,4 +1,4 @@
-"""One scene on its way through the lanes: when it is looked at, and what is done with what is seen."""
+"""One member of a batch: when its regime is checked, and what follows from the result."""
 
 from __future__ import annotations
 
@@ -6,19 +6,20 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
-from ..integrate.batch import Batch, state_of
-from ..integrate.engine import rest
+from ..integrate import Engine, State, live
+from ..integrate.batch import Batch
 from ..integrate.methods import AT_A_JUMP, jump_errors
 from ..lower import Lowered
 from ..result import CAUTION, relative_changes
 from ..scene import Scene
+from ..state import rest
 from .decide import MOST_PERIODS, SLOW_PERIODS
 from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
+from .steady_state import SteadyState
 
-#: How the largest forces on an orbit are found where they jump: finer than the lanes that found the orbit.
-_LOCATED = Setting("rk4-split", refine=8)
+#: How the largest forces on an orbit are found where they jump: finer than the batch that found the orbit.
+_LOCATED = live(8)
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
 
@@ -30,29 +31,6 @@ class Start:
     scene: Scene
     state: State | None = None
     number: int = 0
-
-
-@dataclass(eq=False)
-class BatchResult:
-    """A steady state found in a lane: largest forces [N] in the order input, output, elastic output.
-
-    `errors` (3,) are their relative errors, None where none is claimed; `number` is that of its start. Where it is
-    `doubtful` the lanes did not decide, and `settle` has to, from `state`.
-    """
-
-    scene: Scene
-    tops: np.ndarray
-    regime: Regime
-    errors: np.ndarray | None
-    state: State
-    failure: str = ""
-    number: int = 0
-    doubtful: bool = False
-
-    @property
-    def error_estimate(self) -> float | None:
-        """Relative error of the output force; None where none is claimed."""
-        return None if self.errors is None else float(self.errors[1])
 
 
 @dataclass(eq=False)
@@ -84,7 +62,7 @@ class Job:
         """Whether the budget of steps allows another long look."""
         return self.run + MOST_PERIODS < self.affordable_periods
 
-    def fine_result(self, block: Batch, lane: int) -> BatchResult:
+    def fine_result(self, block: Batch, lane: int) -> SteadyState:
         """The result of the finer run."""
         assert self.coarse is not None
         regime, before = self.coarse
@@ -99,7 +77,7 @@ class Job:
         # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
         errors += 1.5 * max(distance, regime.distance)
         tops = tops * self.lowered.scales.force
-        return BatchResult(self.scene, tops, replace(regime, distance=distance), errors, state_of(self.lowered, y),
+        return SteadyState(self.scene, tops, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
                           number=self.number)
 
     def _located_tops(self, y: np.ndarray, regime: Regime) -> tuple[np.ndarray, np.ndarray]:
@@ -109,15 +87,15 @@ class Job:
         shows by how much the forces still change on the way from the lanes' orbit to this method's.
         """
         assert regime.period is not None
-        engine, row = Engine(self.scene, _LOCATED, 1, lowered=self.lowered), self.lowered.row
-        engine.start_scaled(np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]]))
+        engine = Engine(self.scene, _LOCATED, 1, lowered=self.lowered)
+        engine.start_scaled(self.lowered.beads_of(y))
         first = engine.largest_forces(regime.period)
         tops = engine.largest_forces(regime.period)
         moved = relative_changes(tops, first) / (1.0 - regime.slowness)
         return tops, moved + jump_errors(_LOCATED, self.lowered, 1, engine.jumps, tops)
 
 
-def draft_result(job: Job, block: Batch, lane: int) -> BatchResult:
+def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:
     """What the coarse run alone has come to."""
     run = int(block.state.periods[lane])
     period = block.state.seen[lane, 0]
@@ -125,10 +103,10 @@ def draft_result(job: Job, block: Batch, lane: int) -> BatchResult:
         return unsettled(job, block, lane, run)
     regime = _periodic(block, lane, run)
     tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
-    return BatchResult(job.scene, tops, regime, None, state_of(job.lowered, block.state.y[:, lane]), number=job.number)
+    return SteadyState(job.scene, tops, regime, None, job.lowered.unscaled(block.state.y[:, lane]), number=job.number)
 
 
-def check_coarse(job: Job, block: Batch, lane: int) -> BatchResult | Job | None:
+def check_coarse(job: Job, block: Batch, lane: int) -> SteadyState | Job | None:
     """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
     here = int(block.state.periods[lane])
     run = job.run + here
@@ -161,16 +139,16 @@ def _in_doubt(job: Job, block: Batch, lane: int, run: int, record: np.ndarray) -
                number=job.number)
 
 
-def unsettled(job: Job, block: Batch, lane: int, run: int) -> BatchResult:
+def unsettled(job: Job, block: Batch, lane: int, run: int) -> SteadyState:
     """What a lane has come to when its budget of steps is spent."""
     tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
-    state = state_of(job.lowered, block.state.y[:, lane])
-    return BatchResult(job.scene, tops, Regime("unsettled", None, None, None, run), None, state,
+    state = job.lowered.unscaled(block.state.y[:, lane])
+    return SteadyState(job.scene, tops, Regime.unsettled(run), None, state,
                       number=job.number)
 
 
-def failed(job: Job) -> BatchResult:
+def failed(job: Job) -> SteadyState:
     """A lane whose numbers stopped being finite."""
-    nothing = Regime("unsettled", None, None, None, 0)
     sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping or ask for higher accuracy."
-    return BatchResult(job.scene, np.full(3, np.nan), nothing, None, rest(job.scene), sentence, job.number)
+    return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(0), None, rest(job.scene), sentence,
+                       "not-finite", job.number)

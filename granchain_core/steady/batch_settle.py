@@ -1,11 +1,11 @@
-"""Many steady states at once by lanes: settle coarsely, then finely, and let the difference be the error.
+"""Many steady states in batches: settle with coarse steps, then with fine ones; the difference is the error.
 
-Every scene starts in a lane at a coarse step. When its regime is decided its place is filled with the next one; a
-periodic scene comes back once more at a third of the step, from where it settled, until the coarse orbit is
-forgotten. The forces of the finer run are given, with their change as error estimate. A slow approach is followed to
-where it leads (extrapolate.py), on the way to the coarse orbit and to the finer one. What is not periodic within the
-budget is told apart by its Lyapunov exponent, four scenes at a time. Results that this leaves in doubt are marked: they
-are for `settle`, which takes one chain at a time (curve.py).
+Every scene starts in a lane with coarse steps. Once its regime is decided, the next scene takes its lane. A
+periodic scene is run again from its settled state with a third of the step, until the difference from the coarse orbit
+has decayed; the forces of this finer run are reported, with their change as error estimate. Slow approaches are
+extrapolated in both runs (kernels/strobes/extrapolation.py). Motions that are not periodic within the
+budget are classified by their Lyapunov exponents, four scenes at a time. Results that are still undecided are marked
+and left to `settle`, which takes one chain at a time (curve.py).
 """
 
 from __future__ import annotations
@@ -15,16 +15,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate.batch import NEVER, Batch, scaled_state, state_of
-from ..integrate.engine import rest
+from ..integrate.batch import NEVER, Batch
 from ..kernels.batch.run import LANES
 from ..lower import lower
 from ..scene import Scene
-from .batch_job import BatchResult, Job, Start, check_coarse, draft_result, failed
+from ..state import rest
+from ..stop import Stop
+from .batch_job import Job, Start, check_coarse, draft_result, failed
 from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
 from .lyapunov import MOST_APART, exponents_in_pairs
 from .nearby_orbit import MOST_BEADS, seen_modulus
 from .regime import agree, clearly_chaotic, find_period, irregular
+from .steady_state import SteadyState
 
 #: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
 #: which is what is claimed.
@@ -41,7 +43,7 @@ _PAIRS = LANES // 2
 class _Lanes:
     """A block of lanes with the jobs in them, those waiting for a lane and those whose regime is in doubt."""
 
-    def __init__(self, first: Start, starts: Iterator[Start], stop: np.ndarray, draft: bool) -> None:
+    def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
         self.block = Batch(first.scene, stop)
         self.draft = draft
         self.stop = stop
@@ -60,7 +62,7 @@ class _Lanes:
                     self._start(lane, job)
 
     def _start(self, lane: int, job: Job) -> None:
-        """The coarse run is looked at when it has settled, the finer one when it has forgotten the coarse one."""
+        """The coarse run is checked once it may have settled, the finer one once its start has decayed."""
         if job.coarse is None:
             look = min(_DRAFT if self.draft else MOST_PERIODS, job.affordable_periods - job.run)
             self.block.put(lane, job.lowered, job.y, 1, look)
@@ -70,8 +72,8 @@ class _Lanes:
         rate = max(1e-3, regime.slowness)
         self.block.put_fine(lane, job.lowered, job.y, _FINER, regime.period, rate, tops)
 
-    def step(self) -> BatchResult | None:
-        """Run until a lane is to be looked at, and do so."""
+    def step(self) -> SteadyState | None:
+        """Run until a lane is due for a check, and check it."""
         lane, finite = self.block.run()
         job = self.jobs[lane]
         if not finite:
@@ -85,7 +87,7 @@ class _Lanes:
         if outcome is None:
             return None
         self._free(lane)
-        if isinstance(outcome, BatchResult):
+        if isinstance(outcome, SteadyState):
             return confirmed(outcome, self.stop)
         (self.doubtful if outcome.in_doubt else self.waiting).append(outcome)
         return None
@@ -103,7 +105,7 @@ class _Lanes:
                 return jobs[i : i + _PAIRS]
         return [] if self.jobs else [job for job in jobs if _steps(job) <= MOST_APART * _steps(jobs[0])]
 
-    def decide(self, jobs: list[Job]) -> Iterator[BatchResult]:
+    def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
         """Tell doubtful jobs apart; one whose neighbours come closer is given more time."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
         found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], BLOCKS, BLOCK, self.stop)
@@ -126,11 +128,11 @@ class _Lanes:
                 self.waiting.append(job)
             else:
                 unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
-                yield BatchResult(job.scene, job.tops, regime, None, state_of(job.lowered, y), number=job.number,
+                yield SteadyState(job.scene, job.tops, regime, None, job.lowered.unscaled(y), number=job.number,
                                  doubtful=unclear and job.affordable)
 
 
-def batch_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False) -> Iterator[BatchResult]:
+def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
     """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
 
     See `batch_states`.
@@ -138,7 +140,7 @@ def batch_results(scenes: Iterator[Scene], stop: np.ndarray, draft: bool = False
     return batch_states((Start(scene) for scene in scenes), stop, draft)
 
 
-def batch_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False) -> Iterator[BatchResult]:
+def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
     What is found does not depend on which starts share the lanes, but for rounding. A draft ends with the coarse run
@@ -161,12 +163,12 @@ def batch_states(starts: Iterator[Start], stop: np.ndarray, draft: bool = False)
                 yield result
 
 
-def confirmed(result: BatchResult, stop: np.ndarray) -> BatchResult:
+def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
     """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
     if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:
         return result
-    y = scaled_state(lower(scene), result.state).reshape(2, -1)
+    y = lower(scene).scaled(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
     return result if largest < _SURE else replace(result, doubtful=True)
 
@@ -178,7 +180,7 @@ def _steps(job: Job) -> int:
 def _new_job(start: Start) -> Job:
     lowered = lower(start.scene)
     state = rest(start.scene) if start.state is None else start.state
-    return Job(start.scene, lowered, scaled_state(lowered, state), number=start.number)
+    return Job(start.scene, lowered, lowered.scaled(state), number=start.number)
 
 
 def _job_or_none(starts: Iterator[Start]) -> Job | None:

@@ -13,14 +13,14 @@ import numpy as np
 from ..errors import BadInput, NumbersFailed, unknown_name
 from ..integrate import Engine, State
 from ..integrate.batch import can_share_batch
-from ..integrate.engine import new_stop
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, ForceErrors, relative_changes
 from ..scene import Scene
-from .batch_job import BatchResult
+from ..stop import Stop
 from .batch_settle import batch_results
 from .regime import Regime
 from .settle import Settling, relax, settle
+from .steady_state import SteadyState
 from .threads import on_all_cores
 
 STARTS = ("rest", "up", "down")
@@ -68,6 +68,13 @@ class CurvePoint:
     state: State
     failure: str = ""
     status: str = "done"
+
+    @classmethod
+    def of(cls, found: SteadyState) -> CurvePoint:
+        """The point of a steady state."""
+        entered, arrived, elastic = map(float, found.tops)
+        return cls(found.scene.f, arrived, elastic, entered, found.regime, found.force_errors, found.state,
+                   found.failure, found.status)
 
     @property
     def error_estimate(self) -> float | None:
@@ -122,16 +129,16 @@ def coarse_first(count: int) -> list[int]:
     return order
 
 
-def curve_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
+def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     """The steady state of `scene` from rest or from `start`, certified where it is periodic."""
     way = settle(scene, start, stop)
     if way.regime.name == "periodic":
-        return _certified_point(way)
+        return _certified(way)
     tops = way.tops[-min(len(way.tops), 100) :].max(axis=0) * way.engine.lowered.scales.force
-    return _point(scene, tops, way.regime, None, way.engine)
+    return SteadyState(scene, tops, way.regime, None, way.engine.state)
 
 
-def _certified_point(way: Settling) -> CurvePoint:
+def _certified(way: Settling) -> SteadyState:
     """Largest forces on the certified orbit; the error is what they still change plus the distance's share."""
     engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
     n = way.regime.period
@@ -143,23 +150,24 @@ def _certified_point(way: Settling) -> CurvePoint:
     # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
     errors = CAUTION * relative_changes(tops, before) + 1.5 * distance
     errors += jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
-    return _point(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer)
+    return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
 
 
-def _point(scene: Scene, tops: np.ndarray, regime: Regime, errors: np.ndarray | None, engine: Engine) -> CurvePoint:
-    return CurvePoint(scene.f, float(tops[1]), float(tops[2]), float(tops[0]), regime, ForceErrors.of(errors),
-                      engine.state)
-
-
-def safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
-    """A point, or a point that says why there is none: one failed frequency does not lose a curve."""
+def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
+    """A steady state, or one that says why there is none: one failed frequency does not lose a curve."""
     try:
-        return curve_point(scene, start, stop)
+        return steady_state(scene, start, stop)
     except NumbersFailed as failed:
-        nothing = Regime("unsettled", None, None, None, 0)
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
-        return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, ForceErrors(), start or resting, failed.sentence,
-                          failed.status)
+        return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(0), None, start or resting, failed.sentence,
+                           failed.status)
+
+
+def second_look(doubtful: SteadyState, stop: Stop) -> SteadyState:
+    """What a batch left in doubt: the chain by itself, from where the batch left it."""
+    found = safe_state(doubtful.scene, doubtful.state, stop)
+    run = doubtful.regime.periods_run + found.regime.periods_run
+    return replace(found, regime=replace(found.regime, periods_run=run), number=doubtful.number)
 
 
 def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray) -> list[Scene]:
@@ -170,7 +178,7 @@ def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray)
 
 
 def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
-               stop: Callable[[], bool] | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
+               stop: Stop | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
     """Points of a resonance curve as they are finished.
 
     Parameters
@@ -181,8 +189,8 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
         Drive frequencies [Hz].
     start : str
         "rest": points come coarse first, from all cores; "up" or "down": the state is carried along in that direction.
-    stop : callable, optional
-        Asked between points; where it returns true the curve ends, and a running point is given up.
+    stop : Stop, optional
+        Looked at between points; once it is set the curve ends, and a running point is given up.
     workers : int, optional
         Threads; one for each core if not given.
 
@@ -206,67 +214,53 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     if start not in STARTS:
         raise unknown_name("start", start, STARTS)
     scenes = checked_frequencies(scene, frequencies)
-    flag = new_stop()
+    ended = Stop()
     if start == "rest":
-        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], flag, stop, workers)
+        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], ended, stop, workers)
         return
     state: State | None = None
     for one in sorted(scenes, key=lambda s: s.f, reverse=start == "down"):
-        if stop is not None and stop():
+        if stop:
             return
-        point = safe_point(one, state, flag)
-        state = point.state if not point.failure else None
-        yield point
+        found = safe_state(one, state, ended)
+        state = found.state if not found.failure else None
+        yield CurvePoint.of(found)
 
 
-def _from_rest(scenes: list[Scene], flag: np.ndarray, stop: Callable[[], bool] | None,
+def _from_rest(scenes: list[Scene], ended: Stop, stop: Stop | None,
                workers: int | None) -> Iterator[CurvePoint]:
     """Independent points on all cores: by lanes where they can, else one by one; closing the generator stops them."""
-    yield from on_all_cores(lambda shared: _points(shared, flag), scenes, flag, stop,
+    yield from on_all_cores(lambda shared: _points(shared, ended), scenes, ended, stop,
                             min(workers or os.cpu_count() or 1, len(scenes)))
 
 
-def _points(scenes: Iterator[Scene], flag: np.ndarray) -> Iterator[CurvePoint]:
+def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
     first = next(scenes, None)
     if first is None:
         return
     rest_of_them = itertools.chain([first], scenes)
     if can_share_batch(first):
-        yield from (_from_lane(result) if not result.doubtful else second_look(result, flag)
-                    for result in batch_results(rest_of_them, flag))
+        for found in batch_results(rest_of_them, ended):
+            yield CurvePoint.of(second_look(found, ended) if found.doubtful else found)
         return
     for one in rest_of_them:
-        yield safe_point(one, None, flag)
+        yield CurvePoint.of(safe_state(one, None, ended))
 
 
-def second_look(result: BatchResult, stop: np.ndarray) -> CurvePoint:
-    """The point of a result that the lanes left in doubt: its chain by itself, from where they left it."""
-    point = safe_point(result.scene, result.state, stop)
-    run = result.regime.periods_run + point.regime.periods_run
-    return replace(point, regime=replace(point.regime, periods_run=run))
-
-
-def _from_lane(result: BatchResult) -> CurvePoint:
-    tops = result.tops
-    return CurvePoint(result.scene.f, float(tops[1]), float(tops[2]), float(tops[0]), result.regime,
-                      ForceErrors.of(result.errors), result.state, result.failure,
-                      "not-finite" if result.failure else "done")
-
-
-def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: np.ndarray) -> list[CurvePoint]:
+def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
     """A first impression of the curve from rest, on one core, to be drawn while a knob still moves.
 
     Coarse steps and few periods: no errors are claimed, and what is not periodic by then is unsettled. Empty for scenes
-    that lanes cannot run. `stop` is a flag from `new_stop`. Raises `BadInput` and `Cancelled`.
+    that lanes cannot run. Raises `BadInput` and `Cancelled`.
     """
     if not can_share_batch(scene):
         return []
     scenes = iter(checked_frequencies(scene, frequencies))
-    return [_from_lane(result) for result in batch_results(scenes, stop, draft=True)]
+    return [CurvePoint.of(result) for result in batch_results(scenes, stop, draft=True)]
 
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
-                    stop: Callable[[], bool] | None = None, on_point: Callable[[CurvePoint], None] | None = None,
+                    stop: Stop | None = None, on_point: Callable[[CurvePoint], None] | None = None,
                     workers: int | None = None) -> Curve:
     """The resonance curve: largest forces of the steady state over the drive frequency.
 
@@ -279,8 +273,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     start : str
         "rest": every point begins at rest, all cores work; "up" or "down": the state is carried along that way, so
         that hysteresis shows.
-    stop : callable, optional
-        Asked between points; where it returns true the curve ends with what there is.
+    stop : Stop, optional
+        Looked at between points; once it is set the curve ends with what there is.
     on_point : callable, optional
         Called with each `CurvePoint` as it is finished.
     workers : int, optional

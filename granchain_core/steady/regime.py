@@ -69,6 +69,11 @@ class Regime:
     followed: bool = False
     approaches: int | None = None
 
+    @classmethod
+    def unsettled(cls, periods_run: int) -> Regime:
+        """A motion of which nothing is known after so many periods."""
+        return cls("unsettled", None, None, None, periods_run)
+
     @property
     def slowness(self) -> float:
         """What is left per orbit of a distance from it: |μ|, else the decay seen, else a half."""
@@ -151,7 +156,7 @@ def in_words(seen: Sequence[float] | np.ndarray, run: int,
             distance = max(distance, rounding * rate / (1.0 - rate))
         return Regime("periodic", int(period), None if rate < 0.0 else float(rate), float(distance), run), None
     approach = Approach(int(approached), float(its_rate), float(its_change)) if approached else None
-    return Regime("unsettled", None, None, None, run), approach
+    return Regime.unsettled(run), approach
 
 
 def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING) -> Regime:

@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, method_for
-from ..integrate.engine import rest
+from ..integrate import Engine, Setting, State, live, method_for
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, Cost, Run, relative_changes, run_from
 from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
 from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
 from .regime import Regime, changes, find_period
@@ -72,9 +73,9 @@ class Settled:
 class Settling:
     """The live method on its way to the steady state, chunk by chunk, until it is decided what that is."""
 
-    def __init__(self, scene: Scene, start: State | None, stop: np.ndarray | None) -> None:
+    def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
         self.scene = scene
-        self.engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
+        self.engine = Engine(scene, live(), 1, stop=stop)
         self.stop = self.engine.stop
         self.engine.start(start if start is not None else rest(scene))
         self._steps = self.engine.grid
@@ -88,7 +89,7 @@ class Settling:
         first, scales = self.engine.state, self.engine.lowered.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
         self._run, self._stop_at = run, MOST_PERIODS
-        self.regime = Regime("unsettled", None, None, None, run)
+        self.regime = Regime.unsettled(run)
 
     @property
     def _here(self) -> int:
@@ -158,7 +159,7 @@ class Settling:
 
 
 def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
-             stop: np.ndarray | None = None) -> Iterator[Settled]:
+             stop: Stop | None = None) -> Iterator[Settled]:
     """Pictures on the way to the steady state: a quick preview first, the certified one last.
 
     Parameters
@@ -169,7 +170,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
         Where the motion begins; at rest if not given.
     samples : int
         Samples a drive period of each picture.
-    stop : numpy.ndarray, shape (1,), optional
+    stop : Stop, optional
         A byte that another thread sets to 1 to end the computation.
 
     Yields
@@ -204,7 +205,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
 
 
 def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
-            stop: np.ndarray | None = None) -> Settled:
+            stop: Stop | None = None) -> Settled:
     """The steady state that a chain reaches. Also called `settle`.
 
     The live method runs until the distance to the orbit is bounded, or until it is decided otherwise what the motion
@@ -218,7 +219,7 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
         Where the motion begins; at rest if not given.
     samples : int
         Samples a drive period of the recorded orbit.
-    stop : numpy.ndarray, shape (1,), optional
+    stop : Stop, optional
         A byte that another thread sets to 1 to end the computation.
 
     Returns
@@ -250,7 +251,7 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
     return live_picture(way, samples, began, origin, final=True)
 
 
-def settle(scene: Scene, start: State | None, stop: np.ndarray | None) -> Settling:
+def settle(scene: Scene, start: State | None, stop: Stop | None) -> Settling:
     """Run to the end of the budget or to the steady state, without pictures."""
     way = Settling(scene, start, stop)
     way.go_on(np.inf)
@@ -258,7 +259,7 @@ def settle(scene: Scene, start: State | None, stop: np.ndarray | None) -> Settli
 
 
 def live_picture(way: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
-    """A picture of what the live method does now, over one orbit or a few periods; the way itself is not moved."""
+    """The present motion by the live method, over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(way.scene, way.engine.setting, samples, stop=way.stop)
     state = way.engine.state
     engine.start(state)
@@ -314,7 +315,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
 
     The orbit of the live method differs from the true one by its error; a few more periods take that away, and the
     change from one n-period map to the next over 1 − |μ| says how much is left. What is left behind an extrapolation is
-    known from the changes behind it, and one behind which they are not smaller is taken back.
+    known from the changes after it, and a jump after which they are not smaller is undone.
     """
     scene, n = way.scene, way.regime.period
     assert n is not None

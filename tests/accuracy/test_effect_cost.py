@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
 from granchain_core import Cancelled, scene
 from granchain_core.accuracy import effect_cost as module
-from granchain_core.accuracy.compiled import COST_PIECE, METHODS_PIECE, compile_piece
 from granchain_core.accuracy.effect_cost import CODE, Variant, effect_cost
-from granchain_core.integrate.engine import new_stop
-from granchain_core.warm import is_warm
+from granchain_core.stop import Stop
+from granchain_core.warm import ACCURACY, COST, compile_piece, is_warm
 
 CHAIN = scene("sec2")
 
@@ -23,7 +21,7 @@ class Clocked:
 
     made = 0
 
-    def __init__(self, variant: Variant, method: str, stop: np.ndarray) -> None:
+    def __init__(self, variant: Variant, method: str, stop: Stop) -> None:
         Clocked.made += 1
         self.own = 60.0 if variant.scene.dissipation == "none" else 90.0
         self.own += 12.0 if (Clocked.made - 1) // 2 % 2 else 0.0
@@ -50,18 +48,19 @@ def test_what_is_timed_are_the_steps_that_were_taken() -> None:
 
 
 def test_timing_stops_at_once_and_is_held_up() -> None:
-    stop, held = new_stop(), []
+    stop, held = Stop(), []
 
     def pause() -> None:
         held.append(1)
-        stop[0] = len(held) == 3
+        if len(held) == 3:
+            stop.set()
 
     with pytest.raises(Cancelled):
         effect_cost(Variant(CHAIN), Variant(CHAIN), CODE, stop, pause)
     assert len(held) == 3
 
 
-@pytest.mark.parametrize("piece", [METHODS_PIECE, COST_PIECE])
+@pytest.mark.parametrize("piece", [ACCURACY, COST])
 def test_a_compiled_piece_is_known_as_that(piece: str) -> None:
     compile_piece(CHAIN, piece)
     assert is_warm(CHAIN, (piece,))

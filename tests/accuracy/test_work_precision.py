@@ -17,13 +17,13 @@ from app.cli import main
 from granchain_core import Cancelled, NumbersFailed, scene
 from granchain_core.accuracy import Row, WorkPrecision, cheapest, ways, work_precision
 from granchain_core.accuracy import work_precision as entry
-from granchain_core.accuracy.compiled import METHODS_PIECE, compile_piece
 from granchain_core.accuracy.limit import Limited
 from granchain_core.accuracy.naive import NATURAL_STEPS, lesson
 from granchain_core.accuracy.scipy_methods import solve
 from granchain_core.accuracy.ways import choices
 from granchain_core.integrate import METHODS
-from granchain_core.integrate.engine import new_stop
+from granchain_core.stop import Stop
+from granchain_core.warm import ACCURACY, compile_piece
 
 SHORT = scene("sec2").evolve(N=2, f=2000.0)
 
@@ -95,7 +95,7 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
         if name == "LSODA":
             raise NumbersFailed("SciPy's LSODA lost the motion.", "not-finite")
         if name == "RK45":
-            while not stop[0]:
+            while not stop:
                 time.sleep(0.005)
             raise Cancelled
         return solve(shown, name, tolerance, periods, samples, stop, located)
@@ -111,9 +111,9 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
     assert "failed: SciPy's LSODA lost the motion." in capsys.readouterr().out
 
 
-def cancelled_in_the_middle(work: Callable[[np.ndarray], object], reached: threading.Event) -> None:
+def cancelled_in_the_middle(work: Callable[[Stop], object], reached: threading.Event) -> None:
     """Run `work(stop)`, raise the flag as soon as it has reached its middle, and see it end as cancelled."""
-    stop = new_stop()
+    stop = Stop()
     ended: list[BaseException] = []
 
     def target() -> None:
@@ -125,7 +125,7 @@ def cancelled_in_the_middle(work: Callable[[np.ndarray], object], reached: threa
     thread = threading.Thread(target=target)
     thread.start()
     assert reached.wait(60.0)
-    stop[0] = 1
+    stop.set()
     thread.join(60.0)
     assert not thread.is_alive() and len(ended) == 1
 
@@ -147,33 +147,33 @@ def test_a_solver_of_scipy_stops_between_two_steps(solver: str, monkeypatch: pyt
 
 def test_a_measurement_is_cancelled_in_its_middle() -> None:
     """While rows of SciPy's solvers are measured, which take minutes with the rig."""
-    compile_piece(scene("rig"), METHODS_PIECE)
+    compile_piece(scene("rig"), ACCURACY)
     reached = threading.Event()
     cancelled_in_the_middle(lambda stop: entry(scene("rig"), stop, lambda part: reached.set() if part > 0.0 else None), reached)
 
 
 def test_a_limit_raises_its_flag_after_its_time_and_with_the_outer_flag() -> None:
-    outer = new_stop()
+    outer = Stop()
     with Limited(outer, 0.05) as limit:
-        wait_for(limit.flag)
-        assert outer[0] == 0
+        wait_for(limit.stop)
+        assert not outer
     with Limited(outer, 3600.0) as limit:
-        assert limit.flag[0] == 0
-        outer[0] = 1
-        wait_for(limit.flag)
+        assert not limit.stop
+        outer.set()
+        wait_for(limit.stop)
 
 
-def wait_for(flag: np.ndarray) -> None:
+def wait_for(stop: Stop) -> None:
     """Until a flag is up."""
     end = time.monotonic() + 60.0
-    while flag[0] == 0:
+    while not stop:
         assert time.monotonic() < end, "the flag stays down"
         time.sleep(0.001)
 
 
 def test_the_naive_force_is_wrong_and_names_where_it_blows_up() -> None:
     """At natural steps the rig's naive force is off by a good part of itself, or is not there at all."""
-    found = lesson(scene("rig"), new_stop())
+    found = lesson(scene("rig"), Stop())
     drawn = {(one.method, one.steps): one for one in found.drawn}
     assert set(drawn) == {(m.name, n) for m in METHODS.values() if m.variables == "uv" for n in NATURAL_STEPS}
     assert "stopped being a finite number" in drawn["rk4-naive", 100].failure

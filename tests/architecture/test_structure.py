@@ -12,20 +12,19 @@ CORE = sorted((ROOT / "granchain_core").rglob("*.py"))
 ALL = [*CORE, *sorted((ROOT / "app").rglob("*.py"))]
 #: Each layer with those it may import, besides itself; what stands higher knows what stands lower, never back.
 LAYERS = {
-    "errors": set(), "version": set(), "kernels": set(), "laws": {"kernels"}, "quantities": {"errors", "laws"},
-    "scene": {"errors", "laws", "quantities"}, "lower": {"errors", "laws", "scene", "kernels"},
-    "integrate": {"errors", "scene", "kernels", "lower"},
+    "errors": set(), "stop": {"errors"}, "version": set(), "kernels": set(), "laws": {"kernels"}, "quantities": {"errors", "laws"},
+    "scene": {"errors", "laws", "quantities"}, "state": {"scene"}, "lower": {"errors", "laws", "scene", "state", "kernels"},
+    "integrate": {"errors", "stop", "scene", "state", "kernels", "lower"},
     "result": {"scene", "kernels", "integrate", "steady.regime"},
-    "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
-    "run": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady"},
-    "warm": {"integrate", "kernels", "lower", "scene", "steady"},
-    "pieces": {"scene", "warm", "orbits", "observe", "accuracy"},
-    "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "warm"},
-    "diagram": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits"},
-    "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
-    "hard": {"errors", "laws", "scene", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
-    "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
-    "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", "version"},
+    "steady": {"errors", "stop", "scene", "state", "kernels", "lower", "integrate", "result"},
+    "run": {"errors", "stop", "scene", "state", "kernels", "lower", "integrate", "result", "steady"},
+    "warm": {"stop", "scene", "state", "kernels", "lower", "integrate", "steady", "orbits", "observe", "accuracy"},
+    "orbits": {"errors", "stop", "quantities", "scene", "state", "kernels", "lower", "integrate", "result", "steady"},
+    "diagram": {"errors", "stop", "quantities", "scene", "state", "kernels", "lower", "integrate", "result", "steady", "orbits"},
+    "observe": {"errors", "stop", "scene", "state", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment"},
+    "hard": {"errors", "laws", "scene", "state", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
+    "accuracy": {"errors", "stop", "scene", "state", "kernels", "lower", "integrate"}, "experiment": {"errors", "scene"},
+    "store": {"errors", "integrate", "diagram", "observe", "orbits", "quantities", "result", "scene", "state", "steady", "version"},
 }
 
 

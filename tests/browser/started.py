@@ -47,7 +47,7 @@ def dashboard(log: Path, **environment: str) -> Iterator[str]:
         yield server.address
     finally:
         server.process.terminate()
-        server.process.wait(timeout=20)
+        server.process.wait(timeout=60)
 
 
 class Server:

@@ -72,7 +72,7 @@ def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
     module = sys.modules["granchain_core.run.run"]
     shown = scene("sec2").evolve(N=2, f=3000.0)
     setting = module.method_for(1e-3)
-    kept = module._attempt(shown, setting, module.rest(shown), (3000, 1, 4), module.new_stop(), None, module.Counts())
+    kept = module._attempt(shown, setting, module.rest(shown), (3000, 1, 4), module.Stop(), None, module.Counts())
     assert len(kept.strobes) == module._KEPT + 1
 
 

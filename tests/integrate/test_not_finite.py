@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core import NumbersFailed, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.failures import not_finite
+from granchain_core.integrate.failure import not_finite
 from granchain_core.kernels.samples import first_not_finite
 
 
@@ -37,7 +37,7 @@ def test_the_time_of_a_failure_inside_a_call_counts_from_the_start() -> None:
     """A drive that fails in the twenty-first period, the first one of the present call."""
     engine = Engine(scene("sec2").evolve(N=3), Setting("rk4"), 1)
     engine.periods(20)
-    engine.drive[40] = np.nan
+    engine.stepper.drive[40] = np.nan
     with pytest.raises(NumbersFailed, match=r"\(20 drive periods\)") as caught:
         engine.periods(2)
     assert caught.value.time == pytest.approx(20.0 * engine.lowered.scene.period, rel=1e-12)

@@ -24,9 +24,9 @@ import numba
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
-from granchain_core.integrate.engine import new_stop
 from granchain_core.kernels.batch.run import batch_steps
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
+from granchain_core.stop import Stop
 
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
 NOTHING = {"dissipation": "none"}
@@ -74,9 +74,10 @@ def counts(kernel, arguments) -> dict:
 def argument_types(knobs: dict) -> dict[str, tuple]:
     """Types of the arguments of both kernels for section 2's chain with these knobs."""
     chain = scene("sec2").evolve(**knobs)
-    e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, new_stop())
-    one = (e.work.along, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0], e.work.forces.e, e.log,
-           e.counts.array, e.stop)
+    e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, Stop())
+    stepper = e.stepper
+    one = (stepper.work.along, e.lowered.slots, stepper.drive, 0, 4, 0.01, stepper.h, e.y, stepper.work.k[0],
+           stepper.work.forces.e, e.log, e.counts.array, e.stop.flag)
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
 
 

@@ -57,7 +57,7 @@ def test_a_law_that_contradicts_itself_is_named(a, power, sentence) -> None:  # 
         loss.checked(Contradiction)
 
 
-def test_a_law_needs_its_coefficient_and_a_place_in_both_lists() -> None:
+def test_a_law_needs_its_coefficient_and_to_be_there_when_it_is_named() -> None:
     class Bare(NamedTuple):
         strength: float
 
@@ -65,7 +65,7 @@ def test_a_law_needs_its_coefficient_and_a_place_in_both_lists() -> None:
     loss.power.of(Bare)(lambda law, d, r: r)
     with pytest.raises(TypeError, match=r"Bare has the fields .*needs `coefficient`"):
         loss.checked(Bare)
-    with pytest.raises(TypeError, match="damping law 'bare': Bare is not among LAWS"):
+    with pytest.raises(TypeError, match="damping law 'bare': Bare has no `exponent` and no `power`"):
         Law("bare", Bare, "bare damping")
 
 

@@ -22,7 +22,7 @@ import pytest
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
-from granchain_core.integrate.engine import new_stop
+from granchain_core.stop import Stop
 
 PROGRAM = Path(__file__).parent / "machine_code.py"
 KERNELS = ("chain", "batch")
@@ -92,8 +92,8 @@ def test_switching_an_effect_on_adds_nothing_else_to_a_batch():
 def test_absent_effects_have_no_arrays_in_the_simd_workspaces():
     """None in place of the static overlaps, of the damping and the foundation of a batch, of unequal beads."""
     bare = scene("sec2").evolve(dissipation="none")
-    assert Engine(bare, Setting("rk4-split"), 1).work.along.preload is None
-    lanes = Batch(bare, new_stop()).lanes
+    assert Engine(bare, Setting("rk4-split"), 1).stepper.work.along.preload is None
+    lanes = Batch(bare, Stop()).lanes
     assert (lanes.dissipation, lanes.foundation, lanes.preload, lanes.unequal) == (None, None, None, None)
-    full = Batch(scene("sec2").evolve(kappa=0.001, F0=1.0), new_stop()).lanes
+    full = Batch(scene("sec2").evolve(kappa=0.001, F0=1.0), Stop()).lanes
     assert None not in (full.dissipation, full.foundation, full.preload)

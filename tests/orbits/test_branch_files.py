@@ -11,9 +11,9 @@ import xarray
 
 from app.cli import main
 from granchain_core import BadInput, Cancelled, scene
-from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits import Branch, Continuation, begin_branch, continue_branch, switch_to_doubled
 from granchain_core.orbits.branch.walk import SHORTEST
+from granchain_core.stop import Stop
 from granchain_core.store import load_branch, save_branch
 
 
@@ -63,12 +63,12 @@ def test_points_one_by_one_are_those_of_both_threads(whole: Branch) -> None:
 
 
 def test_cancelled_it_stays_whole_and_can_go_on(whole: Branch) -> None:
-    branch, stop, seen = begun(), new_stop(), []
+    branch, stop, seen = begun(), Stop(), []
 
     def cancel(arm: object) -> None:
         seen.append(arm)
         if len(seen) == 3:
-            stop[0] = 1
+            stop.set()
 
     with pytest.raises(Cancelled):
         Continuation(branch, stop).run(on_point=cancel)

@@ -17,8 +17,8 @@ from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, ways
 from granchain_core.accuracy.naive import lesson
 from granchain_core.integrate import METHODS, Setting
-from granchain_core.integrate.engine import new_stop
 from granchain_core.steady import settle as settle_module
+from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])
@@ -94,7 +94,7 @@ def test_the_reference_is_told_with_its_agreement() -> None:
 
 
 def test_the_lesson_is_one_array_in_which_failures_have_no_row() -> None:
-    found = lesson(scene("rig"), new_stop())
+    found = lesson(scene("rig"), Stop())
     message = lesson_message(found, THEMES["light"])
     rows = message["values"].reshape(-1, message["columns"])
     assert message["values"].dtype == np.float32

@@ -10,14 +10,15 @@ import pytest
 from app.pages.observer.view import step_message
 from app.pages.observer.work import NUDGE, ObserverRun
 from granchain_core import scene, settled
-from granchain_core.integrate.engine import new_stop, rest
+from granchain_core.state import rest
+from granchain_core.stop import Stop
 
 FOUNDED = scene("fig11-founded")
 
 
 def test_a_run_measures_what_its_multiplier_predicts() -> None:
     picture = settled(FOUNDED)
-    run = ObserverRun(FOUNDED, picture, new_stop(), None)
+    run = ObserverRun(FOUNDED, picture, Stop(), None)
     assert run.predicted is None and "comes with the settled" in run.sentence
     run.predict(picture)
     steps = [run.step() for _ in range(40)]
@@ -33,7 +34,7 @@ def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
     # sec2 from rest is of period 2 at 615 Hz (PHYSICS.md, trap 8)
     shown = scene("sec2").evolve(f=615.0, kappa=0.001)
     picture = settled(shown)
-    run = ObserverRun(shown, picture, new_stop(), None)
+    run = ObserverRun(shown, picture, Stop(), None)
     run.predict(picture)
     assert run.orbit is not None and run.orbit.period == 2
     for _ in range(60):
@@ -43,7 +44,7 @@ def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
 
 def test_without_multipliers_it_says_why_and_runs() -> None:
     cut = FOUNDED.evolve(f=340.0, dissipation="tsuji", tension="cut")
-    run = ObserverRun(cut, None, new_stop(), None)
+    run = ObserverRun(cut, None, Stop(), None)
     run.predict(SimpleNamespace(regime=SimpleNamespace(period=1), state=rest(cut)))  # type: ignore[arg-type]
     assert run.predicted is None and "tension = cut" in run.sentence
     assert run.step().distance[0] > 0.0
@@ -52,19 +53,19 @@ def test_without_multipliers_it_says_why_and_runs() -> None:
 def test_a_knob_that_is_turned_goes_on_from_where_both_are() -> None:
     free = scene("fig11-free")
     picture = settled(free)
-    first = ObserverRun(free, picture, new_stop(), None)
+    first = ObserverRun(free, picture, Stop(), None)
     first.predict(picture)
     last = [first.step() for _ in range(12)][-1]
     assert first.broken and "drifts" in first.sentence
-    second = ObserverRun(FOUNDED, None, new_stop(), first)
+    second = ObserverRun(FOUNDED, None, Stop(), first)
     step = second.step()
     assert step.number == 12 and step.distance[0] == pytest.approx(last.distance[-1])
-    fewer = ObserverRun(FOUNDED.evolve(N=5), None, new_stop(), second)
+    fewer = ObserverRun(FOUNDED.evolve(N=5), None, Stop(), second)
     assert fewer.step().chain.shape[1] == 5
 
 
 def test_wishes_move_the_observer_alone_and_the_message_is_whole() -> None:
-    run = ObserverRun(FOUNDED, settled(FOUNDED), new_stop(), None)
+    run = ObserverRun(FOUNDED, settled(FOUNDED), Stop(), None)
     run.step()
     chain = run.pair.states[0].displacement
     run.from_rest()

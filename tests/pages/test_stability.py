@@ -26,8 +26,8 @@ from app.pages.stability.view import (
 )
 from app.pages.stability.work import Analysis, Target, analyse, search, section_of, transient
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
-from granchain_core.integrate.engine import new_stop
 from granchain_core.steady.regime import Regime, modulus_words
+from granchain_core.stop import Stop
 
 
 @cache
@@ -41,7 +41,7 @@ def analysis(**knobs: Any) -> Analysis:
     """The analysis of a settled picture of sec2."""
     found = picture(**knobs)
     assert found.regime.period is not None
-    return analyse(Target(found.run.scene, found.regime.period, found.state, True), False, 0, new_stop())
+    return analyse(Target(found.run.scene, found.regime.period, found.state, True), False, 0, Stop())
 
 
 def with_leading(*leading: complex) -> Any:
@@ -98,7 +98,7 @@ def test_motions_that_do_not_repeat_have_no_multipliers() -> None:
     assert "+0.265 ± 0.023" in no_multipliers(chaotic)
     quasi = replace(still, regime=Regime("quasi-periodic", None, None, None, 620, (0.0001, 0.0004)))
     assert "neither part nor meet" in no_multipliers(quasi)
-    assert "not settled after 620 periods" in no_multipliers(replace(still, regime=Regime("unsettled", None, None, None, 620)))
+    assert "not settled after 620 periods" in no_multipliers(replace(still, regime=Regime.unsettled(620)))
 
 
 def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:
@@ -121,7 +121,7 @@ def test_multipliers_lost_in_rounding_decide_nothing() -> None:
 
 def test_the_sections_points_are_the_computed_ones() -> None:
     found = picture(f=1130.0)
-    *_, section = section_of(found, None, new_stop())
+    *_, section = section_of(found, None, Stop())
     assert section.periods == max(24, found.regime.periods_run) == transient(found, section)
     shown = section_points(section, transient(found, section), analysis(f=1130.0).points, 3, 12)
     assert shown.units == ("nm", "mm/s") and (len(shown.points), len(shown.own)) == (section.periods, 3)
@@ -135,14 +135,14 @@ def test_multipliers_that_contradict_the_motion_are_not_shown(monkeypatch: pytes
     found = replace(analysis().mode, closure=0.06)
     monkeypatch.setattr(work, "mode", lambda *_: found)
     with pytest.raises(NumbersFailed, match=r"a small disturbance comes back 0\.06 of itself away from what they say"):
-        analyse(analysis().target, False, 0, new_stop())
+        analyse(analysis().target, False, 0, Stop())
 
 
 def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
     shown = picture()
     far = replace(shown.state, displacement=1.01 * shown.state.displacement)
     with pytest.raises(NumbersFailed, match="ended 1e-02 away"):
-        analyse(Target(shown.run.scene, 1, far, True), False, 0, new_stop())
+        analyse(Target(shown.run.scene, 1, far, True), False, 0, Stop())
 
 
 class Page:
@@ -276,9 +276,9 @@ def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> 
 
 def test_the_followed_orbit_is_not_called_another_one() -> None:
     for found, period in ((picture(), 1), (picture(f=1130.0), 3)):
-        *_, section = section_of(found, None, new_stop())
+        *_, section = section_of(found, None, Stop())
         with pytest.raises(NumbersFailed, match=f"the orbit that the chain follows, of {period} drive period"):
-            search(found, section, period, new_stop())
+            search(found, section, period, Stop())
 
 
 def test_a_live_run_has_no_multipliers() -> None:

@@ -99,7 +99,7 @@ def test_nothing_of_cancelled_work_arrives(host: Dashboard, task: Task) -> None:
         job.say("measuring")
         entered.set()
         assert leave.wait(20)
-        assert job.stop[0]
+        assert job.stop
         job.say("late")
 
     task.start(work)
@@ -114,7 +114,7 @@ def test_nothing_of_cancelled_work_arrives(host: Dashboard, task: Task) -> None:
 
 def test_cancelled_is_no_failure(host: Dashboard, task: Task) -> None:
     def work(job: Job) -> None:
-        while not job.stop[0]:
+        while not job.stop:
             time.sleep(0.002)
         raise Cancelled
 

@@ -1,4 +1,4 @@
-"""Curves by lanes: the attractor reached from rest stays it, whatever is done to reach it sooner; drafts say less."""
+"""Curves by batches: extrapolation does not change the attractor that is reached from rest; drafts claim less."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.integrate.engine import new_stop
-from granchain_core.kernels.batch import period_end as lane_looks
-from granchain_core.steady import batch_settle as lane_curve
-from granchain_core.steady.batch_job import BatchResult
+from granchain_core.kernels.batch import period_end
+from granchain_core.steady import batch_settle
 from granchain_core.steady.curve import draft_curve, resonance_curve
 from granchain_core.steady.settle import settle
+from granchain_core.steady.steady_state import SteadyState
+from granchain_core.stop import Stop
 
 #: Between 1580 and 1640 Hz two attractors stand side by side; below 1000 Hz and on the peaks approaches are slow.
 FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620.0, 1640.0, 1900.0]
 
 
-def results(frequencies: list[float]) -> dict[float, BatchResult]:
+def results(frequencies: list[float]) -> dict[float, SteadyState]:
     """What lanes find at these frequencies of section 2."""
     scenes = (scene("sec2").evolve(f=f) for f in frequencies)
-    return {found.scene.f: found for found in lane_curve.batch_results(scenes, new_stop())}
+    return {found.scene.f: found for found in batch_settle.batch_results(scenes, Stop())}
 
 
 def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
@@ -61,7 +61,7 @@ def test_a_draft_claims_no_errors_and_agrees_where_it_is_periodic() -> None:
     """A draft is drawn while a knob moves: coarse steps, a few hundred periods, unsettled where that was too short."""
     frequencies = np.linspace(200.0, 2000.0, 19)
     whole = {point.frequency: point for point in resonance_curve(scene("sec2"), frequencies).points}
-    drafted = draft_curve(scene("sec2"), frequencies, new_stop())
+    drafted = draft_curve(scene("sec2"), frequencies, Stop())
     assert sorted(point.frequency for point in drafted) == sorted(whole)
     periodic = [point for point in drafted if point.regime.name == "periodic"]
     assert len(periodic) > 8
@@ -74,9 +74,9 @@ def test_a_draft_claims_no_errors_and_agrees_where_it_is_periodic() -> None:
 
 
 def test_scenes_that_lanes_cannot_run_have_no_draft() -> None:
-    assert draft_curve(scene("sec2").evolve(tension="cut"), np.array([340.0]), new_stop()) == []
+    assert draft_curve(scene("sec2").evolve(tension="cut"), np.array([340.0]), Stop()) == []
 
 
 def test_constants_of_the_disturbance_leave_room() -> None:
     """A disturbance is far above what counts as settled and far below what changes the sequence of contacts."""
-    assert 10.0 * lane_looks.SETTLED_DISTANCE < lane_looks._DISTURBANCE < 1e-2
+    assert 10.0 * period_end.SETTLED_DISTANCE < period_end._DISTURBANCE < 1e-2

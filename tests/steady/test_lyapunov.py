@@ -7,12 +7,11 @@ import pytest
 
 from granchain_core import Scene, State, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.batch import scaled_state
-from granchain_core.integrate.engine import new_stop
 from granchain_core.lower import lower
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
 from granchain_core.steady.settle import settle
+from granchain_core.stop import Stop
 
 CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # PHYSICS, trap 8: irregular everywhere with κ = 0
 QUASI = scene("sec2").evolve(f=1640.0)
@@ -21,7 +20,7 @@ QUASI = scene("sec2").evolve(f=1640.0)
 def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int = 2) -> tuple[np.ndarray, np.ndarray]:
     """The `count` largest exponents per period and their standard errors, by the certified motion and its tangents."""
     strobe = StroboscopicMap(shown, 1)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, state))
+    x = strobe.inner(strobe.engine.lowered.scaled(state))
     frame, _ = np.linalg.qr(np.random.default_rng(3).standard_normal((len(x), count)))
     growth = []
     for _ in range((blocks + 1) * block):
@@ -38,8 +37,8 @@ def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
     engine = Engine(shown, Setting("rk4-split"), 1)
     engine.start(state)
     lowered = lower(shown)
-    found = exponents(engine, 10, 20)[0], exponents_in_pairs([(lowered, scaled_state(lowered, state))], 10, 20,
-                                                             new_stop())[0][0]
+    found = exponents(engine, 10, 20)[0], exponents_in_pairs([(lowered, lowered.scaled(state))], 10, 20,
+                                                             Stop())[0][0]
     return [(float(growth.mean()), float(growth.std(ddof=1) / np.sqrt(10))) for growth in found]
 
 
@@ -64,11 +63,11 @@ def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> No
 
 def test_exponents_of_a_scene_do_not_depend_on_those_beside_it() -> None:
     lowered = lower(QUASI)
-    y = scaled_state(lowered, settle(QUASI, None, None).engine.state)
+    y = lowered.scaled(settle(QUASI, None, None).engine.state)
     slower = lower(QUASI.evolve(f=QUASI.f / 2.2))
-    alone = exponents_in_pairs([(lowered, y)], 5, 20, new_stop())[0]
-    beside = exponents_in_pairs([(slower, 0.5 * y), (lowered, y)], 5, 20, new_stop())[1]
+    alone = exponents_in_pairs([(lowered, y)], 5, 20, Stop())[0]
+    beside = exponents_in_pairs([(slower, 0.5 * y), (lowered, y)], 5, 20, Stop())[1]
     for first, second in zip(alone, beside, strict=True):
         assert (first == second).all()
     with pytest.raises(ValueError, match="differ by more than a factor"):
-        exponents_in_pairs([(lowered, y), (lower(QUASI.evolve(f=QUASI.f / 9.0)), y)], 5, 20, new_stop())
+        exponents_in_pairs([(lowered, y), (lower(QUASI.evolve(f=QUASI.f / 9.0)), y)], 5, 20, Stop())

@@ -7,6 +7,8 @@ import pytest
 
 from granchain_core import NumbersFailed, resonance_curve, run, scene, settled
 from granchain_core.steady import regime as regimes
+from granchain_core.steady.curve import CurvePoint
+from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
@@ -161,14 +163,14 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
     """Its point carries the sentence and NaN; the others are there, in every start."""
     from granchain_core.steady import curve as module
 
-    true = module.curve_point
+    true = module.steady_state
 
     def fails_at_600(one, start, stop):
         if one.f == 600.0:
             raise NumbersFailed("made to fail", "not-finite")
         return true(one, start, stop)
 
-    monkeypatch.setattr(module, "curve_point", fails_at_600)
+    monkeypatch.setattr(module, "steady_state", fails_at_600)
     # with a tension cut points are computed one by one from rest too
     for start, chain in (("up", scene("sec2")), ("rest", scene("sec2").evolve(tension="cut"))):
         found = resonance_curve(chain.evolve(N=3), [500.0, 600.0, 700.0], start)
@@ -192,7 +194,13 @@ def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start, c
 def test_a_cancelled_curve_keeps_what_it_has(start):
     """Stopped after the third point: those points and soon an end."""
     seen: list[float] = []
-    found = resonance_curve(scene("sec2").evolve(N=3), np.linspace(300.0, 900.0, 60), start,
-                            stop=lambda: len(seen) >= 3, on_point=lambda p: seen.append(p.frequency))
+    stop = Stop()
+
+    def look(point: CurvePoint) -> None:
+        seen.append(point.frequency)
+        if len(seen) >= 3:
+            stop.set()
+
+    found = resonance_curve(scene("sec2").evolve(N=3), np.linspace(300.0, 900.0, 60), start, stop=stop, on_point=look)
     assert 3 <= len(found.points) < 60
     assert sorted(seen) == [p.frequency for p in found.points]

@@ -14,7 +14,8 @@ import numpy as np
 from granchain_core import BadInput, Cancelled, NumbersFailed, Run, Scene, run
 from granchain_core.errors import OverBudget
 from granchain_core.integrate import Engine, Setting, method_for
-from granchain_core.integrate.engine import new_stop, rest
+from granchain_core.state import rest
+from granchain_core.stop import Stop
 
 from . import oracle, properties
 from .properties import SAMPLES, distance
@@ -101,10 +102,10 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
 @contextlib.contextmanager
 def limit(seconds: float) -> Iterator[np.ndarray]:
     """A stop flag that is raised after so many seconds."""
-    stop = new_stop()
+    stop = Stop()
 
     def over() -> None:
-        stop[0] = 1
+        stop.set()
 
     timer = threading.Timer(seconds, over)
     timer.daemon = True
@@ -147,7 +148,7 @@ def _finite(verdict: Verdict, found: Run) -> None:
             verdict.faults.append((f"{name} is not finite", 1.0))
 
 
-def _judge(verdict: Verdict, found: Run, stop: np.ndarray) -> np.ndarray:
+def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
     """Hold the run against the certified method at its finest, and its energy; returns the true displacements [m]."""
     chosen, kept = found.scene, []
     for tolerance in (3e-14, 3e-15):
@@ -180,7 +181,7 @@ def _bounded(verdict: Verdict, by: str, error: float, known: float) -> None:
         verdict.faults.append((f"silent error{by}", error))
 
 
-def _properties(verdict: Verdict, chosen: Scene, stop: np.ndarray) -> None:
+def _properties(verdict: Verdict, chosen: Scene, stop: Stop) -> None:
     rng = np.random.default_rng([verdict.draw.seed, verdict.draw.index, 1])
     bar = _ROUNDING + _MAGNIFIED * verdict.known
     power = int(rng.choice([-2, -1, 1, 2]))

@@ -17,7 +17,7 @@ from scipy.integrate import DOP853, solve_ivp
 from scipy.optimize import brentq
 
 from granchain_core import NumbersFailed, Scene
-from granchain_core.integrate.engine import rest
+from granchain_core.state import rest
 
 _POWER = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5, "none": 0.0}
 #: Places inside a step where contacts are looked at, so that a brief touch is seen.

@@ -8,12 +8,13 @@ import numpy as np
 
 from granchain_core import Scene
 from granchain_core.integrate import Engine, Setting, State
-from granchain_core.integrate.engine import rest
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.preload import Preload
 from granchain_core.kernels.samples import Samples
 from granchain_core.lower import Lowered, lower
+from granchain_core.state import rest
+from granchain_core.stop import Stop
 
 SAMPLES = 16
 _FIXED = Setting("rk4-split", 1.0)
@@ -42,7 +43,7 @@ def energy(lowered: Lowered, kept: Samples) -> float:
     return float(np.abs(work - lost - (stored - stored[0])).max() / largest)
 
 
-def scaling(scene: Scene, power: int, stop: np.ndarray) -> float:
+def scaling(scene: Scene, power: int, stop: Stop) -> float:
     """(sA0, s^{1/4} f, s^{1/4} D), s = 16^power: the same scaled motion over a period."""
     root = 2.0**power
     s = root**4
@@ -52,13 +53,13 @@ def scaling(scene: Scene, power: int, stop: np.ndarray) -> float:
     return distance(_period(other, rest(other), stop), _period(scene, rest(scene), stop))
 
 
-def _period(scene: Scene, start: State, stop: np.ndarray) -> np.ndarray:
+def _period(scene: Scene, start: State, stop: Stop) -> np.ndarray:
     engine = Engine(scene, _FIXED, SAMPLES, balance=True, stop=stop)
     engine.start(start)
     return engine.record(SAMPLES).displacement
 
 
-def shifted(scene: Scene, stop: np.ndarray) -> float:
+def shifted(scene: Scene, stop: Stop) -> float:
     """The second period gone on with, against the second period started from the state after the first."""
     engine = Engine(scene, _FIXED, SAMPLES, balance=True, stop=stop)
     engine.start(rest(scene))
@@ -67,7 +68,7 @@ def shifted(scene: Scene, stop: np.ndarray) -> float:
     return distance(_period(scene, again, stop), engine.record(SAMPLES).displacement)
 
 
-def mirrored(scene: Scene, rng: np.random.Generator, stop: np.ndarray) -> tuple[float, float, float]:
+def mirrored(scene: Scene, rng: np.random.Generator, stop: Stop) -> tuple[float, float, float]:
     """The scene made its own mirror image, its driver at rest: how far a symmetric start leads from symmetry, how far
     a start and its mirror image do from one another, and what the method's own error makes of the latter motion."""
     symmetric = _symmetric(scene)
@@ -92,7 +93,7 @@ def _symmetric(scene: Scene) -> Lowered:
         chain=Chain(both(slots.chain.inverse_mass), stiffness), driver=Harmonic(0.0, beta), preload=preload))
 
 
-def _thrown(lowered: Lowered, velocity: np.ndarray, tolerance: float, stop: np.ndarray) -> np.ndarray:
+def _thrown(lowered: Lowered, velocity: np.ndarray, tolerance: float, stop: Stop) -> np.ndarray:
     engine = Engine(lowered.scene, Setting("dop853", tolerance=tolerance), SAMPLES, stop=stop, lowered=lowered)
     engine.start(State(np.zeros(len(velocity)), velocity * lowered.scales.velocity))
     return engine.record(SAMPLES).displacement

@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _SECTION, _REGIME, _SETTLE = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settle.py"
-_RUN, _STATED, _METHODS, _FAIL = "run/run.py", "run/stated.py", "integrate/methods.py", "integrate/failures.py"
+_RUN, _STATED, _METHODS = "run/run.py", "run/stated.py", "integrate/methods.py"
 
 STEADY = (
     Mutant("change-taken-for-distance", _SECTION, "distance = recent * rate / (1.0 - rate)", "distance = recent",
@@ -61,17 +61,18 @@ STATED = (
 )
 
 FAILING = (
-    Mutant("failed-step-of-its-end", _FAIL, "if b), 1), low % n", "if b), 1), high % n",
+    Mutant("failed-step-of-its-end", "integrate/fixed.py", "if b), 1), low % n", "if b), 1), high % n",
            "the step after the one that failed is named", ("tests/hard/test_outcomes.py", "-k", "middle_of_a_long_call")),
-    Mutant("failed-time-since-call", _FAIL, "periods = engine.elapsed + done", "periods = done",
+    Mutant("failed-time-since-call", "integrate/engine.py", "Failure(status, self.elapsed + done, bead,", "Failure(status, done, bead,",
            "the time of a failure is counted from the present call", k.FAILURES_T),
-    Mutant("nan-of-velocity-unseen", _FAIL, "np.isfinite(state[1 : row - 1]) & np.isfinite(state[row + 1 : 2 * row - 1])",
+    Mutant("nan-of-velocity-unseen", "integrate/failure.py",
+           "np.isfinite(state[1 : row - 1]) & np.isfinite(state[row + 1 : 2 * row - 1])",
            "np.isfinite(state[1 : row - 1])", "a NaN velocity is seen when it has reached a displacement, in another bead",
            k.FAILURES_W),
-    Mutant("checkpoint-without-scale", "integrate/checkpoint.py", "engine.clock[0], engine.work.scale[:] = kept.control[0], kept.control[1:]",
-           "engine.clock[0] = kept.control[0]", "error control goes on with another unit after a restart", k.CHECKPOINTS),
-    Mutant("checkpoint-without-clock", "integrate/checkpoint.py", "engine.clock[0], engine.work.scale[:] = kept.control[0], kept.control[1:]",
-           "engine.work.scale[:] = kept.control[1:]", "error control goes on with another step after a restart", k.CHECKPOINTS),
+    Mutant("checkpoint-without-scale", "integrate/checkpoint.py", "engine.stepper.clock[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
+           "engine.stepper.clock[0] = kept.control[0]", "error control goes on with another unit after a restart", k.CHECKPOINTS),
+    Mutant("checkpoint-without-clock", "integrate/checkpoint.py", "engine.stepper.clock[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
+           "engine.stepper.work.scale[:] = kept.control[1:]", "error control goes on with another step after a restart", k.CHECKPOINTS),
     Mutant("checkpoint-at-phase-0", "integrate/checkpoint.py", "engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed",
            "engine.elapsed = kept.elapsed", "a run that was cut inside a period goes on at its beginning", k.CHECKPOINTS),
     Mutant("budget-of-one-computation", "run/budget.py", "steps, seconds = steps * often, seconds * often", "steps, seconds = 0.25 * steps, 0.25 * seconds",

@@ -82,8 +82,8 @@ EFFECTS = (
 )
 
 LOWERED = (
-    Mutant("missing-last-contact", "lower.py", '"chain": Chain(inverse_mass, scene.contact_stiffness() / scene.K)',
-           '"chain": Chain(inverse_mass, scene.contact_stiffness() / scene.K * (np.arange(scene.N + 1) < scene.N))',
+    Mutant("missing-last-contact", "lower.py", "chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K)",
+           "chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K * (np.arange(scene.N + 1) < scene.N))",
            "the contact with the wall is dropped", k.MOTION),
     Mutant("inverse-mass-inverted", "lower.py", "inverse_mass[1:-1] = scene.bead(1).mass / scene.masses()",
            "inverse_mass[1:-1] = scene.masses() / scene.bead(1).mass", "heavy beads are light", k.UNLIKE),

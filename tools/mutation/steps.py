@@ -107,12 +107,12 @@ CERTIFIED = (
 )
 
 CLOCK = (
-    Mutant("t-plus-dt", _ENGINE, "theta, slots = 2 * np.pi * self.grid_index / self.grid,",
-           "theta, slots = 2 * np.pi * self.elapsed,", "the drive's phase is summed up, not counted", k.CONTINUATION),
+    Mutant("t-plus-dt", _ENGINE, "self.stepper.place(2 * np.pi * self.grid_index / self.grid,",
+           "self.stepper.place(2 * np.pi * self.elapsed,", "the drive's phase is summed up, not counted", k.CONTINUATION),
     Mutant("phase-of-start-forgotten", _ENGINE, "self.grid_index = round(state.phase * self.grid) % self.grid",
            "self.grid_index = 0", "a start inside a period begins at phase 0", k.CONTINUATION),
-    Mutant("sample-clock-restarts", _ENGINE, "self.grid_index = (self.grid_index + count * every) % self.grid",
-           "self.grid_index = count * every % self.grid", "a second record begins at another phase", k.CONTINUATION),
+    Mutant("sample-clock-restarts", _ENGINE, "self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid",
+           "self.grid_index = count * (self.grid // self.samples) % self.grid", "a second record begins at another phase", k.CONTINUATION),
     Mutant("time-column-summed", "result.py", "time=(index // engine.samples + inside / engine.samples) * scene.period,",
            "time=np.cumsum(np.full(index.size, scene.period / engine.samples)) + (first_sample - 1) * scene.period / engine.samples,",
            "the time of a sample is a sum of steps", k.CLAIMS_TIME),

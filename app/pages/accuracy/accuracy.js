@@ -1,27 +1,47 @@
 // The Accuracy page, over the pictures: what accuracy costs here and now, and what naive steps would have drawn.
 
-const part = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
+import { part } from "../../parts/dom.js";
+import { Embedded, fillAccuracy, showAccuracy } from "../../parts/embedded.js";
+
 const STATUS = {
-  none: "", waiting: "waiting for its turn …", compiling: "compiling the kernels of all methods: some 20 s, only the first time on this computer …",
-  measuring: "measuring …", done: "", cancelled: "cancelled; what was measured stays", failed: "",
+  none: "",
+  waiting: "waiting for its turn …",
+  compiling: "compiling the kernels of all methods: some 20 s, only the first time on this computer …",
+  measuring: "measuring …",
+  done: "",
+  cancelled: "cancelled; what was measured stays",
+  failed: "",
 };
-const percent = (error) => (error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`);
+const percent = (error) =>
+  error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`;
 
 function methodTable(ways, rows) {
   const body = part("tbody");
   for (const way of ways) {
     const failed = rows.filter((row) => row.way === way.name);
     const restrictions = part("td", { className: "soft", textContent: way.restrictions });
-    for (const row of failed) restrictions.append(part("div", { className: "failed", textContent: `failed at ${row.setting}: ${row.failure}` }));
+    for (const row of failed)
+      restrictions.append(
+        part("div", { className: "failed", textContent: `failed at ${row.setting}: ${row.failure}` }),
+      );
     const name = part("td", { textContent: way.name.replace("scipy ", "SciPy ") });
-    body.append(part("tr", {}, name, part("td", { textContent: way.title }), part("td", { textContent: way.order }), restrictions,
-      part("td", { className: "soft", textContent: way.reference })));
+    body.append(
+      part(
+        "tr",
+        {},
+        name,
+        part("td", { textContent: way.title }),
+        part("td", { textContent: way.order }),
+        restrictions,
+        part("td", { className: "soft", textContent: way.reference }),
+      ),
+    );
   }
-  const head = part("tr", {}, ...["method", "what it is", "order", "restrictions", "reference"].map((name) => part("th", { textContent: name })));
+  const head = part(
+    "tr",
+    {},
+    ...["method", "what it is", "order", "restrictions", "reference"].map((name) => part("th", { textContent: name })),
+  );
   return part("table", {}, part("thead", {}, head), body);
 }
 
@@ -35,18 +55,28 @@ class Lesson {
     this.said = part("p");
     this.draw = part("div", { className: "picture" });
     this.figure = new Embedded(this.draw, () => this.show());
-    this.root = part("div", { className: "lesson" }, part("div", { className: "row" }, this.methods, this.steps),
-      this.said, part("div", { className: "draw" }, this.draw));
+    this.root = part(
+      "div",
+      { className: "lesson" },
+      part("div", { className: "row" }, this.methods, this.steps),
+      this.said,
+      part("div", { className: "draw" }, this.draw),
+    );
     this.show();
   }
 
   load(message) {
     // A plain array of numbers, whatever kind of buffer it came in.
-    this.data = { ...message, values: new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length) };
+    this.data = {
+      ...message,
+      values: new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length),
+    };
     const before = [this.methods.value, this.steps.value];
     const names = [...new Set(message.drawn.map((one) => one.method))];
     this.methods.replaceChildren(...names.map((name) => new Option(name, name)));
-    this.steps.replaceChildren(...[...new Set(message.drawn.map((one) => one.steps))].map((n) => new Option(`${n} steps a period`, n)));
+    this.steps.replaceChildren(
+      ...[...new Set(message.drawn.map((one) => one.steps))].map((n) => new Option(`${n} steps a period`, n)),
+    );
     // What one would naturally take, and of that what goes wrong most visibly.
     const natural = message.drawn.filter((one) => one.steps === 200);
     this.steps.value = "200";
@@ -66,17 +96,24 @@ class Lesson {
   show() {
     this.root.hidden = !this.data;
     if (!this.data) return;
-    const chosen = this.data.drawn.find((one) => one.method === this.methods.value && String(one.steps) === this.steps.value);
-    this.said.textContent = !chosen ? "" : chosen.failure
-      ? `With ${chosen.steps} steps a period nothing would have been drawn: ${chosen.failure}`
-      : `With ${chosen.steps} steps a period the force is off by ${percent(chosen.error)} of the largest, and nothing in the picture says so.`;
+    const chosen = this.data.drawn.find(
+      (one) => one.method === this.methods.value && String(one.steps) === this.steps.value,
+    );
+    this.said.textContent = !chosen
+      ? ""
+      : chosen.failure
+        ? `With ${chosen.steps} steps a period nothing would have been drawn: ${chosen.failure}`
+        : `With ${chosen.steps} steps a period the force is off by ${percent(chosen.error)} of the largest, and nothing in the picture says so.`;
     this.fill(chosen);
   }
+
   fill(chosen) {
     const { columns, values } = this.data;
     const row = (number) => Array.from(values.subarray(number * columns, (number + 1) * columns));
-    const naive = chosen && chosen.row >= 0 ? row(chosen.row) : [], force = row(1);
-    this.figure.set("naive", { data: { time: naive.length ? row(0) : [], force: naive, difference: naive.map((v, i) => v - force[i]) } });
+    const naive = chosen && chosen.row >= 0 ? row(chosen.row) : [],
+      force = row(1);
+    const difference = naive.map((v, i) => v - force[i]);
+    this.figure.set("naive", { data: { time: naive.length ? row(0) : [], force: naive, difference } });
   }
 }
 
@@ -92,9 +129,20 @@ export function render({ model }) {
   const status = part("span", { className: "status" });
   const close = part("button", { type: "button", textContent: "✕", title: "Back to the chain", className: "close" });
   close.addEventListener("click", () => page.cover(null));
-  const head = part("div", { className: "head" }, part("h2", { textContent: "What accuracy costs" }), status, meter, cancel, again,
-    part("span", { className: "grow" }), close);
-  const said = part("b"), agreement = part("span", { className: "soft" }), warning = part("span", { className: "warn" });
+  const head = part(
+    "div",
+    { className: "head" },
+    part("h2", { textContent: "What accuracy costs" }),
+    status,
+    meter,
+    cancel,
+    again,
+    part("span", { className: "grow" }),
+    close,
+  );
+  const said = part("b"),
+    agreement = part("span", { className: "soft" }),
+    warning = part("span", { className: "warn" });
   const say = part("div", { className: "say" }, said, agreement, warning);
   const picture = part("div", { className: "picture" });
   const work = part("div", { className: "work" }, picture);
@@ -106,11 +154,21 @@ export function render({ model }) {
   let told = null;
   const redraw = () => {
     const { state } = model;
-    page.accuracy = { drawn: state.drawn ?? {}, told, status: state.status, done: state.done, small: model.figures.small };
+    page.accuracy = {
+      drawn: state.drawn ?? {},
+      told,
+      status: state.status,
+      done: state.done,
+      small: model.figures.small,
+    };
     page.emit("accuracy", page.accuracy);
     root.classList.toggle("stale", Boolean(told?.stale));
     said.textContent = told?.sentence ?? "";
-    warning.textContent = state.failure || (told?.stale ? "The knobs have moved: this was measured for another chain. Measure again to see it for this one." : "");
+    warning.textContent =
+      state.failure ||
+      (told?.stale
+        ? "The knobs have moved: this was measured for another chain. Measure again to see it for this one."
+        : "");
     warning.hidden = !warning.textContent;
     if (page.covered === "accuracy") showAccuracy(figure, model.figures.page, page.accuracy);
   };
@@ -129,8 +187,10 @@ export function render({ model }) {
   model.on("state", show);
   model.on("figures", redraw);
   model.on("msg:custom", (message) => {
-    if (message.type === "asked") { told = message; redraw(); }
-    else if (message.type === "lesson") lesson.load(message);
+    if (message.type === "asked") {
+      told = message;
+      redraw();
+    } else if (message.type === "lesson") lesson.load(message);
     else if (message.type === "no-lesson") lesson.forget();
   });
   page.on("cover", (name) => {

@@ -11,7 +11,7 @@ from panel.io import unlocked
 
 from granchain_core import Scene
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
-from granchain_core.accuracy.compiled import METHODS_PIECE
+from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
 from ...page.active_setting import locate, page_setting
 from ...page.format import duration, short_error
@@ -19,7 +19,6 @@ from ...page.host import Host
 from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
 from ...pictures.accuracy import Asked
-from ...serve.compiler import CERTIFIED, LIVE
 from ...serve.queues import MEASUREMENTS
 from .view import Accuracy, described_reference, described_ways
 
@@ -100,7 +99,7 @@ class AccuracyPage:
         def report(found: WorkPrecision) -> None:
             job.later(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
 
-        job.compile(scene, LIVE, CERTIFIED, METHODS_PIECE)
+        job.compile(scene, LIVE, CERTIFIED, ACCURACY)
         job.say("measuring")
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.later(self._progress, done))

@@ -19,6 +19,7 @@ from ...parts.drawn import Drawn
 from ...pictures.accuracy import Asked, accuracy, marks, points
 from ...pictures.lesson import lesson
 from ...pictures.theme import Theme
+from ...scripts import module
 
 _LOST = 1e-4
 """References that differ by more than this belong to a motion that nobody can follow for ten periods."""
@@ -27,7 +28,7 @@ _LOST = 1e-4
 class Accuracy(Drawn):
     """The page over the pictures. `state` has the text and the figures; what is drawn into them comes as messages."""
 
-    _esm = text("embedded.js") + text("accuracy.js")
+    _esm = module("accuracy.js")
     _stylesheets = [text("controls.css"), text("accuracy.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:

@@ -1,13 +1,18 @@
 // The Branches page, over the pictures: a branch of periodic orbits grows, and a click loads one of them.
 
-const part = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
-};
+import { part } from "../../parts/dom.js";
+import { draw, mark, nearest } from "../../parts/plot.js";
+import { branchPicture, prefixOf, SPECIAL } from "./branchpicture.js";
+
 const STATUS = {
-  none: "", waiting: "waiting for its turn …", compiling: "compiling the kernels of branches: some 40 s, only the first time on this computer …",
-  settling: "looking for the first orbit …", following: "following …", done: "", cancelled: "stopped; what was found stays", failed: "",
+  none: "",
+  waiting: "waiting for its turn …",
+  compiling: "compiling the kernels of branches: some 40 s, only the first time on this computer …",
+  settling: "looking for the first orbit …",
+  following: "following …",
+  done: "",
+  cancelled: "stopped; what was found stays",
+  failed: "",
 };
 const force = (newtons) => {
   const [factor, letter] = prefixOf(Math.abs(newtons) || 1);
@@ -16,7 +21,10 @@ const force = (newtons) => {
 
 function legend() {
   const list = part("div", { className: "legend" });
-  for (const [name, className] of [["stable", "branch stable"], ["unstable", "branch unstable"]]) {
+  for (const [name, className] of [
+    ["stable", "branch stable"],
+    ["unstable", "branch unstable"],
+  ]) {
     const icon = draw("svg", { viewBox: "0 0 30 14", class: "line" });
     icon.append(draw("path", { d: "M1 7H29", class: className }));
     list.append(part("span", {}, icon, name));
@@ -38,9 +46,15 @@ export function render({ model }) {
   };
   const period = part("select", { title: "period of the orbits, in drive periods" });
   period.setAttribute("aria-label", "period of the orbits");
-  period.append(new Option("period as settled", ""), ...[1, 2, 3, 4, 5, 6, 7, 8].map((n) => new Option(`period ${n}`, n)));
-  const start = button("follow from here", () => ({ do: "branches-start", period: period.value ? Number(period.value) : null }),
-    "Follow the orbit on the screen up and down in frequency, through folds, stable or not");
+  period.append(
+    new Option("period as settled", ""),
+    ...[1, 2, 3, 4, 5, 6, 7, 8].map((n) => new Option(`period ${n}`, n)),
+  );
+  const start = button(
+    "follow from here",
+    () => ({ do: "branches-start", period: period.value ? Number(period.value) : null }),
+    "Follow the orbit on the screen up and down in frequency, through folds, stable or not",
+  );
   const cancel = button("stop", () => ({ do: "branches-cancel" }));
   const on = button("continue", () => ({ do: "branches-continue" }));
   const whole = part("button", { type: "button", textContent: "whole range", hidden: true });
@@ -48,15 +62,40 @@ export function render({ model }) {
   const close = part("button", { type: "button", textContent: "✕", title: "Back to the chain", className: "close" });
   close.addEventListener("click", () => page.cover(null));
   const status = part("span", { className: "status" });
-  const head = part("div", { className: "head" }, part("h2", { textContent: "Branches of periodic orbits" }), period, start, cancel, on, status,
-    part("span", { className: "grow" }), whole, part("label", {}, grazing, " grazings"), close);
-  const said = part("p", { className: "said" }), warning = part("p", { className: "warn", hidden: true });
-  const picture = part("div", { className: "picture" }), tip = part("div", { className: "tip", hidden: true });
+  const head = part(
+    "div",
+    { className: "head" },
+    part("h2", { textContent: "Branches of periodic orbits" }),
+    period,
+    start,
+    cancel,
+    on,
+    status,
+    part("span", { className: "grow" }),
+    whole,
+    part("label", {}, grazing, " grazings"),
+    close,
+  );
+  const said = part("p", { className: "said" }),
+    warning = part("p", { className: "warn", hidden: true });
+  const picture = part("div", { className: "picture" }),
+    tip = part("div", { className: "tip", hidden: true });
   const chosen = part("div", { className: "chosen", hidden: true });
   const work = part("div", { className: "work" }, picture, tip);
-  const root = part("div", { className: "part sheet" }, head, part("div", { className: "say" }, said, warning, chosen), work, legend());
+  const root = part(
+    "div",
+    { className: "part sheet" },
+    head,
+    part("div", { className: "say" }, said, warning, chosen),
+    work,
+    legend(),
+  );
 
-  let arms = [], special = [], zoom = null, drawn = { points: [] }, waits = false;
+  let arms = [],
+    special = [],
+    zoom = null,
+    drawn = { points: [] },
+    waits = false;
   const redraw = () => {
     waits = false;
     page.branches = { arms, special, now: model.state.now, grazing: grazing.checked, zoom, words: model.state.words };
@@ -64,7 +103,12 @@ export function render({ model }) {
     whole.hidden = !zoom;
     if (page.covered === "branches") drawn = branchPicture(picture, page.branches);
   };
-  const soon = () => { if (!waits) { waits = true; requestAnimationFrame(redraw); } };
+  const soon = () => {
+    if (!waits) {
+      waits = true;
+      requestAnimationFrame(redraw);
+    }
+  };
   const show = () => {
     const { state } = model;
     const running = ["waiting", "compiling", "settling", "following"].includes(state.status);
@@ -73,14 +117,25 @@ export function render({ model }) {
     cancel.hidden = !running;
     on.hidden = running || !state.unfinished || !arms.length;
     const ended = (state.ended ?? []).join("; ");
-    said.textContent = [state.words, ended].filter(Boolean).join(". ") || "The orbit on the screen is followed in frequency, also where it is unstable and no settled motion shows it.";
-    warning.textContent = state.failure || (state.stale ? "The knobs have moved: these orbits are another chain's. Follow again to see this one's; a click still brings back theirs." : "");
+    said.textContent =
+      [state.words, ended].filter(Boolean).join(". ") ||
+      "The orbit on the screen is followed in frequency, also where it is unstable and no settled motion shows it.";
+    warning.textContent =
+      state.failure ||
+      (state.stale
+        ? "The knobs have moved: these orbits are another chain's. Follow again to see this one's; a click still brings back theirs."
+        : "");
     warning.hidden = !warning.textContent;
     root.classList.toggle("stale", Boolean(state.stale));
     soon();
   };
 
-  const pointed = (event) => nearest(drawn.points.filter((point) => point.special), event, picture) ?? nearest(drawn.points, event, picture);
+  const pointed = (event) =>
+    nearest(
+      drawn.points.filter((point) => point.special),
+      event,
+      picture,
+    ) ?? nearest(drawn.points, event, picture);
   const told = (point) => {
     if (point.special) return point.special.told;
     const [f, elastic, stable, mu, input, output] = point.orbit;
@@ -91,22 +146,32 @@ export function render({ model }) {
     chosen.replaceChildren(told(point));
     if (point.orbit) {
       model.send_msg({ do: "branches-orbit", arm: point.arm, place: point.place });
-      chosen.append(point.orbit[2] ? " — settled on the main page" : " — live on the main page: watch it leave", " ",
-        Object.assign(part("button", { type: "button", textContent: "show" }), { onclick: () => page.cover(null) }));
+      chosen.append(
+        point.orbit[2] ? " — settled on the main page" : " — live on the main page: watch it leave",
+        " ",
+        Object.assign(part("button", { type: "button", textContent: "show" }), { onclick: () => page.cover(null) }),
+      );
     } else if (point.special.kind === "period_doubling") {
-      chosen.append(" ", button("follow the doubled branch", () => ({ do: "branches-double", place: point.special.place })));
+      chosen.append(
+        " ",
+        button("follow the doubled branch", () => ({ do: "branches-double", place: point.special.place })),
+      );
     }
   };
   let from = null;
-  work.addEventListener("pointerdown", (event) => { from = event.clientX; });
+  work.addEventListener("pointerdown", (event) => {
+    from = event.clientX;
+  });
   work.addEventListener("pointerup", (event) => {
-    const moved = from === null ? 0 : Math.abs(event.clientX - from), began = from;
+    const moved = from === null ? 0 : Math.abs(event.clientX - from),
+      began = from;
     from = null;
     if (moved < 8) {
       const point = pointed(event);
       if (point) choose(point);
     } else if (drawn.f) {
-      const box = picture.getBoundingClientRect(), { f, low, high } = drawn;
+      const box = picture.getBoundingClientRect(),
+        { f, low, high } = drawn;
       const at = (x) => low + (high - low) * Math.min(1, Math.max(0, (x - box.left - f.x0) / (f.x1 - f.x0)));
       zoom = [began, event.clientX].map(at).sort((a, b) => a - b);
       redraw();
@@ -122,22 +187,35 @@ export function render({ model }) {
     tip.style.right = right ? `${picture.clientWidth - point.x + 16}px` : "";
     tip.style.top = `${Math.max(0, point.y - 20)}px`;
   });
-  work.addEventListener("pointerleave", () => { tip.hidden = true; });
-  whole.addEventListener("click", () => { zoom = null; redraw(); });
+  work.addEventListener("pointerleave", () => {
+    tip.hidden = true;
+  });
+  whole.addEventListener("click", () => {
+    zoom = null;
+    redraw();
+  });
   grazing.addEventListener("change", redraw);
   model.on("state", show);
   model.on("msg:custom", (message) => {
-    if (message.type === "clear") { arms = []; special = []; zoom = null; chosen.hidden = true; }
-    else if (message.type === "orbits") {
+    if (message.type === "clear") {
+      arms = [];
+      special = [];
+      zoom = null;
+      chosen.hidden = true;
+    } else if (message.type === "orbits") {
       arms[message.arm] ??= { orbits: [], period: message.period };
       arms[message.arm].orbits.push(...message.orbits);
       special.push(...message.special);
     }
     soon();
   });
-  page.on("cover", (name) => { if (name === "branches") requestAnimationFrame(redraw); });
+  page.on("cover", (name) => {
+    if (name === "branches") requestAnimationFrame(redraw);
+  });
   page.on("look", redraw);
-  new ResizeObserver(() => { if (page.covered === "branches") redraw(); }).observe(work);
+  new ResizeObserver(() => {
+    if (page.covered === "branches") redraw();
+  }).observe(work);
   show();
   return root;
 }

@@ -11,12 +11,11 @@ from panel.io import unlocked
 
 from granchain_core import BadInput, Scene
 from granchain_core.orbits import Arm, Branch, BranchPoint, Continuation, begin_branch, switch_to_doubled
-from granchain_core.orbits.compiled import BRANCH_PIECE
+from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
 from ...page.host import Host
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task
-from ...serve.compiler import CERTIFIED, LIVE
 from ...serve.queues import LONG, Stop
 from ...serve.waiting import BRANCH_EVERY
 from .view import Branches, described_orbit, described_special, drawn_orbits
@@ -126,7 +125,7 @@ class BranchesPage:
         self._task.start(lambda job: self._follow(begin, scene, job))
 
     def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
-        job.compile(scene, LIVE, CERTIFIED, BRANCH_PIECE)
+        job.compile(scene, LIVE, CERTIFIED, BRANCH)
         job.say("settling")
         for branch in begin(job.stop):
             continuation = Continuation(branch, job.stop)

@@ -7,6 +7,7 @@ from typing import Any
 from granchain_core.orbits import BranchPoint, SpecialPoint
 
 from ...parts.component import Component, text
+from ...scripts import module
 
 _WORDS = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker",
           "grazing": "grazing"}
@@ -15,7 +16,7 @@ _WORDS = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker"
 class Branches(Component):
     """The page over the pictures; the growing branch comes in messages."""
 
-    _esm = text("plot.js") + text("branchpicture.js") + text("branches.js")
+    _esm = module("branches.js")
     _stylesheets = [text("controls.css"), text("drawing.css"), text("branches.css")]  # noqa: RUF012
 
 

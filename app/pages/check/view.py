@@ -14,12 +14,13 @@ from ...page.format import duration
 from ...parts.component import Component, text
 from ...pictures.check import check
 from ...pictures.theme import THEMES, Theme
+from ...scripts import module
 
 
 class Hard(Component):
     """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
 
-    _esm = text("embedded.js") + text("hard.js")
+    _esm = module("hard.js")
     _stylesheets = [text("controls.css"), text("hard.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:

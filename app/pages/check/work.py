@@ -61,22 +61,22 @@ class CaseProcess:
 
     def measure(self, case: Case, stop: Stop) -> Iterator[list[Check] | Picture | None]:
         """The rows, then the picture or None. Raises `Cancelled` for the flag, `Ended` where the process is no more."""
-        if stop[0]:
+        if stop:
             raise Cancelled
         asked = self._asked or self._begin()
         try:
             asked.send(case.name)
             for _ in range(2):
                 while not asked.poll(STOP_LOOK):
-                    if stop[0]:
+                    if stop:
                         raise Cancelled
                 yield asked.recv()
         except (EOFError, OSError) as gone:
             self.close()
             self._asked = None
-            raise (Cancelled() if stop[0] else Ended()) from gone
+            raise (Cancelled() if stop else Ended()) from gone
         finally:
-            if stop[0]:
+            if stop:
                 self.close()
 
     def close(self) -> None:

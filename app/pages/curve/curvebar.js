@@ -21,7 +21,11 @@ export function render({ model }) {
   const progress = Object.assign(document.createElement("span"), { className: "progress" });
   const meter = Object.assign(document.createElement("progress"), { max: 1 });
   meter.setAttribute("aria-label", "progress of the curve");
-  const stop = Object.assign(document.createElement("button"), { textContent: "✕", title: "Stop the curve", type: "button" });
+  const stop = Object.assign(document.createElement("button"), {
+    textContent: "✕",
+    title: "Stop the curve",
+    type: "button",
+  });
   stop.addEventListener("click", () => model.send_msg({ do: "curve-stop" }));
   progress.append(meter, stop);
   root.append(progress);
@@ -35,7 +39,10 @@ export function render({ model }) {
   // A curve nobody looks at is not computed.
   let onScreen = true;
   const look = () => model.send_msg({ do: "curve-visible", value: onScreen && !window.granchain.covered });
-  new IntersectionObserver(([entry]) => { onScreen = entry.isIntersecting; look(); }).observe(document.getElementById("curve"));
+  new IntersectionObserver(([entry]) => {
+    onScreen = entry.isIntersecting;
+    look();
+  }).observe(document.getElementById("curve"));
   window.granchain.on("cover", look);
   return root;
 }

@@ -88,13 +88,13 @@ class Sweep:
         found: list[CurvePoint] = []
         if not len(frequencies):
             return found
-        for point in iter_curve(self.scene, frequencies, start=direction, stop=lambda: bool(job.stop[0])):
-            if job.stop[0]:
+        for point in iter_curve(self.scene, frequencies, start=direction, stop=job.stop):
+            if job.stop:
                 raise Cancelled
             found.append(point)
             done = low + (high - low) * len(found) / len(frequencies)
             self.report(Progress(direction, [point], done))
             job.give_way(self.busy)
-        if job.stop[0]:
+        if job.stop:
             raise Cancelled
         return found

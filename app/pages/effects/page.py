@@ -8,16 +8,15 @@ from functools import partial
 from typing import Any
 
 from granchain_core import BadInput, Scene
-from granchain_core.accuracy.compiled import ACCOUNT_PIECE, COST_PIECE
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
-from granchain_core.warm import structure
+from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
 
 from ...cli.explain import slots_of
 from ...page.host import Host
 from ...page.job_list import IDLE, RUNNING, Activity
 from ...page.task import Job, Task
-from ...parts.corner import Corner
-from ...serve.compiler import CERTIFIED, COMPILER, CURVE, LIVE
+from ...parts.component import Component
+from ...serve.compiler import COMPILER
 from ...serve.queues import MEASUREMENTS
 from ...serve.waiting import ACTIVITIES_EVERY, COST_QUIET
 from .switches import EFFECTS, present, refusal, variants
@@ -29,7 +28,7 @@ class EffectsPanel:
     `activities` lists everything that is computed for this visitor.
     """
 
-    def __init__(self, host: Host, view: Corner, activities: Callable[[], list[Activity]]) -> None:
+    def __init__(self, host: Host, view: Component, activities: Callable[[], list[Activity]]) -> None:
         self._host = host
         self._view = view
         self._activities = activities
@@ -122,7 +121,7 @@ class EffectsPanel:
     def _compiled(self, name: str, pair: tuple[Variant, Variant]) -> bool:
         """Whether both kernels only need to be loaded; one that is not there is compiled in another process."""
         for variant in pair:
-            piece = ACCOUNT_PIECE if variant.balance else COST_PIECE
+            piece = COST_ACCOUNT if variant.balance else COST
             if COMPILER.has(variant.scene, piece):
                 continue
             self._compiling = name

@@ -13,13 +13,12 @@ from panel.io import unlocked
 from granchain_core import BadInput, Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
 from granchain_core.diagram.cells import cell_of, empty_cells
-from granchain_core.orbits.compiled import ORBIT_PIECE
+from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 
 from ...page.host import Host
 from ...page.session import slider_range
 from ...page.task import Job, Task
-from ...parts.corner import Corner
-from ...serve.compiler import CERTIFIED, CURVE, LIVE
+from ...parts.component import Component
 from ...serve.queues import LONG, Stop
 from ...serve.waiting import CELLS_EVERY, MAP_QUIET
 from .view import cells_message, described, head_message
@@ -42,7 +41,7 @@ def page_grid(scene: Scene) -> Grid:
 class MapTab:
     """While the tab is on the screen its diagram is computed; nothing is while it is not."""
 
-    def __init__(self, host: Host, view: Corner) -> None:
+    def __init__(self, host: Host, view: Component) -> None:
         self._host = host
         self._view = view
         self._visible = False
@@ -174,10 +173,10 @@ class MapTab:
         self._search.start(partial(self._search_work, self._host.session.scene))
 
     def _search_work(self, scene: Scene, job: Job) -> None:
-        job.compile(scene, LIVE, CERTIFIED, CURVE, *(() if scene.cuts_tension else (ORBIT_PIECE,)))
+        job.compile(scene, LIVE, CERTIFIED, CURVE, *(() if scene.cuts_tension else (ORBIT,)))
         job.say("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
-        found = attractors(scene, starts, stop=lambda: bool(job.stop[0]))
+        found = attractors(scene, starts, stop=job.stop)
         job.later(self._arrived, scene, found, [described(one) for one in found])
 
     def _say_search(self, status: str, sentence: str) -> None:
@@ -208,7 +207,7 @@ def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], Non
     """Cells as they come, a lot at a time."""
     rows: list[np.ndarray] = []
     last = time.monotonic()
-    for result in iter_diagram(grid, missing, lambda: bool(stop[0]), 1, pause):
+    for result in iter_diagram(grid, missing, stop, 1, pause):
         rows.append(cell_of(result))
         if time.monotonic() - last > CELLS_EVERY:
             yield np.array(rows)

@@ -8,11 +8,10 @@ from functools import partial
 from typing import Any
 
 from granchain_core import Scene, Settled
-from granchain_core.observe.compiled import OBSERVER_PIECE
+from granchain_core.warm import CERTIFIED, OBSERVER
 
 from ...page.host import Host
 from ...page.task import Job, Task
-from ...serve.compiler import CERTIFIED
 from ...serve.queues import PICTURES
 from .view import Observer
 from .work import ObserverRun, Step
@@ -76,7 +75,7 @@ class ObserverPage:
 
     def _work(self, scene: Scene, picture: Settled | None, job: Job) -> None:
         """In a worker thread: one period more of this scene's run."""
-        job.compile(scene, CERTIFIED, OBSERVER_PIECE)
+        job.compile(scene, CERTIFIED, OBSERVER)
         mine = picture if picture is not None and picture.run.scene.digest == scene.digest else None
         run, began = self._run, False
         wishes, self._wishes = self._wishes, []

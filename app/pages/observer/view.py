@@ -17,6 +17,7 @@ from ...parts.component import text
 from ...parts.drawn import Drawn
 from ...pictures.observer import observer, prediction
 from ...pictures.theme import Theme
+from ...scripts import module
 from .work import Step
 
 _TRANSIENT = 2
@@ -26,7 +27,7 @@ _TRANSIENT = 2
 class Observer(Drawn):
     """The page over the pictures; every period comes as one message."""
 
-    _esm = text("embedded.js") + text("chaindrawing.js") + text("observer.js")
+    _esm = module("observer.js")
     _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
-from granchain_core.integrate.engine import rest
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import (
     IN_STEP,
@@ -19,6 +18,8 @@ from granchain_core.observe.twin import (
     share_of_translation,
 )
 from granchain_core.orbits import Orbit, periodic_orbit
+from granchain_core.state import rest
+from granchain_core.stop import Stop
 
 from ...page.frames import samples_for
 
@@ -47,7 +48,7 @@ class Step:
 class ObserverRun:
     """One chain with one observer; `went_on` begins with the states of another run, as when a knob was turned."""
 
-    def __init__(self, scene: Scene, picture: Settled | None, stop: np.ndarray, went_on: ObserverRun | None) -> None:
+    def __init__(self, scene: Scene, picture: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
         self.scene = scene
         self.orbit: Orbit | None = None
         self.failure = ""

@@ -1,5 +1,8 @@
 // One Floquet mode as a motion of the chain: where a small disturbance of the orbit moves every bead.
 
+import { ChainDrawing } from "../../parts/chaindrawing.js";
+import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
+
 class DisturbedChain extends ChainDrawing {
   // A mode has no size of its own: the largest displacement is drawn as this part of the beads' distance.
   load(frames) {
@@ -13,17 +16,27 @@ class DisturbedChain extends ChainDrawing {
 
   bead(x, y, radius, part) {
     const { context: g, ink } = this;
-    g.beginPath(); g.arc(x, y, radius, 0, 2 * Math.PI);
-    g.fillStyle = ink.steel; g.globalAlpha = 0.35 + 0.65 * Math.min(1, part); g.fill(); g.globalAlpha = 1;
-    g.lineWidth = 1.5 * ink.bold; g.strokeStyle = ink.text; g.stroke();
+    g.beginPath();
+    g.arc(x, y, radius, 0, 2 * Math.PI);
+    g.fillStyle = ink.steel;
+    g.globalAlpha = 0.35 + 0.65 * Math.min(1, part);
+    g.fill();
+    g.globalAlpha = 1;
+    g.lineWidth = 1.5 * ink.bold;
+    g.strokeStyle = ink.text;
+    g.stroke();
   }
 
   // Where the bead would be on the orbit, behind everything.
-  ground(frames, pitch, radius, y, place) {
+  ground(frames, pitch, radius, y) {
     const { context: g, ink } = this;
-    g.strokeStyle = ink.text; g.lineWidth = 1; g.setLineDash([2, 3]);
+    g.strokeStyle = ink.text;
+    g.lineWidth = 1;
+    g.setLineDash([2, 3]);
     for (let i = 1; i <= frames.beads; i++) {
-      g.beginPath(); g.arc(this.left + (i - 0.5) * pitch, y, radius * (frames.radii[i - 1] / this.largest), 0, 2 * Math.PI); g.stroke();
+      g.beginPath();
+      g.arc(this.left + (i - 0.5) * pitch, y, radius * (frames.radii[i - 1] / this.largest), 0, 2 * Math.PI);
+      g.stroke();
     }
     g.setLineDash([]);
   }
@@ -31,7 +44,7 @@ class DisturbedChain extends ChainDrawing {
   words() {}
 }
 
-class ModeView {
+export class ModeView {
   constructor(canvas, host) {
     this.drawing = new DisturbedChain(canvas);
     this.canvas = canvas;
@@ -40,9 +53,18 @@ class ModeView {
   }
 
   load(message) {
-    const half = message.values.length / 2, all = new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length);
+    const half = message.values.length / 2,
+      all = new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length);
     this.mode = { ...message, rows: half / message.beads, re: all.subarray(0, half), im: all.subarray(half) };
-    this.frames = { ...message, rows: 1, displacement: new Float32Array(message.beads), force: new Float32Array(message.beads + 1), energy: new Float32Array(message.beads), energy_high: 1, drive: new Float32Array(1) };
+    this.frames = {
+      ...message,
+      rows: 1,
+      displacement: new Float32Array(message.beads),
+      force: new Float32Array(message.beads + 1),
+      energy: new Float32Array(message.beads),
+      energy_high: 1,
+      drive: new Float32Array(1),
+    };
     this.drawing.load(this.frames);
     this.last = null;
     this.measure();
@@ -73,9 +95,13 @@ class ModeView {
     if (!this.mode || phase === this.last) return;
     this.last = phase;
     const { period, rows, beads, turn_re, turn_im } = this.mode;
-    const orbits = Math.floor(phase / period), angle = orbits * Math.atan2(turn_im, turn_re);
-    const row = (phase / period - orbits) * (rows - 1), a = Math.min(rows - 2, Math.floor(row)), part = row - a;
-    const c = Math.cos(angle), s = Math.sin(angle);
+    const orbits = Math.floor(phase / period),
+      angle = orbits * Math.atan2(turn_im, turn_re);
+    const row = (phase / period - orbits) * (rows - 1),
+      a = Math.min(rows - 2, Math.floor(row)),
+      part = row - a;
+    const c = Math.cos(angle),
+      s = Math.sin(angle);
     for (let i = 0; i < beads; i++) {
       this.frames.displacement[i] = (1 - part) * this.at(a, i, c, s) + part * this.at(a + 1, i, c, s);
       this.frames.energy[i] = Math.abs(this.frames.displacement[i]);
@@ -87,17 +113,30 @@ class ModeView {
   // Every bead's disturbance over one period of the orbit, time downwards as on the main page.
   seismogram() {
     const { mode, drawing } = this;
-    const f = frame(this.host, { left: 52, right: 28, top: 6, bottom: 6 }, "the disturbance of every bead over one period of the orbit");
-    const { svg } = f, pitch = drawing.span / mode.beads;
+    const f = frame(
+      this.host,
+      { left: 52, right: 28, top: 6, bottom: 6 },
+      "the disturbance of every bead over one period of the orbit",
+    );
+    const { svg } = f,
+      pitch = drawing.span / mode.beads;
     this.Y = (fraction) => f.y1 + fraction * (f.y0 - f.y1);
     for (const t of ticks(0, mode.time, 4)) {
-      svg.append(draw("line", { x1: f.x0, x2: f.x1, y1: this.Y(t / mode.time), y2: this.Y(t / mode.time), class: "grid" }));
+      svg.append(
+        draw("line", { x1: f.x0, x2: f.x1, y1: this.Y(t / mode.time), y2: this.Y(t / mode.time), class: "grid" }),
+      );
       words(svg, f.x0 - 6, this.Y(t / mode.time) + 5, round3(t), "end", "number");
     }
-    words(svg, 0, 0, `time (${mode.time_unit})`, "middle", "title", { transform: `translate(12 ${(f.y0 + f.y1) / 2}) rotate(-90)` });
+    words(svg, 0, 0, `time (${mode.time_unit})`, "middle", "title", {
+      transform: `translate(12 ${(f.y0 + f.y1) / 2}) rotate(-90)`,
+    });
     for (let i = 0; i < mode.beads; i++) {
-      const x = f.x0 + (i + 0.5) * pitch, line = [];
-      for (let row = 0; row < mode.rows; row++) line.push(`${(x + 0.42 * pitch * this.at(row, i, 1, 0)).toFixed(1)} ${this.Y(row / (mode.rows - 1)).toFixed(1)}`);
+      const x = f.x0 + (i + 0.5) * pitch,
+        line = [];
+      for (let row = 0; row < mode.rows; row++)
+        line.push(
+          `${(x + 0.42 * pitch * this.at(row, i, 1, 0)).toFixed(1)} ${this.Y(row / (mode.rows - 1)).toFixed(1)}`,
+        );
       svg.append(draw("path", { d: `M${x} ${f.y1}L${line.join("L")}L${x} ${f.y0}Z`, class: "swing" }));
     }
     this.now = draw("line", { x1: f.x0, x2: f.x1, y1: 0, y2: 0, class: "moment" });

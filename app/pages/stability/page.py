@@ -9,10 +9,10 @@ from typing import Any
 from panel.io import unlocked
 
 from granchain_core import BadInput, Scene, Settled, State
-from granchain_core.orbits.compiled import ORBIT_PIECE
 from granchain_core.orbits.flow import refuse_cut
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
+from granchain_core.warm import ORBIT
 
 from ...page.host import Host
 from ...page.job_list import IDLE, OFF, RUNNING, Activity
@@ -150,7 +150,7 @@ class StabilityPage:
     @staticmethod
     def _compile(scene: Scene, job: Job) -> None:
         refuse_cut(scene)  # before anything is compiled for it
-        job.compile(scene, ORBIT_PIECE)
+        job.compile(scene, ORBIT)
 
     # What comes back
 

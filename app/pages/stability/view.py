@@ -11,6 +11,7 @@ import numpy as np
 from bokeh.embed import json_item
 
 from granchain_core import Settled
+from granchain_core.integrate.methods import LIVE
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
 from granchain_core.steady.poincare import Section
@@ -22,14 +23,14 @@ from ...parts.component import text
 from ...parts.drawn import Drawn
 from ...pictures.section import SectionPoints, close_up, section, section_state
 from ...pictures.theme import Theme
+from ...scripts import module
 from .work import Analysis
 
 
 class Stability(Drawn):
     """The page over the pictures and, through what it shares in the browser, the small version in the corner."""
 
-    _esm = "".join(text(name) for name in ("plot.js", "embedded.js", "chaindrawing.js", "multipliers.js", "mode.js",
-                                           "stability.js"))
+    _esm = module("stability.js")
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "multipliers", "stability")]  # noqa: RUF012
 
     def empty_figures(self, theme: Theme) -> dict[str, Any]:
@@ -141,7 +142,7 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
     cost = picture.run.cost
     row("settled by", f"{cost.method}, {cost.steps} steps, {duration(cost.wall_s)}", "What the settled picture took.")
     if section is not None:
-        row("section", f"{section.periods} periods at {section.samples} phases, rk4-split",
+        row("section", f"{section.periods} periods at {section.samples} phases, {LIVE}",
             "Computed once more from the same start by the live method.")
     return rows
 

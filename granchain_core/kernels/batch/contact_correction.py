@@ -1,12 +1,12 @@
-"""Contacts that open or close within a step of lanes: the step is not split, what it gets wrong is taken back.
+"""Contacts that open or close within a step of a batch: the step is not split, its error is subtracted.
 
-Over a contact that is closed for a part r of a step, at its beginning or at its end, an overlap that grows or falls as
-v s has its force and its damping integrated by Simpson's rule through the kink. What that gives too much is known:
+A contact is closed for a part r of the step, at its beginning or at its end, and its overlap grows or falls as v s.
+Simpson's rule integrates its force and its damping through the kink; the quadrature errors are
 
     impulse  K v^{3/2} h^{5/2} (S_{3/2}(r) + E(r)),   path  c v^p h^{p+1} S_p(r)   for G = c δ^p, p = 1 + a
     S_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1),   E: the same of s^{3/2} over the whole step on the closed side
 
-and with it RK4 in lanes goes from order 2 to about 3 (docs/model.md).
+and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/model.md).
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def _(law, values, y, c, changed, path):
 
 @inline_llvm
 def correct_state(values, y, c, row, excess):
-    """Take from the beads beside contact c, in the row of y that begins at `row`, what it gave them too much."""
+    """Correct the beads beside contact c by the error `excess`, in the row of y that begins at `row`."""
     if c > 0:
         store(y, row + c, load(y, row + c) + over_mass(values.unequal, c, excess))
     if c < values.last:
@@ -64,7 +64,7 @@ def correct_state(values, y, c, row, excess):
 
 @inline_llvm
 def correct_contacts(values, y, gaps, h, u0):
-    """Take back what the last step got wrong at contacts that changed in it; `gaps` are the overlaps before it."""
+    """Correct the last step at contacts that changed in it; `gaps` are the overlaps before it."""
     m = values.last + 2
     left = u0
     for c in range(values.last + 1):

@@ -1,10 +1,10 @@
-"""What happens at the end of a lane's period: its strobe is kept, its regime looked for, a slow approach followed.
+"""The end of a batch member's drive period: its strobe is kept, its regime checked, its transient extrapolated.
 
-A coarse lane is followed to where it leads only if the jump is one that the decay itself predicts, and the change
-behind it must be smaller than before it: else it is taken back. A chain may approach an unstable orbit before it
-leaves it, and an extrapolation would put it there: so an orbit found with its help is disturbed, and counts only if
-the disturbance decays; where it decays slowly, multipliers are asked for (steady/batch_settle.py). So the orbit is the
-one the chain was going to. A fine lane starts on the coarse orbit and is followed to its own, each jump proved.
+A coarse member is extrapolated only if the jump is no longer than its decay predicts; if the change after the jump is
+not smaller than before, the jump is undone. A chain may approach an unstable orbit before it leaves it, and an
+extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the
+disturbance decays; if it decays slowly, multipliers decide (steady/batch_settle.py). A fine member starts on the
+coarse orbit and is extrapolated to its own, each jump checked in the same way.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ from ..strobes.periodicity import (
     window_of,
 )
 
-#: Strobes of each lane that are always remembered, and those its regime is decided by.
+#: Strobes kept of each member at least, and those on which its regime is decided.
 REMEMBERED, SEEN = 432, 4 * LONGEST_PERIOD + 1
-#: Orbits still to come that make an extrapolation worth it, and fewest periods between two attempts.
+#: Remaining orbits that justify an extrapolation, and fewest periods between two attempts.
 _TOO_LONG, _BETWEEN = 4.0, 8
-#: A jump longer than this times change/(1 − rate) is not where the decay was leading.
+#: Longest jump, in units of change/(1 − rate), the distance that the decay predicts.
 LONGEST_JUMP = 3.0
-#: The coarse orbit's difference is forgotten to this fraction in the finer run, in so many rounds at most.
+#: Part of the coarse orbit's error that may be left in the finer run, and extrapolations for it at most.
 FORGET, _MOST_ROUNDS = 0.02, 6
-#: An orbit is disturbed by so much, relative to the motion, for so many orbits, at whose end no more than this part of
-#: what was seen in their first quarter may be left; where more is, nothing is followed for so many periods.
+#: Test of an extrapolated orbit: disturbance relative to the motion, orbits, the largest part of it that may be left at
+#: their end relative to their first quarter, and periods without extrapolation after a failed test.
 _DISTURBANCE, _TEST_ORBITS, _LEFT, _NO_MORE = 1e-4, 16, 0.97, 400
-#: The decay of a disturbance that did not shrink in the end: whoever reads it asks for more.
+#: Decay reported for a disturbance that did not shrink in the end: the multipliers are then computed.
 _NEARLY_ONE = 0.9999
-#: The slowest decay that an extrapolation is taken to have left behind: slower ones are not seen well enough.
+#: Slowest decay that an extrapolation is taken to have removed: slower ones are not measured well enough.
 _SLOWEST = 0.98
-#: Columns of what is known of a fine lane: period, rate, the coarse run's largest forces, orbits a round, rounds.
+#: Columns of a fine member's record: period, rate, the coarse run's largest forces, orbits a round, rounds.
 PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
 
 
 @kernel
 def keep_member_strobe(state, lane):
-    """Note where a lane is behind its earlier strobes, of which the oldest half goes when it is full; if finite."""
+    """Append the state to the strobes, dropping the oldest half if they are full; whether the state is finite."""
     strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
     if state.kept[lane] == strobes.shape[1]:
         half = strobes.shape[1] // 2
@@ -187,9 +187,9 @@ def largest_top(state, lane, n, q):
 
 @inline_numba
 def check_fine(state, lane):
-    """Whether a fine lane has forgotten the coarse orbit; if not, it is followed to its own.
+    """Whether the coarse orbit's error has decayed in a fine member; if not, its transient is extrapolated.
 
-    Where changes are not smaller behind a jump it is taken back, and the lane goes on without.
+    If changes are not smaller after a jump, the jump is undone and the member continues without.
     """
     fine, kept, seen = state.fine[lane], state.kept[lane], state.seen[lane]
     n, rate = int(fine[PERIOD]), fine[RATE]
@@ -220,7 +220,7 @@ def check_fine(state, lane):
 
 @kernel
 def end_period(state, lane):
-    """Note strobe and largest forces of a lane, restart its phase exactly; whether it should be looked at."""
+    """Keep strobe and largest forces of a member and restart its phase exactly; whether it is due for a check."""
     state.periods[lane] += 1
     periods = state.periods[lane]
     finite = keep_member_strobe(state, lane)

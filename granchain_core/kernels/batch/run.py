@@ -1,8 +1,8 @@
 """Eight chains at once, one a SIMD lane: RK4 in w with a fixed step, for curves and maps.
 
-All lanes share the effects and N; every value may differ, the step and the number of steps in a period too. A lane
-that ends a period is looked at by itself; one that may have settled, or that has run long enough to be looked at,
-stops the kernel so that its place can be filled with the next scene.
+All members share the effects and N; every value may differ, the step and the number of steps in a period too. Each
+member is checked at the end of its own periods. One that may have settled, or that is due for a check,
+ends the kernel, so that its lane can be filled with the next scene.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_ends
 
-#: Steps after which the stop flag is asked at the latest.
+#: Steps between two checks of the stop flag at most.
 _PATIENCE = 4096
 
 
@@ -44,15 +44,28 @@ class Lanes(NamedTuple):
 
 
 class BatchState(NamedTuple):
-    """Where the lanes are: state (2(N+2), 8), overlaps a step ago (N+1, 8), overlap and rate of the first and of
-    the last contact a step ago (4, 8), sin and cos of the phase (2, 8), peaks (17, 8).
+    """State of the eight members.
 
-    Per lane: steps in a period and steps left, periods run, the period to stop at in any case and the next at which the
-    strobes are looked at; the period from which an approach may be followed and how long it is waited after a vain one,
-    the slowest decay known, the change before an extrapolation that has not proved itself and the state `before` it
-    (8, 2, N+2), the period of an orbit that is disturbed; what is known of a fine lane (8, 7); strobes (8, 2R, 2, N+2)
-    of which `kept` are there, largest forces and jumps (8, R, 5) as a ring, and what was seen last (8, 3): period,
-    rate, distance. The rest are workspaces of lane_looks.
+    y (2(N+2), 8)            displacements and w
+    gaps (N+1, 8)            overlaps one step ago
+    ends (4, 8)              overlap and rate of the first and of the last contact one step ago
+    phase (2, 8)             sin and cos of the drive phase
+    peaks (17, 8)            largest forces
+    steps, left (8,)         steps in a period, and those left of it
+    periods, look (8,)       periods run, and the period at which the kernel returns in any case
+    earliest (8,)            next period at which the strobes are checked
+    ready, wait (8,)         period from which a transient may be extrapolated, and the pause after a failed attempt
+    kept (8,)                number of strobes
+    slowest (8,)             slowest decay known
+    jumped (8,)              change before an extrapolation that is not yet confirmed, else 0
+    testing (8,)             period of an orbit that is being disturbed, else 0
+    before (8, 2, N+2)       state before the last extrapolation
+    fine (8, 7)              record of a fine member (period_end.py)
+    strobes (8, 2R, 2, N+2)  stroboscopic states
+    tops (8, R, 5)           largest forces and jumps of the last periods, a ring
+    seen (8, 3)              result of the last check: period, rate, distance
+
+    The others are workspaces of period_end.py.
     """
 
     y: np.ndarray
@@ -109,7 +122,7 @@ def batch_steps(lanes, state, count):
 
 @kernel
 def run_batch(lanes, state, stop):
-    """Run until a lane should be looked at; returns (status, lane)."""
+    """Run until a lane is due for a check; returns (status, lane)."""
     while True:
         count = _PATIENCE
         for lane in range(LANES):

@@ -1,6 +1,6 @@
-"""Steps that end on contact events: aimed at a release, landed on an onset, or neither.
+"""Event location for the flow: steps that end at a release, at an onset, or at neither.
 
-What a step comes to is (status, time, size, contact that changed at its end or −1); its result is work.end.
+A step returns (status, time, size, contact that changed at its end or −1); the state is in work.end.
 """
 
 from __future__ import annotations
@@ -9,23 +9,23 @@ import numpy as np
 
 from ..effects.preload import overlap
 from ..jit import inline_numba, kernel
-from ..status import DONE, NOT_FINITE, STEP_TOO_SMALL
+from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .event_step import attempt_in_time, first_change
 from .tableau import STAGES
 from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
-#: A step lands so near to an event, in units of the largest displacement: a few roundings.
+#: Largest overlap at a located event, in units of the largest displacement: a few roundings.
 _LANDED = 1e-14
-#: A release is aimed at when it is no farther away than this many steps.
+#: A release is located in advance if it is at most this many steps away.
 _AIM = 1.5
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
-#: Attempts at one landing, and at one step.
+#: Attempts to locate one event, and to take one step.
 _TRIALS, _ATTEMPTS = 8, 60
-#: The next step to try is never less than this, in t: two events that rounding sets side by side leave no trace in it.
+#: Shortest next step to try, in t: two events that rounding brings together do not shrink it further.
 _LEAST = 1e-9
-#: A first step behind an onset goes at most this part of the way to a release that it meets.
+#: A first step after an onset covers at most this part of the time to the next release.
 _PART = 0.5
-#: What aiming came to besides a kernel's status.
+#: Status of a release that could not be located, beside those of kernels/status.py.
 _LOST = -1
 
 
@@ -54,7 +54,7 @@ def locate_change(method, slots, beta, time, h, y, work, path, tangent, c, count
             break
         h -= d / speed
         attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
     return h
 
 
@@ -81,7 +81,7 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     error, landed = np.inf, False
     for _ in range(_TRIALS):
         error = attempt_in_time(method, slots, beta, time, time.s, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, time, 0.0, -1, goal
         d, speed = overlap(slots.preload, work.end, c), work.slope[c] - work.slope[c + 1]
@@ -100,15 +100,15 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     if goal > limit:
         landed = False
         error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
     while error > 1.0:
         landed = False
-        counts[3] += 1
+        counts[REJECTED] += 1
         h = shrunk(h, error)
         if not t + 0.1 * (time_at(time, h) - t) > t:
             return STEP_TOO_SMALL, time, h, -1, goal
         error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
     return DONE, time, h, c if landed else -1, goal
 
 
@@ -139,11 +139,11 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
                 return status, time, h, -1
         else:
             error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-            counts[1] += STAGES
+            counts[EVALUATIONS] += STAGES
             if not np.isfinite(error):
                 return NOT_FINITE, time, h, -1
             if error > 1.0:
-                counts[3] += 1
+                counts[REJECTED] += 1
                 h = shrunk(h, error)
                 dt = time_at(time, h) - t
                 if not t + 0.1 * dt > t:
@@ -165,7 +165,7 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
             continue
         h *= x
         attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
         return DONE, time, locate_change(method, slots, beta, time, h, y, work, path, tangent, contact, counts), contact
     return STEP_TOO_SMALL, time, h, -1
 

@@ -15,6 +15,7 @@ import numpy as np
 from ..effects.driver import driver_displacement
 from ..effects.preload import overlap
 from ..jit import by_slot, inline_numba, kernel
+from ..status import EVALUATIONS
 from .located import may_turn
 from .step import combine, dense_value, error_norm
 from .tableau import STAGES, C
@@ -119,7 +120,7 @@ def first_change(slots, beta, time, h, y, work, path, counts, but):
             continue
         if not ready:
             prepare_dense_in_time(slots, beta, time, h, y, work)
-            counts[1] += 4
+            counts[EVALUATIONS] += 4
             ready = True
         low, high = 0.0, 1.0
         if not crossed:

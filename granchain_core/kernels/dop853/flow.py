@@ -13,7 +13,7 @@ from ..equations.motion import copy
 from ..equations.tangent import Tangent, carry
 from ..jit import by_slot, kernel
 from ..samples import first_not_finite
-from ..status import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL
+from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEP_TOO_SMALL, STEPS
 from .event_location import flow_step
 from .step import evaluate, new_scale
 from .time_map import time_at
@@ -79,13 +79,13 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
                 new_scale(y, work, m)
                 end = time_at(time, h)
                 t = period if period - end < 1e-14 * period else end
-                counts[0] += 1
+                counts[STEPS] += 1
             if contact >= 0:
                 if path.logged[0] >= path.log.shape[0]:
                     return CHATTER, p, trace
                 if change(slots, path, tangent, contact, p * period + t):
                     onset = t
-                counts[2] += 1
+                counts[EVENTS] += 1
         onset -= period
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p, trace

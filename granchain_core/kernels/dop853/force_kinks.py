@@ -14,6 +14,7 @@ from ..effects.tension import NoTension, slacken
 from ..equations.motion import write_w
 from ..jit import by_slot, inline_numba, kernel
 from ..simd.functions import gate, root
+from ..status import EVALUATIONS
 from .bracket import between, narrowed
 from .step import STAGES, dense_value, evaluate, prepare_dense
 
@@ -94,7 +95,7 @@ def scaled_force_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, c
         before = x
         x = between(low, high, f_low, f_high)
         f = scaled_force_in_step(slots, beta, t, h, y, work, c, x)
-        counts[1] += 1
+        counts[EVALUATIONS] += 1
         if abs(x - before) < 0.1 * _NEAR:
             break
         low, high, f_low, f_high, side = narrowed(low, high, f_low, f_high, side, x, f)
@@ -127,11 +128,11 @@ def _(tension, slots, beta, t, h, y, work, until, counts, again):
             continue
         if not ready:
             prepare_dense(slots, beta, t, h, y, work)
-            counts[1] += 3
+            counts[EVALUATIONS] += 3
             ready = True
         if until < 1.0:
             f1 = scaled_force_in_step(slots, beta, t, h, y, work, c, until)
-            counts[1] += 1
+            counts[EVALUATIONS] += 1
             if abs(f1) < still or slack != (f1 > 0.0):
                 continue
         x = 0.0

@@ -1,9 +1,9 @@
 """The largest forces inside an accepted step of the certified method, on its dense output.
 
-A force is looked at where the step begins, in its middle and where it ends; the step begins just behind an event and
-ends just behind the next, so that these values are right limits and the jump of a closing contact is one of them. Where
-it rises at the beginning and falls at the end, the top in between is searched by golden section if it may exceed what
-was seen: it is then as exact as the dense output, whatever the size of the step.
+A force is evaluated at the beginning, in the middle and at the end of a step. The step begins just past an event and
+ends just past the next, so these values are right limits and the jump of a closing contact is one of them. If the force
+rises at the beginning and falls at the end, its maximum is searched by golden section, provided that it may exceed the
+largest value so far. It is then as exact as the dense output, whatever the size of the step.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import OUTPUT
 from ..jit import inline_numba, kernel
 from ..simd.functions import root
+from ..status import EVALUATIONS
 from .step import dense_value, evaluate, prepare_dense
 from .tableau import STAGES
 
@@ -86,7 +87,7 @@ def top_in_step(slots, beta, t, h, y, work, q, counts):
             low, a, fa = a, b, fb
             b = low + _RATIO * (high - low)
             fb = forces_in_step(slots, beta, t, h, y, work, b)[q]
-    counts[1] += _SECTIONS + 2
+    counts[EVALUATIONS] += _SECTIONS + 2
     return max(fa, fb)
 
 
@@ -121,9 +122,9 @@ def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
         return ready
     if not ready:
         prepare_dense(slots, beta, t, h, y, work)
-        counts[1] += 3
+        counts[EVALUATIONS] += 3
     middle = forces_in_step(slots, beta, t, h, y, work, 0.5)
-    counts[1] += 1
+    counts[EVALUATIONS] += 1
     for q in range(3):
         peaks[q * OUTPUT] = max(peaks[q * OUTPUT], middle[q])
         guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], h))

@@ -1,8 +1,8 @@
 """Event-located, error-controlled integration: DOP853 in w, restarted where a contact opens or closes.
 
 The slope is continuous across an event but its derivative is not, and behind onset the solution carries a
-(t − t_e)^{5/2}: no smooth method keeps its order across. So every change of contact inside a step is found on
-the dense output, the step is repeated to end just behind it, and the next one starts small.
+(t − t_e)^{5/2}: no smooth method keeps its order across. So every contact event inside a step is located on
+the dense output, the step is repeated to end just past it, and the next one starts small.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from ..equations.motion import copy
 from ..forces.largest import note_closings
 from ..jit import by_slot, inline_numba, kernel
 from ..samples import first_not_finite, keep
-from ..status import CANCELLED, CHATTER, DONE, NOT_FINITE, STEP_TOO_SMALL
+from ..status import CANCELLED, CHATTER, DONE, EVALUATIONS, EVENTS, NOT_FINITE, REJECTED, STEP_TOO_SMALL, STEPS
 from .bracket import between, narrowed
 from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
 from .step import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
 
-#: A step is aimed to end this overlap behind the event, some roundings of the largest displacement, and lands within
-#: so many times that: the moment of a contact is then as exact as its speed lets it be.
+#: Target overlap just past an event, a few roundings of the largest displacement, and the factor by which it may be
+#: missed: the time of the event is then as exact as the approach speed allows.
 _BEHIND, _NEAR = 1e-15, 4.0
 #: The same where tension is cut: a contact without force may linger at δ = 0, which is no chatter.
 _BEHIND_CUT, _NEAR_CUT = 1e-14, 100.0
-#: A step that is aimed at an event may grow by so much of it.
+#: A step that is to end at an event may become longer by this factor.
 _LONGER = 1.01
 #: No contact opens and closes more often than this in one period unless it chatters.
 _EVENTS_PER_CONTACT = 2000
@@ -100,7 +100,7 @@ def may_turn(d0, s0, d1, s1, sign):
 def first_event(slots, beta, t, h, y, work, counts):
     """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
-    One that is nearer to the start than time can be told apart is no event to step to, and must not hide the next.
+    Events closer to t than floating-point resolution are ignored.
     """
     contact, first, dense_ready = -1, 2.0, False
     k = work.k
@@ -114,7 +114,7 @@ def first_event(slots, beta, t, h, y, work, counts):
             continue
         if not dense_ready:
             prepare_dense(slots, beta, t, h, y, work)
-            counts[1] += 3
+            counts[EVALUATIONS] += 3
             dense_ready = True
         high = 1.0
         if turns:
@@ -129,7 +129,7 @@ def first_event(slots, beta, t, h, y, work, counts):
 
 @by_slot
 def event_tolerance(tension):
-    """How far behind an event a step is to end, and within how many times that. Absent: as exactly as can be."""
+    """Target overlap past an event and the accepted factor. Absent: the smallest that rounding allows."""
     return _BEHIND, _NEAR
 
 
@@ -160,7 +160,7 @@ def locate_event(method, slots, beta, t, h, limit, y, work, c, counts):
             break
         h += change
         attempt(method, slots, beta, t, h, y, work)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
         target *= 2.0
     return h
 
@@ -176,12 +176,12 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     aimed, kinked, again, factor = -1, False, False, 1.0
     while True:
         error = attempt(method, slots, beta, t, h, y, work)
-        counts[1] += STAGES
+        counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, h, -1
         if error > 1.0:
             aimed, kinked = -1, False
-            counts[3] += 1
+            counts[REJECTED] += 1
             h *= max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
             if t + 0.1 * h == t:
                 return STEP_TOO_SMALL, h, -1
@@ -205,12 +205,12 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
     if aimed >= 0:
         h = locate_event(method, slots, beta, t, h, limit, y, work, aimed, counts)
         clock[0] = min(clock[0], 2.0 * method.tolerance**0.4)
-        counts[2] += 1
+        counts[EVENTS] += 1
     elif kinked:
-        counts[2] += 1  # the motion is smooth on both sides: the next step need not start small
+        counts[EVENTS] += 1  # the motion is smooth on both sides: the next step need not start small
     elif h < limit - t or factor < 1.0 or clock[0] <= h:
         clock[0] = h * factor
-    counts[0] += 1
+    counts[STEPS] += 1
     return DONE, h, aimed
 
 
@@ -230,7 +230,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
     """Run over `points` points of a grid of `grid` points a period, starting at grid point `first`.
 
     With every > 0 the largest forces are followed and closings noted in `log`, and each every-th grid point is kept in
-    `samples`, whose row 0 is the start; with every = 0 nothing is looked at. Returns (status, rows or points done).
+    `samples`, whose row 0 is the start; with every = 0 nothing is recorded. Returns (status, rows or points done).
     """
     m = slots.chain.inverse_mass.size
     spacing = period / grid
@@ -260,7 +260,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
             if every > 0 and g % every == 0:
                 if not ready:
                     prepare_dense(slots, beta, t, h, y, work)
-                    counts[1] += 3
+                    counts[EVALUATIONS] += 3
                     ready = True
                 look_inside(slots, beta, t, h, g * spacing, y, work)
                 keep(slots, row, work.probe, work.slope, work.forces.e, samples)

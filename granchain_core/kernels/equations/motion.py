@@ -29,12 +29,12 @@ class Slots(NamedTuple):
     """One slot per effect, None where it is absent; the types alone decide what is compiled."""
 
     chain: Any
-    dissipation: Any
-    tension: Any
-    foundation: Any
-    preload: Any
-    driver: Any
-    balance: Any
+    dissipation: Any = None
+    tension: Any = None
+    foundation: Any = None
+    preload: Any = None
+    driver: Any = None
+    balance: Any = None
 
 
 class Forces(NamedTuple):

@@ -17,6 +17,7 @@ from ..effects.tension import cut_at_zero
 from ..forces.largest import end_overlaps, watch_crossings
 from ..jit import kernel
 from ..rk4.step import drive_displacement, drive_velocity, step
+from ..status import EVALUATIONS, STEPS
 
 
 class Rk4Naive(NamedTuple):
@@ -69,8 +70,8 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
         y[i] += h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
     naive_motion(slots, ub, vb, y, k[0], forces)
     watch_crossings(slots.dissipation, slots, before, y, k[0], h, theta, dtheta, log)
-    counts[0] += 1
-    counts[1] += 4
+    counts[STEPS] += 1
+    counts[EVALUATIONS] += 4
     return h
 
 
@@ -87,6 +88,6 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
         y[m + i] += 0.5 * h * k[0, m + i]
         k[0, i] = y[m + i]
     watch_crossings(slots.dissipation, slots, before, y, k[0], h, theta, dtheta, log)
-    counts[0] += 1
-    counts[1] += 1
+    counts[STEPS] += 1
+    counts[EVALUATIONS] += 1
     return h

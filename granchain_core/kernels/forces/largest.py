@@ -30,7 +30,7 @@ from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 #: A force below this part of the largest so far is watched without its slope: a top is higher than the ends of its step
 #: by h²/8 of its curvature, some per cent of it.
 _FAINT = 0.9
-#: A force does not rise or fall by more than so many times its value in one step: behind a closing, where g has an
+#: Largest rise or fall of a force in one step, over its value: behind a closing, where g has an
 #: infinite slope, the cubic's slope is bounded by this.
 _STEEPEST = 3.0
 
@@ -51,7 +51,7 @@ class ForceLog(NamedTuple):
 
 
 def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
-    """A log with places for so many closings; the forces go on from the log before."""
+    """A log with room for a number of closings; largest forces continue from an earlier log."""
     peaks, last = (np.zeros(PEAKS), np.zeros((3, 2))) if before is None else (before.peaks, before.last)
     return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(3, dtype=np.int64))
 

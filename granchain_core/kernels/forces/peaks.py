@@ -11,7 +11,7 @@ from ..simd.vector import load, positive_mask, store
 #: Rows of what is remembered of one force: the largest so far, then the last four values, newest first.
 ROWS = 5
 
-#: The top of the quartic is at most so many times the largest of its values: its neighbours are near (choose_peak).
+#: Largest top of the quartic, over the largest of its values: its neighbours are near (choose_peak).
 HIGHEST = 1.25
 
 #: Where the memories of the three forces start in an array of peaks, and how many values they take.

@@ -1,4 +1,4 @@
-"""Contact events inside a step of fixed size: where they are, and what a step beside one gets wrong.
+"""Contact events inside a step of fixed size: their times, and the quadrature error of a step beside one.
 
 An overlap is a cubic in between, from its values and rates at the step's two ends. Behind an onset at s = 0 the
 elastic force grows like s^{3/2}, whose integral Simpson's rule (and RK4 with it) misses by a part of h^{5/2}: that
@@ -13,8 +13,8 @@ from ..effects.contact import three_halves
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power
 from ..jit import by_slot, inline_llvm, inline_numba, kernel
 
-#: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then what Simpson's rule gives
-#: too much of every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
+#: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
+#: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
 GAP, RATE, GAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
 #: More contacts than this many changing in one step: the rest of the step is taken whole.
 MOST_SPLITS = 64
@@ -90,7 +90,7 @@ def first_event(ends, contacts, h):
 
 @kernel
 def reset_corrections(ends):
-    """Nothing is given too much so far."""
+    """Reset the accumulated quadrature errors."""
     for c in range(ends.shape[1]):
         ends[MOMENTUM_ERROR, c] = 0.0
         ends[DISPLACEMENT_ERROR, c] = 0.0

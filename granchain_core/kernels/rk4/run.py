@@ -11,7 +11,7 @@ from ..forces.largest import watch_state
 from ..forces.peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
 from ..jit import by_slot_inlined, kernel
 from ..samples import first_not_finite, keep, keep_strobe
-from ..status import CANCELLED, DONE, NOT_FINITE
+from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS
 from .long_chain import LongChain, steps_without_events
 from .short_chain import ShortChain
 from .short_chain_steps import run_short_chain
@@ -44,8 +44,8 @@ def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, 
                                       log.peaks)
         if smooth > 0:
             done += smooth
-            counts[0] += smooth
-            counts[1] += 4 * smooth
+            counts[STEPS] += smooth
+            counts[EVALUATIONS] += 4 * smooth
             i = 2 * (j + done)
             u0, v0 = drive_displacement(slots, drive, i, dtheta), drive_velocity(slots, drive, i, dtheta)
             motion(slots, u0, v0, y, stages.k[0], stages.forces)
@@ -80,7 +80,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, log, tops, counts, 
     keep_strobe(y, stages.k[0], strobes[0])
     watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
     for p in range(tops.shape[0]):
-        if first_not_finite(y, m) != 0:  # looked at before a step spreads it, so that the bead can be named
+        if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
             return NOT_FINITE, p
         next_period(log.peaks)
         advance(stages.along, method, slots, drive, 0, n, dtheta, h, y, stages, log, counts, stop)

@@ -200,5 +200,5 @@ def load_state(wide, end):
 
 @inline_llvm
 def row_correction(row, excess):
-    """What the beads' displacements or w have too little of, from what Simpson's rule gives too much."""
+    """Correction of the beads' displacements or w, from the quadrature errors of their contacts."""
     return row.inverse_mass * (excess - from_left(blank(excess), excess))

@@ -13,6 +13,7 @@ from ..jit import inline_llvm, inline_numba, kernel
 from ..simd.functions import larger
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import at, blank, positive_mask, store
+from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
     DISPLACEMENT_ERROR,
     GAP,
@@ -66,8 +67,8 @@ def split_row(wide, slots, theta, dtheta, u_end, v_end, h, log, counts):
                        row_correction(row, load_row(wide.width, ends, DISPLACEMENT_ERROR)),
                        row_correction(row, load_row(wide.width, ends, MOMENTUM_ERROR)))
         store_state(wide, END, end)
-        counts[1] += 8
-        counts[2] += 1
+        counts[EVALUATIONS] += 8
+        counts[EVENTS] += 1
 
 
 @inline_llvm
@@ -130,8 +131,8 @@ def run_short_chain(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, coun
         if stop[0] != 0:
             break
     restore_subnormals(before)
-    counts[0] += count
-    counts[1] += 4 * count
+    counts[STEPS] += count
+    counts[EVALUATIONS] += 4 * count
     store_state(wide, BEGIN, x)
     for i in range(1, m - 1):
         y[i], y[m + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]

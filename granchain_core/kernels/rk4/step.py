@@ -1,7 +1,7 @@
 """Fixed-step methods: classical Runge–Kutta of order 4 in w, plain or with its step split at contact events.
 
 The drive phase comes from an integer step count: `drive` holds (u_0, v_0) at every half step of one period, or is
-empty where a period has so many steps that the table would not fit, and the driver is asked instead.
+empty if a period has too many steps for it, and the driver is evaluated instead.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from ..effects.preload import overlap
 from ..equations.motion import copy, motion
 from ..forces.largest import end_overlaps, watch_crossings, watch_event
 from ..jit import by_slot, by_slot_inlined, inline_numba, kernel
+from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
     DISPLACEMENT_ERROR,
     GAP,
@@ -114,7 +115,7 @@ def keep_overlaps(slots, y, slope, ends, overlaps, rates):
 
 @kernel
 def correct_state(slots, ends, v0, y):
-    """Take from y what Simpson's rule gave too much beside contact events; the driver moves at v0."""
+    """Subtract the quadrature errors beside contact events from y; the driver moves at v0."""
     inverse_mass = slots.chain.inverse_mass
     m = inverse_mass.size
     for i in range(1, m - 1):
@@ -125,7 +126,7 @@ def correct_state(slots, ends, v0, y):
 
 @by_slot
 def correct_work(balance, excess, y):
-    """Take from the driver's work what its contact's impulse had too much. Absent: no work is kept."""
+    """Subtract the error of its contact's impulse from the driver's work. Absent: no work is recorded."""
 
 
 @correct_work.of(Balance)
@@ -159,8 +160,8 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     copy(stages.end, y)
     motion(slots, ub, vb, y, stages.k[0], stages.forces)
     watch_crossings(slots.dissipation, slots, before, y, stages.k[0], h, theta, dtheta, log)
-    counts[0] += 1
-    counts[1] += 4
+    counts[STEPS] += 1
+    counts[EVALUATIONS] += 4
     return h
 
 
@@ -169,8 +170,8 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
     k, end, left = stages.k, stages.end, h
     motion(slots, ub, vb, end, k[3], stages.forces)
-    counts[0] += 1
-    counts[1] += 4
+    counts[STEPS] += 1
+    counts[EVALUATIONS] += 4
     if may_change(slots, y, k[0], end, k[3]):
         left = split(slots, theta, dtheta, ub, vb, h, y, stages, log, counts)
     for i in range(y.size):
@@ -209,6 +210,6 @@ def split(slots, theta, dtheta, u_end, v_end, h, y, stages, log, counts):
             u_end, v_end, h * (1.0 - done), y, stages)
         correct_state(slots, ends, v_end, end)
         motion(slots, u_end, v_end, end, k[3], stages.forces)
-        counts[1] += 8
-        counts[2] += 1
+        counts[EVALUATIONS] += 8
+        counts[EVENTS] += 1
     return h * (1.0 - done)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..jit import kernel
 
-#: Longest period looked for, in drive periods, and the least number of changes its decay is read from.
+#: Longest period that is tested, in drive periods, and the least number of changes that give its decay.
 LONGEST_PERIOD, LEAST_WINDOW = 16, 8
 #: A state is on its orbit when its distance bound, relative to the largest displacement and velocity, is below this.
 SETTLED_DISTANCE = 1e-6
@@ -18,12 +18,12 @@ SETTLED_DISTANCE = 1e-6
 ROUNDING = 1e-12
 #: A change larger than this cannot have a distance bound that small: nothing decays a thousandfold in one period.
 _FAR = 1e-3
-#: A change this much smaller than the distance asked for is believed without an even rate: what slow mode there
-#: might be under it would have to decay a hundred times slower than anything seen.
+#: A change this much smaller than the required distance is accepted without a steady rate: a slow mode below it
+#: would have to decay a hundred times more slowly than what is observed.
 _DEEP = 1e-2
 #: A change over q periods that decays faster than this, per q periods, is going to zero and not to a longer orbit's.
 _APPROACHING = 0.97
-#: Changes below this may be followed to where they lead (steady/extrapolate.py).
+#: Changes below this may be extrapolated (kernels/strobes/extrapolation.py).
 _WORTH_A_JUMP = 1e-2
 
 
@@ -88,7 +88,7 @@ def decay_rate(change, count, n):
 
 @kernel
 def window_of(n):
-    """Number of changes looked at for the rate."""
+    """Number of changes that give the rate."""
     return max(LEAST_WINDOW, 3 * n)
 
 

@@ -16,9 +16,8 @@ import numpy as np
 
 from ...errors import BadInput
 from ...integrate import State
-from ...integrate.batch import scaled_state
-from ...integrate.engine import new_stop
 from ...scene import Scene
+from ...stop import Stop
 from ..orbit import periodic_orbit
 from .axis import KnobAxis
 from .equations import BranchEquations, relative_change
@@ -88,9 +87,9 @@ class Continuation(Iterator[BranchPoint]):
     itself is the whole branch: the other is dropped.
     """
 
-    def __init__(self, branch: Branch, stop: np.ndarray | None = None) -> None:
+    def __init__(self, branch: Branch, stop: Stop | None = None) -> None:
         self.branch = branch
-        self.stop = new_stop() if stop is None else stop
+        self.stop = Stop() if stop is None else stop
         self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), arm) for arm in branch.arms]
 
     def __next__(self) -> BranchPoint:
@@ -127,7 +126,7 @@ class Continuation(Iterator[BranchPoint]):
 
 
 def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
-                 start_state: State | None = None, both: bool = False, stop: np.ndarray | None = None) -> Branch:
+                 start_state: State | None = None, both: bool = False, stop: Stop | None = None) -> Branch:
     """The seed of a branch, to be followed by a `Continuation`.
 
     The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
@@ -144,7 +143,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
     orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
     equations = BranchEquations(axis, orbit.period, stop)
     strobe = equations.strobe(seed_at)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
     _refuse_shorter(equations, x, seed_at)
     return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
 
@@ -160,7 +159,7 @@ def arms_from(equations: BranchEquations, x: np.ndarray, value: float, direction
 
 def continue_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                     start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
-                    on_point: Callable[[Arm], None] | None = None, stop: np.ndarray | None = None) -> Branch:
+                    on_point: Callable[[Arm], None] | None = None, stop: Stop | None = None) -> Branch:
     """Follow a branch of periodic orbits over one knob, by pseudo-arclength. Also called `branch`.
 
     An arm ends where the knob reaches `end` or comes back to `start`, where the branch closes on itself or merges with
@@ -184,7 +183,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
         Points of an arm at most.
     on_point : callable, optional
         Called with the arm that has grown.
-    stop : numpy.ndarray, shape (1,), optional
+    stop : Stop, optional
         A byte that another thread sets to 1 to end the computation.
 
     Returns

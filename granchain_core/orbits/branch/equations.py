@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
+from ...stop import Stop
 from ..flow import Flow, StroboscopicMap
 from .axis import KnobAxis
 
@@ -37,7 +38,7 @@ class Solved:
 class BranchEquations:
     """Everything that can be asked of the n-period map along one axis."""
 
-    def __init__(self, axis: KnobAxis, period: int, stop: np.ndarray | None = None) -> None:
+    def __init__(self, axis: KnobAxis, period: int, stop: Stop | None = None) -> None:
         self.axis, self.period, self.stop = axis, period, stop
         self.size = 2 * axis.scene.N
         self.weight = np.sqrt(self.size)

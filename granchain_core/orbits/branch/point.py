@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
-from ...integrate import Engine, Setting, State
-from ...integrate.batch import state_of
+from ...integrate import Engine, State, certified
 from ...kernels.dop853.orbit_record import FULL, OrbitRecord, record_orbit
 from ...kernels.forces.peaks import MEMORY, PEAKS, ROWS
+from ...lower import lower
 from ...scene import Scene
 from ..orbit import sorted_multipliers
 from .equations import BranchEquations, Solved
@@ -91,22 +91,19 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
 
 def state_at(scene: Scene, x: np.ndarray) -> State:
     """The scaled state x of a scene at phase 0 in SI."""
-    lowered = Engine(scene, Setting("rk4-split")).lowered
-    y = np.zeros(2 * lowered.row)
-    n = scene.N
-    y[1 : n + 1], y[lowered.row + 1 : lowered.row + n + 1] = x[:n], x[n:]
-    return state_of(lowered, y)
+    lowered = lower(scene)
+    return lowered.unscaled(lowered.embed(x))
 
 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:
     """Largest forces and turning points of all overlaps along the way from the scaled state x."""
-    engine = Engine(equations.axis.scene_at(value), Setting("dop853", tolerance=_TOLERANCE), 1, stop=equations.stop)
-    lo, room = engine.lowered, _ROOM * (equations.size // 2 + 1) * equations.period
+    engine = Engine(equations.axis.scene_at(value), certified(_TOLERANCE), 1, stop=equations.stop)
+    lo, stepper, room = engine.lowered, engine.stepper, _ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)
         record = OrbitRecord(np.zeros((room, 4)), np.zeros(PEAKS))
-        status, done, found = record_orbit(engine.method, lo.slots, lo.beta, lo.period, equations.period, engine.y,
-                                           engine.work, engine.clock, record, engine.counts.array, engine.stop)
+        status, done, found = record_orbit(stepper.method, lo.slots, lo.beta, lo.period, equations.period, engine.y,
+                                           stepper.work, stepper.clock, record, engine.counts.array, engine.stop.flag)
         if status != FULL:
             engine.raise_for(status, done)
             return engine, record._replace(turns=record.turns[:found].copy())
@@ -114,7 +111,7 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tup
 
 
 def _counts(contacts: int, record: OrbitRecord, changes: np.ndarray) -> np.ndarray:
-    """Closings of every contact; the two ways of having none are told apart by the overlap's turning points."""
+    """Closings of every contact; always open and always closed are distinguished by the overlap's turning points."""
     numbers = changes[:, 0].astype(int)
     closings = np.bincount(numbers[numbers > 0] - 1, minlength=contacts)
     if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):

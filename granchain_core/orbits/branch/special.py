@@ -21,7 +21,7 @@ from .point import BranchPoint
 
 #: An interval is narrow enough at this width relative to the knob.
 WIDTH = 1e-5
-#: The tangents at both ends of a bracket meet at most so many times its length away from them: they turn by no more
+#: The tangents at both ends of a bracket meet within this factor times its length: they turn by no more
 #: than 30° (walk.py).
 _SIDE = 1.25
 #: A guess is put so far beside where the test function vanishes, relative to the bracket, first on one side and then on

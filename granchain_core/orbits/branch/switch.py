@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...errors import BadInput, NumbersFailed
+from ...stop import Stop
 from .branch import Branch
 from .equations import BranchEquations, Solved
 from .point import branch_point
@@ -23,7 +24,7 @@ _FARTHEST = 0.3
 _DOUBLED = 0.5
 
 
-def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: np.ndarray | None = None) -> Branch:
+def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None = None) -> Branch:
     """A branch of twice the period, begun beside the period doubling `special` of `branch` and leading away from it.
 
     Raises `BadInput` for another kind of point and `NumbersFailed` where no doubled orbit is found.

@@ -1,7 +1,7 @@
-"""A walk along a branch: predict along the tangent, correct by Newton's method, look at what changed in between.
+"""A walk along a branch: predict along the tangent, correct by Newton's method, find the special points in between.
 
 The step grows while Newton's method needs few iterations and the tangent hardly turns, and shrinks where not. A
-step that fails is halved; where it has shrunk to nothing the branch is said to end, with the last residuals.
+failed step is halved; at the smallest step the branch ends, and the last residuals are reported.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .special import SpecialPoint, special_between
 FIRST, LONGEST, SHORTEST = 0.02, 0.4, 1e-7
 #: Newton's iterations up to which a step grows, and from which it shrinks.
 _EASY, _HARD = 3, 5
-#: Turns of the tangent (cosines) up to which a step grows, and beyond which it is taken back.
+#: Turns of the tangent (cosines) up to which a step grows, and beyond which it is rejected.
 _STRAIGHT, _BENT = np.cos(np.radians(10.0)), np.cos(np.radians(30.0))
 _GROW, _SHRINK = 2.0, 0.6
 #: The corrected point may lie this part of the step from the predicted one.

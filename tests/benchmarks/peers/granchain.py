@@ -12,9 +12,9 @@ from granchain_core import Scene, scene
 from granchain_core.errors import NumbersFailed
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.integrate.engine import new_stop
 from granchain_core.kernels.batch.run import LANES
 from granchain_core.lower import lower
+from granchain_core.stop import Stop
 
 from .. import problem
 from ..case import Case, Peaks, rungs
@@ -88,7 +88,7 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
     total = problem.PASSED + problem.WATCHED
     values, rest = np.zeros(len(lowered)), np.zeros(2 * lowered[0].row)
     began = time.perf_counter()
-    block = Batch(lowered[0].scene, new_stop())
+    block = Batch(lowered[0].scene, Stop())
     waiting, place = iter(range(len(lowered))), {}
 
     def fill(lane: int) -> None:

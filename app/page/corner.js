@@ -1,9 +1,17 @@
 // The corner below the curve: what to look at, what the marks mean, which effects are on, the visitor's own data.
 
+import { branchesTab } from "../pages/branches/branchpicture.js";
+import { effectsTab } from "../pages/effects/effects.js";
+import { mapMessage } from "../pages/map/cells.js";
+import { mapTab } from "../pages/map/map.js";
+import { stabilityTab } from "../pages/stability/stabilitysmall.js";
+import { Embedded, fillAccuracy, fillDistance, showAccuracy, showDistance } from "../parts/embedded.js";
+
 const MARKS = { circle: "●", diamond: "◆", triangle: "▲", square: "■", star: "★", circle_dot: "◉", x: "✕", dash: "–" };
 const LARGEST_FILE = 2_000_000;
 
-const paragraph = (text, className = "") => Object.assign(document.createElement("p"), { textContent: text, className });
+const paragraph = (text, className = "") =>
+  Object.assign(document.createElement("p"), { textContent: text, className });
 
 // Draws the small picture of accuracy again; set while its tab is open.
 let drawSmall = () => {};
@@ -29,7 +37,11 @@ const TABS = {
   },
   accuracy: (model) => {
     const page = window.granchain;
-    const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
+    const open = Object.assign(document.createElement("button"), {
+      textContent: "open the page",
+      type: "button",
+      className: "open",
+    });
     open.addEventListener("click", () => page.cover("accuracy"));
     const host = Object.assign(document.createElement("div"), { className: "small" });
     const figure = new Embedded(host, (one) => fillAccuracy(one, page.accuracy));
@@ -37,7 +49,11 @@ const TABS = {
     const show = () => {
       const { drawn = {}, small, told, status, done = 0 } = page.accuracy ?? {};
       const running = ["waiting", "compiling", "measuring"].includes(status);
-      said.textContent = running ? `measuring, ${Math.round(100 * done)} % …` : told?.stale ? "The knobs have moved; open the page to measure again." : told?.sentence ?? "";
+      said.textContent = running
+        ? `measuring, ${Math.round(100 * done)} % …`
+        : told?.stale
+          ? "The knobs have moved; open the page to measure again."
+          : (told?.sentence ?? "");
       host.classList.toggle("stale", Boolean(told?.stale));
       if (host.isConnected) showAccuracy(figure, small, { drawn, told });
     };
@@ -53,7 +69,11 @@ const TABS = {
   branches: branchesTab,
   observer: () => {
     const page = window.granchain;
-    const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
+    const open = Object.assign(document.createElement("button"), {
+      textContent: "open the page",
+      type: "button",
+      className: "open",
+    });
     open.addEventListener("click", () => page.cover("observer"));
     const host = Object.assign(document.createElement("div"), { className: "small" });
     const figure = new Embedded(host, (one) => fillDistance(one, page.observer));
@@ -62,7 +82,7 @@ const TABS = {
       said.textContent = page.observer?.sentence || "A copy of the chain that feels its input force and nothing else.";
       if (host.isConnected && page.observer) showDistance(figure, page.observer.small, page.observer);
     };
-    page.observerTab = host;  // while it is on the screen the observer runs
+    page.observerTab = host; // while it is on the screen the observer runs
     drawObserver = show;
     requestAnimationFrame(show);
     const row = Object.assign(document.createElement("div"), { className: "row top" });
@@ -72,10 +92,17 @@ const TABS = {
   },
   "hard cases": () => {
     const page = window.granchain;
-    const open = Object.assign(document.createElement("button"), { textContent: "open the page", type: "button", className: "open" });
+    const open = Object.assign(document.createElement("button"), {
+      textContent: "open the page",
+      type: "button",
+      className: "open",
+    });
     open.addEventListener("click", () => page.cover("hard"));
     const said = paragraph("");
-    drawSmall = () => { said.textContent = page.hard || "Where solvers of such chains lie quietly: sixteen cases, each against something that is known."; };
+    drawSmall = () => {
+      said.textContent =
+        page.hard || "Where solvers of such chains lie quietly: sixteen cases, each against something that is known.";
+    };
     drawSmall();
     const row = Object.assign(document.createElement("div"), { className: "row top" });
     row.append(said, open);
@@ -96,7 +123,13 @@ const TABS = {
     const forget = Object.assign(document.createElement("button"), { textContent: "remove", type: "button" });
     forget.addEventListener("click", () => model.send_msg({ do: "csv-remove" }));
     row.append(file, ...(model.state.understood ? [forget] : []));
-    return [row, paragraph(model.state.understood || "CSV: frequency in Hz, force in N, and, if you have it, its error in N.", "soft")];
+    return [
+      row,
+      paragraph(
+        model.state.understood || "CSV: frequency in Hz, force in N, and, if you have it, its error in N.",
+        "soft",
+      ),
+    ];
   },
 };
 
@@ -111,7 +144,12 @@ export function render({ model }) {
   body.setAttribute("role", "tabpanel");
   root.append(tabs, body);
   let chosen = "look at";
-  const larger = Object.assign(document.createElement("button"), { textContent: "⤢", title: "Larger, over the curve", type: "button", className: "larger" });
+  const larger = Object.assign(document.createElement("button"), {
+    textContent: "⤢",
+    title: "Larger, over the curve",
+    type: "button",
+    className: "larger",
+  });
   larger.addEventListener("click", () => {
     const tall = document.getElementById("curves").classList.toggle("tall");
     larger.title = tall ? "Smaller, the curve comes back" : "Larger, over the curve";
@@ -127,11 +165,14 @@ export function render({ model }) {
     if (focused) body.querySelector(`[data-name="${focused}"]`)?.focus();
   };
   // Nobody looks at the costs: then none are measured.
-  const looking = () => model.send_msg({ do: "effects-visible", value: chosen === "effects" && !window.granchain.covered });
+  const looking = () =>
+    model.send_msg({ do: "effects-visible", value: chosen === "effects" && !window.granchain.covered });
   const choose = (name) => {
     const before = chosen;
     chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", ["accuracy", "effects", "stability", "branches", "map"].includes(name));
+    document
+      .getElementById("curves")
+      .classList.toggle("roomy", ["accuracy", "effects", "stability", "branches", "map"].includes(name));
     if (before === "effects" || name === "effects") looking();
     if (before === "map" || name === "map") model.send_msg({ do: "map-visible", value: name === "map" });
     show();
@@ -145,7 +186,8 @@ export function render({ model }) {
   }
   // One stop for the Tab key; arrows, Home and End go from tab to tab.
   tabs.addEventListener("keydown", (event) => {
-    const all = [...tabs.querySelectorAll("[role=tab]")], here = all.indexOf(event.target);
+    const all = [...tabs.querySelectorAll("[role=tab]")],
+      here = all.indexOf(event.target);
     const to = { ArrowRight: here + 1, ArrowLeft: here - 1, Home: 0, End: all.length - 1 }[event.key];
     if (here < 0 || to === undefined) return;
     event.preventDefault();
@@ -153,16 +195,28 @@ export function render({ model }) {
     next.click();
     next.focus();
   });
-  tabs.prepend(larger);  // it floats: the second line of tabs has the whole width
+  tabs.prepend(larger); // it floats: the second line of tabs has the whole width
   model.on("state", show);
-  window.granchain.on("observer", () => { if (chosen === "observer") drawObserver(); });
+  window.granchain.on("observer", () => {
+    if (chosen === "observer") drawObserver();
+  });
   // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
-  model.on("state", () => { if (chosen !== "map") show(); });
+  model.on("state", () => {
+    if (chosen !== "map") show();
+  });
   model.on("msg:custom", mapMessage);
-  window.granchain.on("accuracy", () => { if (chosen === "accuracy") drawSmall(); });
-  window.granchain.on("hard", () => { if (chosen === "hard cases") drawSmall(); });
-  window.granchain.on("stability", () => { if (chosen === "stability") drawSmall(); });
-  window.granchain.on("cover", () => { if (chosen === "effects") looking(); });
+  window.granchain.on("accuracy", () => {
+    if (chosen === "accuracy") drawSmall();
+  });
+  window.granchain.on("hard", () => {
+    if (chosen === "hard cases") drawSmall();
+  });
+  window.granchain.on("stability", () => {
+    if (chosen === "stability") drawSmall();
+  });
+  window.granchain.on("cover", () => {
+    if (chosen === "effects") looking();
+  });
   show();
   return root;
 }

@@ -1,12 +1,12 @@
-"""Where a chain is, what its motion cost, and the flag that stops a kernel."""
+"""Where a chain is at one instant, in SI."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from ..scene import Scene
+from .scene import Scene
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,36 +35,9 @@ class State:
     phase: float = 0.0
 
 
-@dataclass
-class Counts:
-    """What a computation cost: accepted steps, evaluations of the equations, contact events, rejected steps."""
-
-    array: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
-
-    @property
-    def steps(self) -> int:
-        """Accepted steps."""
-        return int(self.array[0])
-
-    @property
-    def rhs(self) -> int:
-        """Evaluations of the equations of motion."""
-        return int(self.array[1])
-
-    @property
-    def events(self) -> int:
-        """Contact events located."""
-        return int(self.array[2])
-
-
 def rest(scene: Scene) -> State:
     """The scene's start: at rest at drive phase 0, except for beads that are given a velocity."""
     velocity = np.zeros(scene.N)
     for bead, v in scene.start_velocity:
         velocity[bead - 1] = v
     return State(np.zeros(scene.N), velocity)
-
-
-def new_stop() -> np.ndarray:
-    """A stop flag for kernels: one byte, polled; set it to 1 from any thread."""
-    return np.zeros(1, dtype=np.uint8)
