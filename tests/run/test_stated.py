@@ -10,7 +10,7 @@ from dataclasses import replace
 import numba
 import numpy as np
 import pytest
-from forces.located import located
+from tests.numerics.forces.located import located
 
 from granchain_core import run, scene
 from granchain_core.integrate import Setting
