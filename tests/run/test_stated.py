@@ -10,13 +10,13 @@ from dataclasses import replace
 import numba
 import numpy as np
 import pytest
-from tests.numerics.forces.located import located
 
 from granchain_core import run, scene
 from granchain_core.integrate import Setting
 from granchain_core.integrate.methods import typical_error
 from granchain_core.run.budget import Stopwatch
 from granchain_core.run.stated import Computations
+from tests.numerics.forces.located import located
 
 REFINES = (4.0, 8.0, 16.0, 32.0)
 STEPS = 10_000
