@@ -39,7 +39,7 @@ def dashboard(log: Path, **environment: str) -> Iterator[str]:
         yield server.address
     finally:
         server.process.terminate()
-        server.process.wait(timeout=20)
+        server.process.wait(timeout=60)
 
 
 class Server:
@@ -67,7 +67,7 @@ class Server:
     def kill(self) -> None:
         """End it at once, stopped or not."""
         self.process.kill()
-        self.process.wait(timeout=20)
+        self.process.wait(timeout=60)
 
 
 def _wait_until_alive(process: subprocess.Popen[bytes], address: str, log: Path) -> None:
