@@ -10,6 +10,7 @@ import pytest
 from granchain_core import Run, resonance_curve, run, scene, settled
 from granchain_core.diagram import diagram
 from granchain_core.integrate import METHODS, Engine, Setting, State
+from granchain_core.kernels.force_search import is_monotone
 from granchain_core.kernels.largest_forces import brief_touch, closing_rate, cubic_top
 
 OWN, PULL = 1.3, -0.7
@@ -164,3 +165,17 @@ def test_touches_shorter_than_a_step_are_found_or_said_not_to_be_resolved(method
     expected = engine.lowered.slots.dissipation.coefficient * rate
     assert touched[0, 3] == pytest.approx(expected, rel=0.02 if resolves else 0.1)
     assert engine.tops[0] >= touched[0, 3]
+
+
+def test_a_cubic_called_monotone_is_largest_at_an_end() -> None:
+    """Random values and slopes, against the cubic on a fine grid; a force that is zero throughout is monotone too."""
+    rng, x, called = np.random.default_rng(8), np.linspace(0.0, 1.0, 1001), 0
+    for f0, s0, f1, s1, h in rng.uniform(-1.0, 1.0, (2000, 5)) * (1.0, 8.0, 1.0, 8.0, 0.4) + (0.0, 0.0, 0.0, 0.0, 0.5):
+        if is_monotone.py_func(f0, s0, f1, s1, h):
+            a, b = h * s0, h * s1
+            cubic = f0 + x * (a + x * (3.0 * (f1 - f0) - 2.0 * a - b + x * (2.0 * (f0 - f1) + a + b)))
+            assert cubic.max() <= max(f0, f1) + 1e-14  # some roundings of values below 10
+            called += 1
+    assert 100 < called < 1900
+    assert is_monotone.py_func(0.0, 0.0, 0.0, 0.0, 1.0)
+    assert not is_monotone.py_func(1.0, 1.0, 1.0, -1.0, 1.0) and not is_monotone.py_func(1.0, np.nan, 2.0, 1.0, 1.0)
