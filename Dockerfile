@@ -13,6 +13,7 @@ ENV PATH=/opt/granchain/venv/bin:$PATH
 
 WORKDIR /opt/granchain/source
 COPY pyproject.toml README.md LICENSE ./
+COPY granchain ./granchain
 COPY granchain_core ./granchain_core
 COPY app ./app
 COPY assets ./assets

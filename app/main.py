@@ -1,5 +1,5 @@
 """What `panel serve app/main.py` serves: the same page as `granchain serve`."""
 
-from app.page import page
+from app.page.entry import page
 
 page().servable()

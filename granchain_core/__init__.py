@@ -1,45 +1,84 @@
 """granchain: driven granular chains, simulated to a stated accuracy.
 
-    from granchain_core import scene, run, resonance_curve
+    from granchain_core import resonance_curve, run, scene
     result = run(scene("sec2").evolve(f=340.0))
+
+This is the one door: what is listed in `__all__` is public, everything behind it may change. Names mirror the commands
+of the command line. `settle`, `orbit` and `branch` are also known by their longer names `settled`, `periodic_orbit` and
+`continue_branch`.
 """
 
 from __future__ import annotations
 
 import importlib
+import sys
+import types
 from typing import TYPE_CHECKING, Any
 
-from .errors import BadInput, Cancelled, NumbersFailed
-from .integrate import State
-from .live import LiveChain
-from .observe import observe
-from .result import Cost, Run
-from .run import run
-from .scene import Scene, scene, scene_names
-from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
-from .steady.regime import Regime
-from .steady.settle import Settled, settled, settling
-
-__version__ = "0.1.0"
+from .errors import BadInput, Cancelled, NumbersFailed, OverBudget
+from .scene import Bead, Scene, scene, scene_names
+from .version import __version__
 
 if TYPE_CHECKING:
-    from .accuracy import work_precision
-    from .orbits import continue_branch, periodic_orbit
+    from .accuracy import WorkPrecision, work_precision
+    from .diagram import Attractor, Diagram, attractors, diagram
+    from .observe import Observation, observe
+    from .orbits import Branch, Orbit, continue_branch, periodic_orbit
+    from .orbits import continue_branch as branch
+    from .orbits import periodic_orbit as orbit
+    from .result import Cost, Run
+    from .run.live import LiveChain
+    from .run.run import run
+    from .state import State
+    from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
+    from .steady.regime import Regime
+    from .steady.settle import Settled, settled, settling
+    from .steady.settle import settled as settle
+    from .stop import Stop
     from .store import load, save
 
-#: Imported when they are first asked for: a page or a run that needs none of them starts sooner.
-_LATER = {"work_precision": "accuracy", "continue_branch": "orbits", "periodic_orbit": "orbits", "load": "store",
-          "save": "store"}
+#: Public names by module. They are imported when they are first asked for, so that `import granchain_core` is quick.
+_MODULES = {
+    "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
+    "stop": ("Stop",),
+    "steady.settle": ("Settled", "settled", "settling"), "steady.regime": ("Regime",),
+    "steady.curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
+    "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"),
+    "diagram": ("Attractor", "Diagram", "attractors", "diagram"), "observe": ("Observation", "observe"),
+    "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
+}
+_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
+#: Short names and what they stand for.
+_SHORT = {"settle": "settled", "orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
-    "BadInput", "Cancelled", "Cost", "Curve", "CurvePoint", "LiveChain", "NumbersFailed", "Regime", "Run", "Scene",
-    "Settled", "State", "continue_branch", "iter_curve", "load", "observe", "periodic_orbit", "resonance_curve", "run",
-    "save", "scene", "scene_names", "settled", "settling", "work_precision",
+    "Attractor", "BadInput", "Bead", "Branch", "Cancelled", "Cost", "Curve", "CurvePoint", "Diagram", "LiveChain",
+    "NumbersFailed", "Observation", "Orbit", "OverBudget", "Regime", "Run", "Scene", "Settled", "State", "Stop",
+    "WorkPrecision", "__version__", "attractors", "branch", "continue_branch", "diagram", "iter_curve", "load",
+    "observe", "orbit", "periodic_orbit", "resonance_curve", "run", "save", "scene", "scene_names", "settle",
+    "settled", "settling", "work_precision",
 ]
 
 
 def __getattr__(name: str) -> Any:
     """The names that are imported late."""
-    if name in _LATER:
-        return getattr(importlib.import_module(f".{_LATER[name]}", __name__), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    whole = _SHORT.get(name, name)
+    if whole not in _MODULE_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(importlib.import_module(f".{_MODULE_OF[whole]}", __name__), whole)
+
+
+class _Door(types.ModuleType):
+    """The package itself, in which a function keeps its name though a subpackage has the same one.
+
+    Python binds a subpackage to its name here when it is first imported; `granchain_core.run` would then be the folder
+    and no longer the function.
+    """
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in _PUBLIC and isinstance(value, types.ModuleType)):
+            super().__setattr__(name, value)
+
+
+_PUBLIC = frozenset(__all__)
+sys.modules[__name__].__class__ = _Door

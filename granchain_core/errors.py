@@ -12,15 +12,44 @@ FAILURES = ("not-finite", "step-too-small", "chatter", "no-convergence", "same-o
 
 
 class BadInput(ValueError):
-    """A value from outside that cannot be used; the message says what, where, allowed range, nearest valid."""
+    """A value from outside that cannot be used: the message says what, where, the allowed range and the nearest valid
+    one.
+
+    Examples
+    --------
+    >>> from granchain_core import BadInput, scene
+    >>> try:
+    ...     scene("sec2").evolve(N=0)
+    ... except BadInput as problem:
+    ...     print(problem)
+    number of beads N = 0 is outside 1 to 10000; the nearest valid value is 1.
+    """
 
 
 class NumbersFailed(ArithmeticError):
     """A computation that could not be finished; the message says which bead, when, why and what to do.
 
-    `status` is the outcome's name as it appears in the JSON output: one of `FAILURES`. Where they are known, `bead` is
-    the first bead that failed, `time` [s] when, and `step` the step of its drive period, counted from 0. `cost` counts
-    steps, rhs, events and rejected steps of the computation until then.
+    Attributes
+    ----------
+    sentence : str
+        The message.
+    status : str
+        The outcome's name in the JSON output, one of `FAILURES`.
+    bead : int or None
+        The first bead that failed.
+    time : float or None
+        When [s].
+    step : int or None
+        The step of its drive period, counted from 0.
+    cost : dict or None
+        Steps, rhs, events and rejected steps until then.
+
+    Examples
+    --------
+    >>> from granchain_core import NumbersFailed
+    >>> problem = NumbersFailed("Bead 3 is no longer finite.", "not-finite", bead=3)
+    >>> problem.status, problem.bead, str(problem)
+    ('not-finite', 3, 'Bead 3 is no longer finite.')
     """
 
     def __init__(self, sentence: str, status: str, bead: int | None = None, time: float | None = None,
@@ -35,7 +64,22 @@ class NumbersFailed(ArithmeticError):
 
 
 class OverBudget(BadInput):
-    """A computation that is refused before it starts, because it would take `estimate` seconds of `budget`."""
+    """A computation that is refused before it starts, because it would take too long.
+
+    Attributes
+    ----------
+    estimate, budget : float
+        What it would take and what it may take [s].
+
+    Examples
+    --------
+    >>> from granchain_core import OverBudget, run, scene
+    >>> try:
+    ...     run(scene("sec2").evolve(N=2, f=2000.0), periods=10**6, budget=0.01)
+    ... except OverBudget as problem:
+    ...     print(problem.estimate > problem.budget)
+    True
+    """
 
     status = "over-budget"
 
@@ -46,11 +90,23 @@ class OverBudget(BadInput):
 
 
 class Cancelled(Exception):
-    """The stop flag was raised while a computation was running."""
+    """`Stop.set` was called while a computation was running.
+
+    Examples
+    --------
+    >>> from granchain_core import Cancelled, Stop, run, scene
+    >>> stop = Stop()
+    >>> stop.set()
+    >>> try:
+    ...     run(scene("sec2").evolve(N=2, f=2000.0), stop=stop)
+    ... except Cancelled:
+    ...     print("cancelled")
+    cancelled
+    """
 
 
 def outcome_of(problem: NumbersFailed | OverBudget) -> dict[str, Any]:
-    """What a script is told of a computation that failed or was not begun: outcome, sentence, and what is known."""
+    """The JSON object of a computation that failed or was not begun: status, message, and where and when if known."""
     if isinstance(problem, OverBudget):
         return {"status": problem.status, "message": str(problem), "estimate_s": problem.estimate,
                 "budget_s": problem.budget}

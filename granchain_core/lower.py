@@ -7,6 +7,7 @@ bead 1. Displacements are kept, never positions; the drive phase is never a prod
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -16,13 +17,16 @@ import numpy as np
 from .errors import BadInput
 from .kernels.effects.balance import Balance
 from .kernels.effects.contact import Chain
-from .kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from .kernels.effects.dissipation import exponent
 from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import no_tension
-from .kernels.motion import Forces, Slots
+from .kernels.equations.motion import Forces, Slots, place
+from .laws import LAWS
 from .scene import Scene
+from .scene.effects import EFFECTS, effects_of
+from .state import State
 
 #: Step of the live method in scaled time where overlaps are about one drive amplitude; RK4 in w is then good to
 #: a few 1e-5 of the displacement with its steps split at contact events, at half the step to a few 1e-6.
@@ -94,6 +98,38 @@ class Lowered:
         contacts = self.row - 1
         return Forces(np.zeros(contacts), np.zeros(contacts) if self.slots.dissipation is not None else None)
 
+    def rows(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and w of the beads (N,), as views into a state array y."""
+        row = self.row
+        return y[1 : row - 1], y[row + 1 : 2 * row - 1]
+
+    def beads_of(self, y: np.ndarray) -> np.ndarray:
+        """The same in one array x (2N,)."""
+        return np.concatenate(self.rows(y))
+
+    def embed(self, x: np.ndarray) -> np.ndarray:
+        """The state array (2(N + 2),) of x (2N,), the driver and the wall at zero."""
+        y = np.zeros(2 * self.row)
+        for row, values in zip(self.rows(y), (x[: self.beads], x[self.beads :]), strict=True):
+            row[:] = values
+        return y
+
+    def scaled(self, state: State) -> np.ndarray:
+        """The scaled (u, w) array (2(N + 2),) of a state at phase 0."""
+        y = np.zeros(2 * self.row)
+        displacement, velocity = self.rows(y)
+        displacement[:] = state.displacement / self.scales.length
+        velocity[:] = state.velocity / self.scales.velocity
+        place(self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
+        y[0] = 0.0
+        return y
+
+    def unscaled(self, y: np.ndarray) -> State:
+        """The state in SI of a scaled (u, w) array at phase 0."""
+        slope = np.zeros_like(y)
+        place(self.slots, 0.0, y.copy(), slope, self.forces(), False)
+        return State(self.rows(y)[0] * self.scales.length, self.rows(slope)[0] * self.scales.velocity)
+
     @cached_property
     def step(self) -> float:
         """The live method's step in scaled time."""
@@ -104,7 +140,7 @@ class Lowered:
         step = _STEP / math.sqrt(lightest * stiffest) / max(1.0, static) ** 0.25
         if slots.dissipation is not None:
             overlap = max(1.0, static)
-            strength = slots.dissipation.coefficient * overlap ** _EXPONENT[self.scene.dissipation]
+            strength = slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
             step = min(step, _DASHPOT_LIMIT / (4.0 * strength * lightest))
         if slots.foundation is not None:
             step = min(step, _FOUNDATION_STEP / math.sqrt(slots.foundation.stiffness * lightest))
@@ -122,39 +158,45 @@ class Lowered:
         return math.ceil(steps / multiple_of) * multiple_of
 
 
-_EXPONENT = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
-_LAWS: dict[str, Any] = {"linear": LinearDashpot, "tsuji": Tsuji, "kuwabara-kono": KuwabaraKono}
-
-
 def scales_of(scene: Scene) -> Scales:
     """The scene's scales."""
     rate = math.sqrt(scene.K * math.sqrt(scene.A0) / scene.bead(1).mass)
     return Scales(scene.A0, rate, scene.K * scene.A0**1.5)
 
 
+def _dissipation(scene: Scene, scales: Scales) -> Any:
+    """λ = D/(mφ), for an overlap-dependent law at one length unit of overlap."""
+    law = LAWS[scene.dissipation]
+    strength = scene.D / (scene.bead(1).mass * scales.rate)
+    return law.slot(strength * (scales.length / scene.reference_overlap) ** law.exponent)
+
+
+#: How each effect's slot is filled where it is present: its values in scaled units.
+_FILLED: dict[str, Callable[[Scene, Scales], Any]] = {
+    "dissipation": _dissipation,
+    "tension": lambda scene, scales: no_tension(scene.N + 1),
+    "foundation": lambda scene, scales: Foundation(scene.kappa),
+    "preload": lambda scene, scales: Preload(scene.static_overlap() / scales.length),
+}
+
+for _effect in EFFECTS:
+    if _effect.slot not in _FILLED:
+        raise TypeError(f"effect {_effect.name!r}: lower.py does not say how its slot {_effect.slot!r} is filled.")
+    if _effect.slot not in Slots._fields:
+        raise TypeError(f"effect {_effect.name!r}: Slots (kernels/equations/motion.py) has no field {_effect.slot!r}.")
+
+
 def lower(scene: Scene, balance: bool = False) -> Lowered:
     """Scaled arrays and slots of `scene`; `balance` adds the energy account to the equations."""
     scales = scales_of(scene)
-    mass = scene.bead(1).mass
     beta = 2 * math.pi * scene.f / scales.rate
     inverse_mass = np.zeros(scene.N + 2)
-    inverse_mass[1:-1] = mass / scene.masses()
+    inverse_mass[1:-1] = scene.bead(1).mass / scene.masses()
+    filled = {effect.slot: _FILLED[effect.slot](scene, scales) for effect in effects_of(scene)}
     slots = Slots(
         chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K),
-        dissipation=_dissipation(scene, scales, mass),
-        tension=no_tension(scene.N + 1) if scene.cuts_tension else None,
-        foundation=Foundation(scene.kappa) if scene.k > 0 else None,
-        preload=Preload(scene.static_overlap() / scales.length) if scene.F0 > 0 else None,
         driver=Harmonic(1.0, beta),
         balance=Balance(1) if balance else None,
+        **filled,
     )
     return Lowered(scene, scales, slots, beta)
-
-
-def _dissipation(scene: Scene, scales: Scales, mass: float) -> Any:
-    """The dissipation slot: λ = D/(mφ), for an overlap-dependent law at one length unit of overlap."""
-    if not scene.has_dissipation:
-        return None
-    exponent = _EXPONENT[scene.dissipation]
-    strength = scene.D / (mass * scales.rate) * (scales.length / scene.reference_overlap) ** exponent
-    return _LAWS[scene.dissipation](strength)

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 from .errors import BadInput
+from .laws import LAWS
 
 
 @dataclass(frozen=True)
@@ -19,7 +20,8 @@ class Quantity:
 
     `low` and `high` are the values granchain accepts at all; the narrower range of a slider belongs to the
     scene. `step` is the fine step of the keyboard. `choices` is set for knobs that are words; `numeric` says
-    whether a plain number is accepted too.
+    whether a plain number is accepted too. `main` knobs are always on the page, the others under "more".
+    `changes_motion` is False for a knob of the computation alone.
     """
 
     name: str
@@ -35,6 +37,18 @@ class Quantity:
     choices: tuple[str, ...] = ()
     numeric: bool = True
     whole: bool = False
+    main: bool = False
+    changes_motion: bool = True
+
+    @property
+    def is_axis(self) -> bool:
+        """Whether it can be an axis of a map: a number that changes the motion and need not be whole."""
+        return self.numeric and not self.whole and self.changes_motion
+
+    @property
+    def is_continuous(self) -> bool:
+        """Whether a branch can follow it: an axis without named values."""
+        return self.is_axis and not self.choices
 
     def check(self, value: object) -> float | int | str:
         """`value` as this knob's type, or `BadInput` saying what is allowed and what is nearest."""
@@ -93,22 +107,22 @@ class Quantity:
 
 
 WALL_FACTORS = {"bead": 1.0, "same-material": math.sqrt(2.0), "rigid": 2.0 * math.sqrt(2.0)}
-DISSIPATION_LAWS = ("linear", "tsuji", "kuwabara-kono", "none")
+DISSIPATION_LAWS = (*LAWS, "none")
 TENSION = ("allowed", "cut")
 
 _TABLE = (
     Quantity("f", "f", "Hz", "f", "drive frequency", "How often a second the driver moves to and fro.",
-             0.1, 1e6, "log", 0.1),
+             0.1, 1e6, "log", 0.1, main=True),
     Quantity("A0", "A₀", "m", "A_0", "drive amplitude", "How far the driver moves from its middle position.",
-             1e-12, 1e-4, "log", 1e-9),
+             1e-12, 1e-4, "log", 1e-9, main=True),
     Quantity("D", "D", "N s/m", "D", "contact damping",
-             "Force of the contact's dashpot per speed of approach; for Tsuji and Kuwabara–Kono its value at the "
-             "scene's reference overlap.", 0.0, 1e6, "linear", 0.1),
+             "Force of the contact's dashpot per speed of approach; where it grows with the overlap its value at the "
+             "scene's reference overlap.", 0.0, 1e6, "linear", 0.1, main=True),
     Quantity("k", "k", "N/m", "k", "foundation stiffness", "Spring from every bead to the ground (the flexures).",
-             0.0, 1e10, "linear", 10.0),
+             0.0, 1e10, "linear", 10.0, main=True),
     Quantity("kappa", "κ", "1", r"\kappa", "foundation stiffness, dimensionless",
              "k divided by K·√A₀, the contact stiffness at one drive amplitude of overlap.",
-             0.0, 100.0, "linear", 1e-5),
+             0.0, 100.0, "linear", 1e-5, main=True),
     Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
              1, 10_000, "linear", 1, whole=True),
     Quantity("F0", "F₀", "N", "F_0", "preload", "Static force that presses the chain together; 0 is the sonic vacuum.",
@@ -122,7 +136,7 @@ _TABLE = (
     Quantity("tension", "", "", "", "tension", "Whether the dashpot may pull while a contact opens "
              "(the paper's law) or the contact force is cut at zero.", choices=TENSION, numeric=False),
     Quantity("accuracy", "ε", "1", r"\varepsilon", "accuracy", "Relative error of the displacements asked for.",
-             1e-12, 0.1, "log", 1e-12),
+             1e-12, 0.1, "log", 1e-12, main=True, changes_motion=False),
 )
 
 QUANTITIES: dict[str, Quantity] = {q.name: q for q in _TABLE}

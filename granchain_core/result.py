@@ -6,15 +6,37 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .integrate.engine import Counts, Engine
-from .kernels.sampling import Samples
+from .integrate import Counts
+from .integrate.engine import Engine
+from .kernels.samples import Samples
 from .scene import Scene
 from .steady.regime import Regime
 
 
 @dataclass(frozen=True)
 class Cost:
-    """What it took: wall-clock seconds, accepted steps, evaluations of the equations, contact events, method."""
+    """What a computation took.
+
+    Attributes
+    ----------
+    wall_s : float
+        Wall-clock time [s].
+    steps : int
+        Accepted steps.
+    rhs : int
+        Evaluations of the equations of motion.
+    events : int
+        Contact events that were located.
+    method : str
+        Name of the method.
+
+    Examples
+    --------
+    >>> from granchain_core import run, scene
+    >>> cost = run(scene("sec2").evolve(N=2, f=2000.0), periods=2, record=1, samples=8).cost
+    >>> cost.method, cost.steps > 0
+    ('rk4-split', True)
+    """
 
     wall_s: float
     steps: int
@@ -70,7 +92,7 @@ class ForceErrors:
         return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
 
 
-#: Methods are of uneven order at contact events: a force's error is not taken for less than so many times its change.
+#: The stated error of a force is at least this factor times its change: at contact events the order is uneven.
 CAUTION = 2.0
 
 
@@ -85,13 +107,55 @@ def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """A recorded motion: T samples of N beads and N + 1 contacts.
+    """A recorded motion: T samples of N beads and N + 1 contacts, in SI.
 
-    `error_estimate` is the largest error of any displacement sample over the largest displacement (None where no
-    claim is made); `energy_residual` is (work − lost − stored)/largest of the three (None where no account was
-    kept). Largest forces are suprema over the recorded time: those between the samples count, and the right limits of
-    `jumps`; `force_errors` are their relative errors. `start` says where the motion began: "rest", "thrown beads" or
-    "given state".
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    samples : int
+        Samples a drive period.
+    time : numpy.ndarray, shape (T,)
+        Since the start, at drive phase 0 [s].
+    displacement, velocity : numpy.ndarray, shape (T, N)
+        [m] and [m/s].
+    force : numpy.ndarray, shape (T, N + 1)
+        Total force of every contact, elastic and damping [N].
+    drive_displacement : numpy.ndarray, shape (T,)
+        [m]
+    kinetic_energy : numpy.ndarray, shape (T, N)
+        [J]
+    input_force, output_force, output_force_elastic : numpy.ndarray, shape (T,)
+        Force of the driver on bead 1, force on the wall, and the elastic part of that, the paper's F_out [N].
+    overlap : numpy.ndarray, shape (T, N + 1)
+        Overlap of every contact, negative where there is a gap [m].
+    max_input_force, max_output_force, max_output_force_elastic : float
+        Suprema over the recorded time [N]: what is between the samples counts, and the right limits of `jumps`.
+    force_errors : ForceErrors
+        Their relative errors `input`, `output`, `elastic`; None where none is claimed.
+    error_estimate : float or None
+        Largest error of any displacement over the largest displacement; None where none is claimed.
+    energy_residual : float or None
+        (work − lost − stored) over the largest of the three; None where no account was kept.
+    regime : Regime
+        What kind of motion it is.
+    status : str
+        "done", "accuracy-not-reached" or "over-budget".
+    start : str
+        Where the motion began: "rest", "thrown beads" or "given state".
+    cost : Cost
+        What it took.
+    jumps : Jumps
+        Forces that jump from 0 because a contact with a linear dashpot closes in motion.
+
+    Examples
+    --------
+    >>> from granchain_core import run, scene
+    >>> result = run(scene("sec2").evolve(N=2, f=2000.0), periods=60, record=1, samples=8)
+    >>> result.kinetic_energy.shape
+    (9, 2)
+    >>> bool(result.max_output_force >= result.output_force.max())
+    True
     """
 
     scene: Scene

@@ -1,39 +1,127 @@
-"""Compiling kernels ahead of time, so that nobody waits for a compiler inside a visit.
+"""The table of what can be compiled ahead of time, so that nobody waits for a compiler inside a visit.
 
 A *structure* is the set of effects a scene has; moving a slider never changes it, adding a foundation or another
-dissipation law does, and the kernels of a new structure are compiled once per machine.
+dissipation law does, and the kernels of a new structure are compiled once per machine. They come in pieces, each of
+which can be compiled in its own process: `python -m granchain_core.warm PIECE`, the scene as JSON on standard input.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import json
+import sys
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
-from .integrate import Engine, Setting
-from .integrate.engine import new_stop, rest
-from .integrate.lane_block import LaneBlock, alike, can_share_lanes, scaled_state
-from .kernels.jit import CACHE_FOLDER
-from .kernels.wide import WIDTHS
-from .lower import lower
-from .scene import Scene
-from .steady.lyapunov import exponents, exponents_in_pairs
+import numpy as np
 
-#: What the pieces of one structure's kernels are for; each can be compiled in its own process. Those with the energy
-#: account are for runs that are asked for by themselves, the dashboard does without.
-PIECES = ("live", "certified", "curve", "live account", "certified account")
+from .accuracy.effect_cost import CODE, MOTION
+from .accuracy.work_precision import compile_methods
+from .integrate import Engine, Setting, certified, live
+from .integrate.batch import Batch, can_share_batch, is_uniform
+from .kernels.jit import CACHE_FOLDER
+from .kernels.rk4.short_chain import WIDTHS
+from .lower import lower
+from .observe.pair import Pair
+from .orbits.branch.axis import KnobAxis
+from .orbits.branch.equations import BranchEquations
+from .orbits.branch.point import record_along
+from .orbits.flow import StroboscopicMap
+from .scene import Scene, scene, scene_names
+from .scene.effects import effects_of
+from .state import rest
+from .steady.lyapunov import exponents, exponents_in_pairs
+from .stop import Stop
+
+#: Names of the pieces of one structure's kernels.
+CURVE, CERTIFIED, LIVE = "curve", "certified", "live"
+ORBIT, BRANCH, OBSERVER = "orbit", "branch", "observer"
+ACCURACY, COST, COST_ACCOUNT = "accuracy", "cost", "cost account"
 
 
 def structure(shown: Scene) -> str:
     """Name of what picks the compiled kernels of a scene: its set of effects and the vectors its bodies fit into."""
-    law = shown.dissipation if shown.has_dissipation else "none"
     width = next((f"{lanes} lanes" for lanes in WIDTHS if lanes >= shown.N + 2), "long")
-    effects = (("cut", shown.cuts_tension), ("foundation", shown.k > 0), ("preload", shown.F0 > 0),
-               ("unequal beads", not alike(lower(shown))))
-    return "+".join([law, *(name for name, present in effects if present)]) + f", {width}"
+    effects = [effect.key(shown) for effect in effects_of(shown)]
+    law = [] if shown.has_dissipation else ["none"]
+    beads = [] if is_uniform(lower(shown)) else ["unequal beads"]
+    return "+".join([*law, *effects, *beads]) + f", {width}"
 
 
-def is_warm(shown: Scene, pieces: Iterable[str] = ("live", "certified")) -> bool:
-    """Whether the kernels of this scene's structure have been compiled on this machine."""
+def _engine(setting: Setting) -> Callable[[Scene], None]:
+    """A piece: whole periods and samples with one method."""
+
+    def compile_engine(short: Scene) -> None:
+        engine = Engine(short, setting, 2)
+        engine.periods(1)
+        engine.record(2)
+
+    return compile_engine
+
+
+def _curve(short: Scene) -> None:
+    """A curve: the shadow for irregular motions, the batch where the scene can use it, located jumps."""
+    if short.forces_jump:
+        Engine(short, live(), 1).record(1)
+    exponents(Engine(short, live(), 1), 1, 1)
+    if can_share_batch(short):
+        block = Batch(short, Stop())
+        lowered = lower(short)
+        y = lowered.scaled(rest(short))
+        block.put(0, lowered, y, 1, look=1)
+        block.run()
+        exponents_in_pairs([(lowered, y)], 1, 1, Stop())
+
+
+def _orbit(short: Scene) -> None:
+    """The tangent flow."""
+    StroboscopicMap(short, 1)(np.zeros(2 * short.N))
+
+
+def _branch(short: Scene) -> None:
+    """Orbits continued over a knob."""
+    equations = BranchEquations(KnobAxis.of(short, "f", short.f, 2.0 * short.f), 1)
+    x = np.zeros(equations.size)
+    strobe = equations.strobe(short.f)
+    strobe.end(x)
+    strobe(x)
+    record_along(equations, x, short.f)
+
+
+def _observer(short: Scene) -> None:
+    """The motion of a chain with its observer, and the observer's tangents."""
+    Pair(short, 2).engine.record(2)
+    if not short.cuts_tension:  # such a scene has no multipliers to compute (orbits/flow.py)
+        StroboscopicMap(short, 1)(np.zeros(2 * short.N), observer=True)
+
+
+def _cost(balance: bool) -> Callable[[Scene], None]:
+    """A piece: what is timed to find the cost of an effect, with the energy account or without."""
+
+    def compile_cost(short: Scene) -> None:
+        for name in (CODE, MOTION):
+            Engine(short, Setting(name), 1, balance=balance).periods(1)
+
+    return compile_cost
+
+
+#: Every piece with what compiles it by running it shortly, in the order in which a visitor needs them.
+PIECES: dict[str, Callable[[Scene], None]] = {
+    CURVE: _curve, CERTIFIED: _engine(certified(1e-3)), LIVE: _engine(live()),
+    ORBIT: _orbit, BRANCH: _branch, OBSERVER: _observer,
+    ACCURACY: compile_methods, COST: _cost(balance=False), COST_ACCOUNT: _cost(balance=True),
+}
+
+
+def compile_piece(shown: Scene, piece: str) -> None:
+    """Compile one piece for the scene's structure, or load it from the cache, and note that it is there."""
+    PIECES[piece](shown.evolve(f=max(shown.f, 1000.0)))  # short periods
+    _marker(structure(shown), piece).touch()
+
+
+def is_warm(shown: Scene, pieces: Iterable[str] = (LIVE, CERTIFIED)) -> bool:
+    """Whether these pieces of the scene's structure have been compiled on this machine."""
     return all(_marker(structure(shown), piece).exists() for piece in pieces)
 
 
@@ -41,34 +129,20 @@ def _marker(name: str, piece: str) -> Path:
     return CACHE_FOLDER / f"compiled-{name}-{piece}".replace(" ", "-").replace(",", "")
 
 
-def mark_warm(shown: Scene, piece: str) -> None:
-    """Note that a piece of the kernels of this scene's structure has been compiled."""
-    _marker(structure(shown), piece).touch()
+def _compile(job: tuple[Scene, str]) -> str:
+    compile_piece(*job)
+    return f"{structure(job[0])}, {job[1]}"
 
 
-def warm(shown: Scene, pieces: Iterable[str] = PIECES) -> None:
-    """Compile and cache the kernels of one scene's structure by running them shortly."""
-    short = shown.evolve(f=max(shown.f, 1000.0))
-    for piece in pieces:
-        if piece == "curve":
-            _warm_curve(short)
-        else:
-            method = "rk4-split" if piece.startswith("live") else "dop853"
-            engine = Engine(short, Setting(method, tolerance=1e-3), 2, balance=piece.endswith("account"))
-            engine.periods(1)
-            engine.record(2)
-        mark_warm(shown, piece)
+def warm_presets(workers: int = 2) -> Iterable[str]:
+    """Compile all pieces of the presets' structures in `workers` processes; yields what has been finished."""
+    seen: dict[str, Scene] = {}
+    for name in scene_names():
+        seen.setdefault(structure(scene(name)), scene(name))
+    jobs = [(one, piece) for piece in PIECES for one in seen.values()]
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        yield from pool.map(_compile, jobs)
 
 
-def _warm_curve(short: Scene) -> None:
-    """The kernels of a curve: the shadow for irregular motions, lanes where the scene can use them, located jumps."""
-    if short.forces_jump:
-        Engine(short, Setting("rk4-split"), 1).record(1)
-    exponents(Engine(short, Setting("rk4-split"), 1), 1, 1)
-    if can_share_lanes(short):
-        block = LaneBlock(short, new_stop())
-        lowered = lower(short)
-        y = scaled_state(lowered, rest(short))
-        block.put(0, lowered, y, 1, look=1)
-        block.run()
-        exponents_in_pairs([(lowered, y)], 1, 1, new_stop())
+if __name__ == "__main__":
+    compile_piece(Scene.from_json(json.load(sys.stdin)), sys.argv[1])

@@ -57,8 +57,7 @@ class Undriven:
         self.engine = Engine(base.evolve(f=rate / time), Setting("dop853", tolerance=tolerance), samples)
         lowered = self.engine.lowered
         driver = Harmonic(0.0, lowered.beta) if stands else None
-        self.engine.lowered = replace(lowered, slots=lowered.slots._replace(driver=driver, dissipation=law))
-        self.engine.work = self.engine.work._replace(forces=self.engine.lowered.forces())
+        self.engine.use(replace(lowered, slots=lowered.slots._replace(driver=driver, dissipation=law)))
         self.time = np.linspace(0.0, time, samples + 1)
 
     def run(self, velocity: np.ndarray):

@@ -1,8 +1,8 @@
 """What one effect costs in a step: the same chain's kernel with it and without it, timed by turns.
 
-Two costs are told apart. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The
+There are two costs. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The
 live method also splits steps where contacts open or close, so an effect that changes the motion (a preload that keeps
-contacts closed, a chain without damping that never comes to order) costs or saves far more than its own code.
+contacts closed, damping that makes an irregular motion periodic) costs or saves far more than its own code.
 """
 
 from __future__ import annotations
@@ -15,13 +15,14 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..integrate import Engine, Setting
-from ..integrate.engine import new_stop
+from ..integrate.methods import LIVE
 from ..scene import Scene
+from ..stop import Stop
 
 #: Pairs of freshly allocated chains, turns for each, and seconds one run of a turn should take. Where an array happens
 #: to lie in memory can make a step a fifth slower, and stays so: hence several chains. About half a second in all.
 _CHAINS, _TURNS, _RUN = 7, 7, 0.004
-CODE, MOTION = "rk4", "rk4-split"
+CODE, MOTION = "rk4", LIVE
 """The methods that show the cost of an effect's code, and its cost in the live picture's motion."""
 
 #: Drive periods that are run before, so that the chain is in motion.
@@ -55,21 +56,21 @@ class EffectCost:
         return 100.0 * self.difference / self.without
 
 
-def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: np.ndarray | None = None,
+def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: Stop | None = None,
                 pause: Callable[[], None] | None = None) -> EffectCost:
     """Time both kernels by turns; `pause` is called before each. Raises `Cancelled`.
 
     Of a pair's turns the fastest count, because a neighbour on the machine only ever makes a run slower.
     """
-    flag = new_stop() if stop is None else stop
+    stop = Stop() if stop is None else stop
     times = np.zeros((_CHAINS, _TURNS, 2))
     for chain, turn in np.ndindex(_CHAINS, _TURNS):
         if pause is not None:
             pause()
-        if flag[0]:
+        if stop:
             raise Cancelled
         if turn == 0:
-            pair = [_Stepper(variant, method, flag) for variant in (with_it, without)]
+            pair = [_Stepper(variant, method, stop) for variant in (with_it, without)]
         order = (0, 1) if turn % 2 else (1, 0)  # neither is always the one that runs first
         for place in order:
             times[chain, turn, place] = pair[place].nanoseconds_per_step()
@@ -84,7 +85,7 @@ def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: np
 class _Stepper:
     """A chain in motion that can be timed for a short while."""
 
-    def __init__(self, variant: Variant, method: str, stop: np.ndarray) -> None:
+    def __init__(self, variant: Variant, method: str, stop: Stop) -> None:
         self._engine = Engine(variant.scene, Setting(method), 1, balance=variant.balance, stop=stop)
         self._engine.periods(_BEFORE)
         self._periods = 1

@@ -1,27 +1,25 @@
-"""A stop flag that goes up by itself when time is over: one slow setting must not hold up all the others."""
+"""A stop flag with a time limit: one slow setting must not delay all the others."""
 
 from __future__ import annotations
 
 import threading
 import time
 
-import numpy as np
-
-from ..integrate.engine import new_stop
+from ..stop import Stop
 
 _LOOK = 0.01
-"""Seconds between looks at the outer flag and the clock."""
+"""Seconds between two checks of the outer flag and the clock."""
 
 
 class Limited:
-    """`with Limited(stop, seconds) as limit:` gives `limit.flag`, raised with `stop` or after `seconds`.
+    """`with Limited(stop, seconds) as limit:` gives `limit.stop`, raised with `stop` or after `seconds`.
 
     Afterwards it is `stop` itself that tells a cancelled computation from one that was merely too slow.
     """
 
-    def __init__(self, stop: np.ndarray, seconds: float) -> None:
-        self.flag = new_stop()
-        self._stop = stop
+    def __init__(self, stop: Stop, seconds: float) -> None:
+        self.stop = Stop()
+        self._outer = stop
         self._seconds = seconds
         self._done = threading.Event()
         self._watcher = threading.Thread(target=self._watch, name="limit", daemon=True)
@@ -37,6 +35,6 @@ class Limited:
 
     def _watch(self) -> None:
         while not self._done.wait(_LOOK):
-            if self._stop[0] or time.monotonic() > self._end:
-                self.flag[0] = 1
+            if self._outer or time.monotonic() > self._end:
+                self.stop.set()
                 return

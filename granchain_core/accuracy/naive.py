@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import METHODS, Engine, Setting
+from ..integrate import METHODS, Engine, Setting, certified
 from ..lower import Lowered
 from ..scene import Scene
+from ..stop import Stop
 
 #: Steps in a drive period one would naturally take; the second is what is shown first.
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)
@@ -20,7 +21,7 @@ NATURAL_STEPS = (100, 200, 500, 1000, 2000)
 _SAMPLES = 100
 #: Drive periods from rest that are run, and the last ones that are shown.
 _RUN, _SHOWN = 10, 2
-_TRUE = Setting("dop853", tolerance=1e-11)
+_TRUE = certified(1e-11)
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class Lesson:
     drawn: list[Naive] = field(default_factory=list)
 
 
-def lesson(scene: Scene, stop: np.ndarray) -> Lesson:
+def lesson(scene: Scene, stop: Stop) -> Lesson:
     """Run the naive methods at natural steps. Raises `NumbersFailed` where the truth itself fails, and `Cancelled`."""
     first = (_RUN - _SHOWN) * _SAMPLES
     true = output_force(scene, _TRUE, stop)[first:]
@@ -78,7 +79,7 @@ def lesson(scene: Scene, stop: np.ndarray) -> Lesson:
     return found
 
 
-def output_force(scene: Scene, setting: Setting, stop: np.ndarray) -> np.ndarray:
+def output_force(scene: Scene, setting: Setting, stop: Stop) -> np.ndarray:
     """Total force on the wall from rest [N], both ends of every sample."""
     engine = Engine(scene, setting, _SAMPLES, stop=stop)
     return engine.record(_RUN * _SAMPLES).force[:, -1] * engine.lowered.scales.force

@@ -10,11 +10,13 @@ from scipy.integrate import DOP853, LSODA, RK45
 from scipy.optimize import brentq
 
 from ..errors import Cancelled, NumbersFailed
-from ..integrate.engine import Counts, new_stop, rest
-from ..integrate.lane_block import scaled_state
-from ..kernels.dop853 import evaluate
+from ..integrate import Counts
+from ..kernels.dop853.step import evaluate
+from ..kernels.status import EVALUATIONS
 from ..lower import Lowered, lower
 from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,7 @@ _SAME_EVENT = 1e-9
 class Motion:
     """The beads' equations as SciPy wants them: a function of time and one flat array (u_1..u_N, w_1..w_N)."""
 
-    def __init__(self, lowered: Lowered, stop: np.ndarray) -> None:
+    def __init__(self, lowered: Lowered, stop: Stop) -> None:
         self.lowered = lowered
         self.stop = stop
         self.evaluations = 0
@@ -81,7 +83,7 @@ class Motion:
         return bodies[:-1] - bodies[1:] + static
 
 
-def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: int, stop: np.ndarray | None = None,
+def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: int, stop: Stop | None = None,
           located: bool = False) -> tuple[np.ndarray, Counts]:
     """Scaled displacements (rows, N) from rest at `samples` a period, both ends; atol = rtol = tolerance.
 
@@ -89,8 +91,8 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
     wherever a contact opens or closes, as a careful user would do it. Raises `NumbersFailed` and `Cancelled`.
     """
     lowered = lower(scene)
-    motion = Motion(lowered, new_stop() if stop is None else stop)
-    inner = motion.inner(scaled_state(lowered, rest(scene)))
+    motion = Motion(lowered, Stop() if stop is None else stop)
+    inner = motion.inner(lowered.scaled(rest(scene)))
     out = np.full((periods * samples + 1, scene.N), np.nan)
     out[0] = inner[: scene.N]
     for p in range(periods):
@@ -100,7 +102,7 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
             raise NumbersFailed(f"SciPy's {solver} lost the motion in drive period {p + 1}: its state is no longer "
                                 f"finite, at tolerance {tolerance:g}.", "not-finite")
     counts = Counts()
-    counts.array[1] = motion.evaluations
+    counts.array[EVALUATIONS] = motion.evaluations
     return out, counts
 
 
@@ -117,7 +119,7 @@ def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray,
 
     one, event = start(0.0, inner, period), period
     while t < period:
-        if motion.stop[0]:
+        if motion.stop:
             raise Cancelled
         before = one.y.copy()
         one.step()

@@ -1,7 +1,7 @@
 """All steady states of one setting that are found from rest, from both sweeps and from random states.
 
-Every start is settled in lanes; what is one and the same is told by sameness.py. A start that ends on an unstable
-orbit, where a slow departure looks like rest, is put beside it and runs on.
+All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable
+orbit, where a slow departure looks like a steady state, is displaced and run further.
 """
 
 from __future__ import annotations
@@ -14,21 +14,23 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, State
-from ..integrate.engine import rest
 from ..orbits import Orbit
 from ..result import ForceErrors
 from ..scene import Scene
-from ..steady.lane_job import LaneResult, Start
+from ..state import rest
+from ..steady.batch_job import Start
 from ..steady.regime import Regime
+from ..steady.steady_state import SteadyState
+from ..stop import Stop
 from .compute import settle_on_all_cores
 from .sameness import LIVE, Found, found, merged
 
 #: Frequencies passed on the way in a sweep, periods at each, and how far away it begins.
 _SWEEP, _PASS, _AWAY = 8, 150, 0.08
-#: Random states lie within so many times the largest displacement and velocity on the way from rest.
+#: Size of the box of random states, in largest displacements and velocities seen on the way from rest.
 _BOX = 1.5
-#: A start that ended on an unstable orbit is put so far beside it, relative to the motion, and runs so many periods
-#: before it is looked at again: more than it takes to leave an orbit with |μ| = 1.003.
+#: Displacement from an unstable orbit, relative to the motion, and drive periods before the next check: enough to
+#: leave an orbit with |μ| = 1.003.
 _BESIDE, _RUN_ON = 1e-2, 3000
 #: Mean exponents per drive period above which a group is chaotic, and below which it may be quasi-periodic.
 _CLEARLY, _UNCLEAR = 0.01, 5e-3
@@ -48,9 +50,32 @@ class Origin:
 class Attractor:
     """A steady state with what leads to it.
 
-    Forces are the largest ones [N], with their relative errors where the motion is periodic. `orbit` is the certified
-    orbit with its multipliers, None where the motion is not periodic or Newton's method did not reach it. `share` is
-    the part of the random states that end here, `share_error` its standard error.
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    regime : Regime
+        What kind of motion it is.
+    max_input_force, max_output_force, max_output_force_elastic : float
+        Largest forces [N].
+    force_errors : ForceErrors
+        Their relative errors; None where the motion is not periodic.
+    state : State
+        Where it is at drive phase 0.
+    orbit : Orbit or None
+        The certified orbit with its multipliers; None where the motion is not periodic or Newton's method did not
+        reach it.
+    origins : list of Origin
+        The starts that end here: "rest", "up", "down", "random 17".
+    share, share_error : float
+        Part of the random states that end here, and its standard error.
+
+    Examples
+    --------
+    >>> from granchain_core import attractors, scene
+    >>> only, = attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=2)
+    >>> only.stable, [origin.name for origin in only.origins][:3]
+    (True, ['rest', 'up', 'down'])
     """
 
     scene: Scene
@@ -76,13 +101,43 @@ class Attractor:
         return None if self.orbit is None else self.orbit.stable
 
 
-def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Callable[[], bool] | None = None,
+def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop | None = None,
                progress: Callable[[float], None] | None = None) -> list[Attractor]:
-    """Steady states of `scene` that are found from rest, from sweeps of f in both directions and from random states.
+    """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
-    The largest share comes first. Random states are uniform in a box of displacements and velocities, `_BOX` times what
-    is seen on the way from rest; shares are relative to it. The same seed gives the same answer. `stop` may end the
-    search early with what is there. Raises `BadInput`, and `NumbersFailed` where no start stays finite.
+    Random states are uniform in a box of displacements and velocities, 1.5 times what is seen on the way from rest;
+    the shares are relative to it (docs/diagram.md).
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    random_states : int
+        How many random states, 0 to 10,000.
+    seed : int
+        Of the random states; the same seed gives the same answer.
+    stop : Stop, optional
+        Looked at between starts; once it is set the search ends with what there is.
+    progress : callable, optional
+        Called with the part that is done.
+
+    Returns
+    -------
+    list of Attractor
+        Each steady state once, the largest share first.
+
+    Raises
+    ------
+    BadInput
+        `random_states` is out of range.
+    NumbersFailed
+        No start stays finite.
+
+    Examples
+    --------
+    >>> from granchain_core import attractors, scene
+    >>> [(one.regime.period, one.share) for one in attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=4)]
+    [(1, 1.0)]
     """
     if not 0 <= random_states <= MOST_STATES:
         raise BadInput(f"random_states = {random_states} is outside 0 to {MOST_STATES}; the nearest valid value is "
@@ -106,10 +161,10 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Calla
     return sorted(listed, key=lambda one: (-len(one.origins), one.max_output_force))
 
 
-def _settled(starts: list[Start], stop: Callable[[], bool] | None,
-             progress: Callable[[float], None] | None = None) -> list[LaneResult]:
+def _settled(starts: list[Start], stop: Stop | None,
+             progress: Callable[[float], None] | None = None) -> list[SteadyState]:
     """Where starts lead, in their order."""
-    results: list[LaneResult] = []
+    results: list[SteadyState] = []
     for result in settle_on_all_cores(starts, stop):
         results.append(result)
         if progress is not None:
@@ -138,7 +193,7 @@ def share(count: int, of: int) -> tuple[float, float]:
     return count / of, math.sqrt(middle * (1.0 - middle) / (of + 4.0))
 
 
-def _origins(scene: Scene, random_states: int, seed: int, stop: Callable[[], bool] | None) -> list[Origin]:
+def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> list[Origin]:
     """Rest, the ends of both sweeps, and random states."""
     _, strobes, velocity = _run_on(scene, rest(scene))
     dice = np.random.default_rng(seed)
@@ -152,11 +207,11 @@ def _origins(scene: Scene, random_states: int, seed: int, stop: Callable[[], boo
     return origins
 
 
-def _swept(scene: Scene, factor: float, stop: Callable[[], bool] | None) -> State:
+def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
     """The state in which a sweep of the frequency from `factor` times it arrives."""
     state = rest(scene)
     for step in range(_SWEEP):
-        if stop is not None and stop():
+        if stop:
             break
         f = scene.f * (factor + (1.0 - factor) * step / _SWEEP)
         state, _, _ = _run_on(scene.evolve(f=f), state)

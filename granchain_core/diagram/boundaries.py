@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..orbits import Orbit, periodic_orbit
+from ..stop import Stop
 from .boundary import BoundaryPoint, boundary_curves, boundary_point
 from .cells import REGIMES, Diagram
 
@@ -43,7 +44,7 @@ class _Pair:
 
 
 def boundaries(found: Diagram, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
-               stop: np.ndarray | None = None,
+               stop: Stop | None = None,
                on_curve: Callable[[BoundaryCurve], None] | None = None) -> list[BoundaryCurve]:
     """Curves through the boundaries of some rows of a diagram (the middle one), at `values` of y (those of its rows).
 
@@ -91,7 +92,7 @@ def _pairs(found: Diagram, row: int) -> Iterator[_Pair]:
                 yield _Pair(inside, outside, "fold", period)
 
 
-def _between(found: Diagram, pair: _Pair, stop: np.ndarray | None) -> BoundaryPoint | None:
+def _between(found: Diagram, pair: _Pair, stop: Stop | None) -> BoundaryPoint | None:
     """The point between two cells, from the orbit that comes nearest to it; None where there is none."""
     grid = found.grid
     columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]

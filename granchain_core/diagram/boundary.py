@@ -23,10 +23,10 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
 from ..integrate import State
-from ..integrate.lane_block import scaled_state
 from ..orbits.flow import StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene
+from ..stop import Stop
 from .grid import KNOBS
 
 KINDS = ("fold", "period_doubling", "neimark_sacker")
@@ -66,7 +66,7 @@ class _Branch:
     knob: str
     unit: float
     periods: int
-    stop: np.ndarray | None
+    stop: Stop | None
     near: complex | None = None
 
     def at(self, x: float) -> Scene:
@@ -135,7 +135,7 @@ def _met(multiplier: complex, kind: str) -> bool:
 
 
 def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: int = 1, x: str = "f", y: str = "A0",
-                   stop: np.ndarray | None = None) -> BoundaryPoint:
+                   stop: Stop | None = None) -> BoundaryPoint:
     """The point of `kind` on the branch over knob x nearest to an orbit through `state`.
 
     `state` is at phase 0, in SI or scaled (2N,) of displacements, then w. Raises `BadInput`, and `NumbersFailed` where
@@ -144,7 +144,7 @@ def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: i
     _check(scene, kind, x, y)
     branch = _Branch(scene, x, float(scene.knobs[x]), period, stop)
     strobe = StroboscopicMap(scene, period, stop)
-    inner = state if isinstance(state, np.ndarray) else strobe.inner(scaled_state(strobe.engine.lowered, state))
+    inner = state if isinstance(state, np.ndarray) else strobe.inner(strobe.engine.lowered.scaled(state))
     along = np.append(np.zeros(len(inner)), 1.0)
     return _nearest(branch, kind, np.append(inner, 1.0), along, y)
 
@@ -196,7 +196,7 @@ def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,
 
 
 def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: Iterable[float], period: int = 1,
-                    x: str = "f", y: str = "A0", stop: np.ndarray | None = None,
+                    x: str = "f", y: str = "A0", stop: Stop | None = None,
                     on_point: Callable[[BoundaryPoint], None] | None = None) -> list[BoundaryPoint]:
     """The curve of `kind` through the point near the orbit `state` of `scene`, at the `values` of knob y.
 
@@ -212,7 +212,7 @@ def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: 
     for side in ([v for v in wanted if v > first.y], [v for v in reversed(wanted) if v < first.y]):
         points = [first]
         for value in side:
-            if stop is not None and stop[0]:
+            if stop:
                 raise Cancelled
             following = _follow(scene, kind, points, value, period, x, y, stop)
             if following is None:
@@ -225,7 +225,7 @@ def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: 
 
 
 def _follow(scene: Scene, kind: str, points: list[BoundaryPoint], value: float, period: int, x: str, y: str,
-            stop: np.ndarray | None) -> BoundaryPoint | None:
+            stop: Stop | None) -> BoundaryPoint | None:
     """The curve's point at y = `value`, by smaller steps where one is too large; None where the curve ends."""
     way, part = points[-2:], 1.0
     whole = abs(value - way[-1].y)
@@ -242,7 +242,7 @@ def _follow(scene: Scene, kind: str, points: list[BoundaryPoint], value: float, 
 
 
 def _stepped(scene: Scene, kind: str, way: list[BoundaryPoint], end: float, period: int, x: str, y: str,
-             stop: np.ndarray | None) -> BoundaryPoint | None:
+             stop: Stop | None) -> BoundaryPoint | None:
     """The point at y = `end` by one step from the last two; None where it is not found or does not go on evenly."""
     guess, state = _extrapolated(way, end, x, y)
     try:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..result import ForceErrors
-from ..steady.lane_job import LaneResult
 from ..steady.regime import Regime
+from ..steady.steady_state import SteadyState
 from .grid import Grid
 
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
@@ -39,7 +39,7 @@ def empty_cells(grid: Grid) -> np.ndarray:
     return cells
 
 
-def cell_of(result: LaneResult) -> np.ndarray:
+def cell_of(result: SteadyState) -> np.ndarray:
     """The row () of one result."""
     regime = result.regime
     name = "failed" if result.failure else regime.name
@@ -55,7 +55,24 @@ def _or_nan(value: float | None) -> float:
 
 @dataclass(eq=False)
 class Diagram:
-    """A two-parameter diagram: its grid, its cells (cells,) by number, and the time it took."""
+    """A two-parameter diagram.
+
+    Attributes
+    ----------
+    grid : Grid
+        The scene and its two axes; cell (i, j) has y value i and x value j.
+    cells : numpy.ndarray, structured, shape (cells,)
+        By number i · len(x) + j: regime, period, largest forces [N], relative errors, and the evidence for the regime.
+    wall_s : float
+        Wall-clock time [s].
+
+    Examples
+    --------
+    >>> from granchain_core import diagram, scene
+    >>> found = diagram(scene("sec2").evolve(N=2), ("f", [1900.0, 2000.0]), ("A0", [5e-7]))
+    >>> found.complete, found.column("max_output_force").shape, found.regime(0).name
+    (True, (1, 2), 'periodic')
+    """
 
     grid: Grid
     cells: np.ndarray

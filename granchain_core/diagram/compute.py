@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from ..integrate.engine import new_stop
-from ..integrate.lane_block import can_share_lanes
+from ..integrate.batch import can_share_batch
 from ..scene import Scene
-from ..steady.curve import CurvePoint, safe_point, second_look
-from ..steady.lane_curve import lane_states
-from ..steady.lane_job import LaneResult, Start
+from ..steady.batch_job import Start
+from ..steady.batch_settle import batch_states
+from ..steady.curve import safe_state, second_look
+from ..steady.steady_state import SteadyState
 from ..steady.threads import on_all_cores
+from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells
 from .grid import Axis, Grid
 
@@ -31,20 +33,19 @@ def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
     return list(groups.values())
 
 
-def settle_starts(starts: Iterable[Start], stop: np.ndarray) -> Iterator[LaneResult]:
+def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
     """Where starts of one structure lead: by lanes where they can share them, else one by one."""
     rest_of_them = iter(starts)
     first = next(rest_of_them, None)
     if first is None:
         return
     together = _chained(first, rest_of_them)
-    if can_share_lanes(first.scene):
-        for result in lane_states(together, stop):
-            yield result if not result.doubtful else _as_result(Start(result.scene, number=result.number),
-                                                                second_look(result, stop))
+    if can_share_batch(first.scene):
+        for result in batch_states(together, stop):
+            yield second_look(result, stop) if result.doubtful else result
         return
     for one in together:
-        yield _as_result(one, safe_point(one.scene, one.state, stop))
+        yield replace(safe_state(one.scene, one.state, stop), number=one.number)
 
 
 def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
@@ -52,53 +53,74 @@ def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
     yield from others
 
 
-def _as_result(start: Start, point: CurvePoint) -> LaneResult:
-    tops = np.array([point.max_input_force, point.max_output_force, point.max_output_force_elastic])
-    return LaneResult(start.scene, tops, point.regime, _errors(point), point.state, point.failure, start.number)
-
-
-def _errors(point: CurvePoint) -> np.ndarray | None:
-    return None if point.error_estimate is None else np.array(point.force_errors.row)
-
-
-def block_cells(grid: Grid, numbers: Sequence[int], stop: np.ndarray | None = None) -> np.ndarray:
+def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:
     """The cells with these numbers, computed in this thread: the work that is handed to a scheduler as one block."""
-    flag = new_stop() if stop is None else stop
+    stop = Stop() if stop is None else stop
     found = [cell_of(result) for group in by_structure(grid, numbers)
-             for result in settle_starts(starts_of(grid, group), flag)]
+             for result in settle_starts(starts_of(grid, group), stop)]
     return np.array(found)
 
 
 def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
-                 stop: Callable[[], bool] | None = None, workers: int | None = None,
-                 pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
+                 stop: Stop | None = None, workers: int | None = None,
+                 pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
     """Cells of the diagram as they are decided, coarse first; `missing` are those wanted, else all.
 
-    The result's `number` is the cell's. `stop` is asked between cells and may end the computation; running cells are
-    then given up. `pause` is called before a cell is begun and may wait.
+    The result's `number` is the cell's. `stop` is looked at between cells and may end the computation; running cells
+    are then given up. `pause` is called before a cell is begun and may wait.
     """
     wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
     groups = by_structure(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
     for group in groups:
         yield from settle_on_all_cores(starts_of(grid, group), stop, workers, pause)
-        if stop is not None and stop():
+        if stop:
             return
 
 
-def settle_on_all_cores(starts: Iterable[Start], stop: Callable[[], bool] | None = None,
-                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[LaneResult]:
+def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,
+                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
     """Where starts of one structure lead, as they are found; closing the generator ends it."""
-    flag = new_stop()
-    return on_all_cores(lambda shared: settle_starts(shared, flag), starts, flag, stop, workers, pause)
+    ended = Stop()
+    return on_all_cores(lambda shared: settle_starts(shared, ended), starts, ended, stop, workers, pause)
 
 
 def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
-            stop: Callable[[], bool] | None = None, progress: Callable[[Diagram, float], None] | None = None,
+            stop: Stop | None = None, progress: Callable[[Diagram, float], None] | None = None,
             workers: int | None = None) -> Diagram:
-    """Regime, period, largest forces and errors over two knobs, every cell from rest.
+    """Regime and largest forces over two knobs, every cell from rest, on all cores.
 
-    `x` and `y` are (knob, ascending values). `progress` is told the diagram so far and the part of it that is done
-    after every cell; `stop` may end it early, and what is not computed then has regime −1. Raises `BadInput`.
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    x, y : tuple of (str, iterable of float)
+        A knob ("f", "A0", "D", "k", "kappa", "F0" or "wall") and its ascending values in SI.
+    stop : Stop, optional
+        Looked at between cells; once it is set the diagram ends, and what is not computed has regime −1.
+    progress : callable, optional
+        Called with the diagram so far and the part of it that is done, after every cell.
+    workers : int, optional
+        Threads; one for each core if not given.
+
+    Returns
+    -------
+    Diagram
+        A table of cells, (len(y), len(x)).
+
+    Raises
+    ------
+    BadInput
+        A knob cannot be an axis, its values do not ascend or are out of range, or there are too many cells.
+
+    Examples
+    --------
+    >>> from granchain_core import diagram, scene
+    >>> found = diagram(scene("sec2").evolve(N=2), ("f", [1900.0, 2000.0, 2100.0]), ("A0", [4e-7, 5e-7]))
+    >>> found.column("period")
+    array([[1, 1, 1],
+           [1, 1, 1]], dtype=int16)
+    >>> bool((found.column("max_output_force")[1] > found.column("max_output_force")[0]).all())
+    True
     """
     began = time.perf_counter()
     grid = Grid(scene, Axis.of(*x), Axis.of(*y))

@@ -17,7 +17,7 @@ from ..quantities import QUANTITIES
 from ..scene import Scene
 
 #: Knobs that may be an axis: the continuous ones that change the motion.
-KNOBS = ("f", "A0", "D", "k", "kappa", "F0", "wall")
+KNOBS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_axis)
 #: Most cells of one diagram.
 MOST_CELLS = 4_000_000
 

@@ -15,28 +15,27 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from ..errors import BadInput, NumbersFailed
-from ..integrate import Engine, Setting, State
-from ..integrate.lane_block import scaled_state
+from ..integrate import Engine, Setting, State, certified, live
 from ..lower import lower
 from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
-from ..steady.lane_job import LaneResult
+from ..steady.steady_state import SteadyState
 
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are one; coarser ones where it failed.
 _SAME = 1e-7
 #: Scaled strobes of an orbit that agree to this after fewer periods have the shorter period.
 _REPEATS = 1e-6
-#: Sections that are so many times further apart than their own states are different; those of motions that are not
-#: periodic have so many states, after as many periods more.
+#: Sections are different if their distance exceeds that of their own neighbouring states by this factor; states in the
+#: section of a motion that is not periodic, taken after as many further periods.
 _APART, _SECTION = 3.0, 400
-LIVE, _CERTIFIED = Setting("rk4-split"), Setting("dop853", tolerance=1e-11)
+LIVE, _CERTIFIED = live(), certified(1e-11)
 
 
 @dataclass(eq=False)
 class Found:
     """One result with its section: n strobes of a periodic orbit, or the record of another motion, (P, 2, N)."""
 
-    result: LaneResult
+    result: SteadyState
     section: np.ndarray
     orbit: Orbit | None = None
 
@@ -53,13 +52,13 @@ class Found:
         return self.orbit is not None and not self.orbit.stable
 
 
-def found(result: LaneResult) -> Found:
+def found(result: SteadyState) -> Found:
     """A result with the section of its motion."""
     period = result.regime.period
     return Found(result, _strobes(result.scene, result.state, period, LIVE) if period else _section(result))
 
 
-def _section(result: LaneResult) -> np.ndarray:
+def _section(result: SteadyState) -> np.ndarray:
     """Stroboscopic states of displacement and velocity, scaled, of what is not periodic, (P, 2, N)."""
     engine = Engine(result.scene, LIVE, 1)
     engine.start(result.state)
@@ -71,10 +70,10 @@ def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.n
     """The next `periods` stroboscopic states of displacement and w, scaled, (periods, 2, N)."""
     engine, lowered = Engine(scene, setting, 1), lower(scene)
     engine.start(state)
-    rows = [scaled_state(lowered, state)]
+    rows = [lowered.scaled(state)]
     for _ in range(periods - 1):
         engine.periods(1, watch=False)
-        rows.append(scaled_state(lowered, engine.state))
+        rows.append(lowered.scaled(engine.state))
     return np.array(rows).reshape(periods, 2, -1)[:, :, 1:-1]
 
 

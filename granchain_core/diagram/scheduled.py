@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..scene import Scene
+from ..stop import Stop
 from .compute import block_cells
 from .grid import Axis, Grid
 
@@ -51,13 +52,13 @@ def connect(address: str) -> Any:
 
 
 def iter_blocks(client: Any, grid: Grid, numbers: Sequence[int],
-                stop: Callable[[], bool] | None = None) -> Iterator[np.ndarray]:
+                stop: Stop | None = None) -> Iterator[np.ndarray]:
     """Finished blocks (cells,) in the order in which workers return them; what is not wanted any more is cancelled."""
     described = describe(grid)
     waiting = {client.submit(work_on, described, block, pure=False) for block in blocks_of(numbers)}
     try:
         while waiting:
-            if stop is not None and stop():
+            if stop:
                 raise Cancelled
             done, waiting = _some(waiting)
             for future in done:

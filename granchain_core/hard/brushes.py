@@ -12,14 +12,14 @@ from math import asin, pi
 
 import numpy as np
 
-from ..kernels.certified import certified_step
-from ..kernels.dop853 import ALL_STAGES, STAGES, Dop853, Work, evaluate
+from ..kernels.dop853.located import certified_step
+from ..kernels.dop853.step import ALL_STAGES, STAGES, Dop853, Work, evaluate
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.foundation import Foundation
 from ..kernels.effects.preload import Preload
+from ..kernels.equations.motion import Forces, Slots, copy
 from ..kernels.jit import kernel
-from ..kernels.motion import Forces, Slots, copy
 
 #: Columns of what is drawn: the driver's rate β (or the bead's own ω), depth, phase it starts at, tolerance, largest
 #: step as a part of the period, first step as a part of the largest.

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, Setting, State, certified
+from ..integrate.methods import CERTIFIED
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.preload import Preload
 from ..kernels.effects.tension import no_tension
-from ..kernels.sampling import Samples
+from ..kernels.samples import Samples
 from ..scene import Scene, scene
 
 #: Speed of two colliding beads in scaled units, m* = 1/2: contact time 3.2180655 (m*/K)^{2/5} v^{-1/5}.
@@ -37,10 +38,10 @@ class Bench:
 
     def __init__(self, beads: int, time: float, samples: int, law: Any = None, ends: tuple[float, float] = (1.0, 1.0),
                  inverse_mass: Sequence[float] | None = None, stiffness: Sequence[float] | None = None,
-                 static: np.ndarray | None = None, cut: bool = False, method: str = "dop853",
+                 static: np.ndarray | None = None, cut: bool = False, method: str = CERTIFIED,
                  tolerance: float = 1e-13, refine: float = 1.0) -> None:
         base: Scene = scene("sec2").evolve(N=beads)
-        rate = Engine(base, Setting("dop853", tolerance=1e-3)).lowered.scales.rate
+        rate = Engine(base, certified(1e-3)).lowered.scales.rate
         self.engine = Engine(base.evolve(f=rate / time), Setting(method, refine, tolerance), samples)
         lowered = self.engine.lowered
         masses = np.zeros(beads + 2)
@@ -52,10 +53,7 @@ class Bench:
             driver=Harmonic(0.0, lowered.beta) if ends[0] > 0.0 else None,
             tension=no_tension(beads + 1) if cut else None,
             preload=None if static is None else Preload(np.array(static, dtype=float)))
-        self.engine.lowered = replace(lowered, slots=slots)
-        self.engine.work = self.engine.work._replace(forces=self.engine.lowered.forces())
-        if not self.engine._adaptive:
-            self.engine.drive[:] = 0.0
+        self.engine.use(replace(lowered, slots=slots))
         self.masses = 1.0 / masses[1:-1]
         self.springs = springs
         self.static = np.zeros(beads + 1) if static is None else np.array(static, dtype=float)

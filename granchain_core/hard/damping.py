@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import Engine, Setting
-from ..kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
-from ..run import run
+from ..integrate import Engine, Setting, certified
+from ..laws import LAWS
+from ..run.run import run
 from ..scene import Scene, scene
 from .case import Figure, Picture, Trace
 from .chains import Bench, contact_time
@@ -15,7 +15,7 @@ from .oracle import Plain, restitution, solved
 
 
 def overdamped(times: float, beads: int = 3) -> Scene:
-    """The rig with so many times its damping."""
+    """The rig with a multiple of its damping."""
     return scene("rig").evolve(N=beads, D=35.4 * times, f=160.0, accuracy=1e-7)
 
 
@@ -51,13 +51,10 @@ def strong_damping_picture() -> Picture:
 
 # --- restitution ------------------------------------------------------------------------------------------
 
-_LAWS = {"linear": LinearDashpot, "tsuji": Tsuji, "kuwabara-kono": KuwabaraKono}
-
-
 def bounce(law: str, strength: float, cut: bool, speed: float = 1.0) -> float:
     """Restitution of a bead thrown against the wall."""
     time = 4.0 * contact_time(speed, 1.0) * (1.0 + 3.0 * strength)
-    bench = Bench(1, time, 4, _LAWS[law](strength), ends=(0.0, 1.0), cut=cut, tolerance=1e-15)
+    bench = Bench(1, time, 4, LAWS[law].slot(strength), ends=(0.0, 1.0), cut=cut, tolerance=1e-15)
     bench.throw([speed])
     return float(-bench.record().velocity[-1, 0]) / speed
 
@@ -74,7 +71,7 @@ def restitutions(quick: bool) -> list[Figure]:
     exact = max(abs(bounce("tsuji", tsuji_strength(e), False, v) - e)
                 for e in (0.95, 0.7, 0.3) for v in ((1.0,) if quick else (0.01, 1.0, 10.0)))
     found = [Figure("Tsuji, tension allowed, closed form", exact, 1e-8)]
-    for law in _LAWS:
+    for law in LAWS:
         for cut in (False, True):
             worst = max(abs(bounce(law, s, cut) - restitution(law, s, cut)) for s in strengths)
             found.append(Figure(f"{law}, tension {'cut' if cut else 'allowed'}, quadrature", worst, 1e-8))
@@ -85,7 +82,7 @@ def _pulls(periods: int) -> list[Figure]:
     """The largest pull of any contact over the largest push, cut; and that without the cut there is one."""
     forces = {}
     for tension in ("cut", "allowed"):
-        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), Setting("dop853", tolerance=1e-10), 256)
+        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), certified(1e-10), 256)
         force = engine.record(256 * periods).force
         forces[tension] = float(max(0.0, -force.min()) / force.max())
     return [Figure("largest pull of a cut contact over its largest push", forces["cut"], 1e-14),
@@ -94,7 +91,7 @@ def _pulls(periods: int) -> list[Figure]:
 
 
 def naive_bounce(strength: float, steps: float) -> float:
-    """The restitution with the dashpot that plain RK4 in (u, v) finds with so many steps in a contact."""
+    """The restitution with the dashpot by plain RK4 in (u, v), for a number of steps per contact."""
     h, state = contact_time(1.0, 1.0) / steps, np.array([-0.3 * contact_time(1.0, 1.0) / steps, 1.0])
 
     def slope(y: np.ndarray) -> np.ndarray:

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, State, certified, live
+from ..integrate.methods import CERTIFIED
 from ..kernels.effects.driver import Harmonic
 from ..orbits.flow import StroboscopicMap
 from ..scene import Scene, scene
@@ -38,7 +39,7 @@ def confined(times: int, method: str, refine: float = 1.0) -> tuple[np.ndarray, 
 def free_chain(quick: bool) -> list[Figure]:
     """Energy, its trend and momentum without damping."""
     times = 2_000 if quick else 10_000
-    clock, change = confined(times, "dop853")
+    clock, change = confined(times, CERTIFIED)
     slope = np.polyfit(clock, change, 1)[0]
     bench = Bench(11, 40.0, 64, ends=(0.0, 0.0), tolerance=1e-14)
     bench.throw(np.eye(11)[0])
@@ -54,7 +55,7 @@ def free_chain(quick: bool) -> list[Figure]:
 
 def free_chain_picture() -> Picture:
     """Change of energy: ours, a symplectic method's and plain RK4's with 40 steps in the shortest contact."""
-    clock, ours = confined(1_000, "dop853")
+    clock, ours = confined(1_000, CERTIFIED)
     finer = contact_time(2.0) / 40.0
     traces = [Trace("granchain, certified", ours)]
     for method, label in (("verlet-naive", "velocity Verlet, symplectic"), ("rk4-naive", "plain RK4")):
@@ -72,7 +73,7 @@ def undamped(frequency: float = 340.0, beads: int = 11) -> Scene:
 
 def driven_chaos(quick: bool) -> list[Figure]:
     """Energy account, Lyapunov exponent by two methods, and no periodic verdict."""
-    engine = Engine(undamped(), Setting("dop853", tolerance=1e-14), 1, balance=True)
+    engine = Engine(undamped(), certified(1e-14), 1, balance=True)
     energy = engine.record(20 if quick else 100).energy
     stored, work, lost = (energy - energy[0]).T
     largest = max(np.abs(work).max(), np.abs(energy[:, 0]).max())
@@ -94,7 +95,7 @@ def two_exponents(blocks: int) -> tuple[float, tuple[float, float], tuple[float,
     Returns their difference over the combined error, and both.
     """
     chosen = undamped(1000.0, 3)
-    engine = Engine(chosen, Setting("rk4-split"), 1)
+    engine = Engine(chosen, live(), 1)
     engine.periods(100)
     strobe = StroboscopicMap(chosen, 1)
     x = strobe.inner(engine.y)
@@ -119,7 +120,7 @@ def chaos_picture() -> Picture:
     chosen = undamped(beads=5)
     traces = []
     for label, nudge in (("from rest", 0.0), ("from 1e-12 of an amplitude beside it", 1e-12)):
-        engine = Engine(chosen, Setting("dop853", tolerance=1e-13), 1)
+        engine = Engine(chosen, certified(1e-13), 1)
         engine.start(State(np.array([nudge * chosen.A0, 0.0, 0.0, 0.0, 0.0]), np.zeros(5)))
         traces.append(Trace(label, engine.periods(60)[0][:, 0, -1]))
     return Picture(np.arange(61), "drive period", "last bead at phase 0, in amplitudes", tuple(traces))
@@ -136,9 +137,9 @@ def _segment(chosen: Scene, state: State, amplitude: float, samples: int) -> tup
 
     Returns the state, the impulse of driver less wall [N s], the largest momentum on the way [N s].
     """
-    engine = Engine(chosen, Setting("dop853", tolerance=1e-13), _SWITCHED)
+    engine = Engine(chosen, certified(1e-13), _SWITCHED)
     slots = engine.lowered.slots
-    engine.lowered = replace(engine.lowered, slots=slots._replace(driver=Harmonic(amplitude, engine.lowered.beta)))
+    engine.use(replace(engine.lowered, slots=slots._replace(driver=Harmonic(amplitude, engine.lowered.beta))))
     engine.start(state)
     phase = state.phase
     kept = engine.record(samples)
@@ -168,7 +169,7 @@ def switched(steps: list[tuple[float, float, int]], phase: float, beads: int = 4
 def jump_push() -> float:
     """Momentum of a chain at rest behind a jump of its driver by A0, less the dashpot's D·A0, over the latter."""
     chosen = scene("sec2").evolve(N=4)
-    engine = Engine(chosen, Setting("dop853", tolerance=1e-12), 4)
+    engine = Engine(chosen, certified(1e-12), 4)
     engine.grid_index = engine.grid // 4
     engine.place()
     push = chosen.D * chosen.A0
@@ -195,7 +196,7 @@ def switched_picture() -> Picture:
     what stays the same in w: it does not jump, and the velocity does.
     """
     chosen, beads, samples = scene("sec2").evolve(N=4), 4, 2000
-    engine, shown = Engine(chosen, Setting("dop853", tolerance=1e-12), samples), 100
+    engine, shown = Engine(chosen, certified(1e-12), samples), 100
     engine.grid_index = engine.grid // 4
     engine.place()  # the driver is at its amplitude now; the beads, and w, are where they were
     ours = engine.record(shown).velocity.sum(axis=1)

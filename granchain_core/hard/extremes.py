@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, Setting, State, certified, live
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
-from ..run import run
+from ..run.run import run
 from ..scene import Scene, scene
 from .case import Figure, Picture, Trace
 from .drafts import plain_slope, rk4
@@ -70,11 +70,11 @@ def amplitudes(quick: bool) -> list[Figure]:
     """Scaling, statics and the stop band."""
     times = (1e-4, 1e4) if quick else tuple(10.0**p for p in range(-4, 5))
     drives = (340.0,) if quick else (10.0, 340.0, 3000.0, 1e5)
-    fixed = max(scaled_difference(f, Setting("rk4-split", 2.0), times) for f in drives)
-    certified = max(scaled_difference(f, Setting("dop853", 1.0, 1e-15), times) for f in drives)
+    fixed = max(scaled_difference(f, live(2.0), times) for f in drives)
+    certain = max(scaled_difference(f, certified(1e-15), times) for f in drives)
     return [
         Figure("scaling from 1e-12 to 1e-4 m, fixed steps", fixed, 1e-12),
-        Figure("scaling from 1e-12 to 1e-4 m, certified", certified, 1e-12),
+        Figure("scaling from 1e-12 to 1e-4 m, certified", certain, 1e-12),
         Figure("statics at 1 Hz" if quick else "statics at 0.1 Hz", statics_error(1.0 if quick else 0.1), 1e-6),
         Figure("stop band, a quarter above the cut-off", lattice_error(1.25), 1e-6),
         Figure("stop band, 100 kHz" if quick else "stop band, 1 MHz", lattice_error(12.0 if quick else 1e3), 1e-6),
@@ -118,8 +118,8 @@ def plain_error(chosen: Scene, samples: int = 16, method: str = "DOP853") -> flo
 def long_chain_error(beads: int) -> float:
     """Largest difference of two methods on a long chain with one moving front, over the largest displacement."""
     chosen = scene("sec2").evolve(N=beads, f=3000.0)
-    ours = Engine(chosen, Setting("rk4-split", 8.0), 8).record(16).displacement
-    true = Engine(chosen, Setting("dop853", 1.0, 1e-12), 8).record(16).displacement
+    ours = Engine(chosen, live(8.0), 8).record(16).displacement
+    true = Engine(chosen, certified(1e-12), 8).record(16).displacement
     return float(np.abs(ours - true).max() / np.abs(true).max())
 
 
@@ -127,7 +127,7 @@ def cost_growth(beads: int, rounds: int = 5) -> float:
     """Seconds per step and bead of a long chain over those of one of 100 beads, by turns, the fastest of each."""
     import time
 
-    engines = [Engine(scene("sec2").evolve(N=n, f=3000.0, F0=1.0), Setting("rk4-split"), 1) for n in (100, beads)]
+    engines = [Engine(scene("sec2").evolve(N=n, f=3000.0, F0=1.0), live(), 1) for n in (100, beads)]
     best = [np.inf, np.inf]
     for _ in range(rounds):
         for i, engine in enumerate(engines):
@@ -189,10 +189,10 @@ def mode(chosen: Scene, number: int) -> tuple[float, np.ndarray]:
 
 def swing(chosen: Scene, frequency: float, shape: np.ndarray, amplitude: float, periods: int = 3) -> np.ndarray:
     """Displacements over the amplitude (49, N) of a bead chain let go from a mode's shape, driver at rest, undamped."""
-    engine = Engine(chosen.evolve(f=frequency / periods), Setting("dop853", 1.0, 1e-15), 48)
+    engine = Engine(chosen.evolve(f=frequency / periods), certified(1e-15), 48)
     lowered = engine.lowered
     slots = lowered.slots._replace(driver=Harmonic(0.0, lowered.beta), dissipation=LinearDashpot(0.0))
-    engine.lowered = replace(lowered, slots=slots)
+    engine.use(replace(lowered, slots=slots))
     engine.start(State(amplitude * shape, np.zeros(chosen.N)))
     return engine.record(48).displacement * lowered.scales.length / amplitude
 

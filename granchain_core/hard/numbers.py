@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import METHODS, Engine, Setting
+from ..integrate.methods import CERTIFIED, LIVE
 from ..scene import scene
 from .case import Figure, Picture, Trace
 
@@ -24,19 +25,20 @@ class Injector:
         setting = Setting(method, 1.0, 1e-6 if METHODS[method].adaptive else 0.0)
         self.engine = Engine(scene("sec2").evolve(N=beads, f=1130.0), setting, _SAMPLES)
         self.engine.record(3 * _SAMPLES)
-        self._kept = self.engine.y.copy(), self.engine.work.k[0].copy(), self.engine.grid_index, self.engine.elapsed
+        engine = self.engine
+        self._kept = engine.y.copy(), engine.stepper.work.k[0].copy(), engine.grid_index, engine.elapsed
 
     def restore(self) -> None:
         """Back to where it was."""
         engine = self.engine
-        engine.y[:], engine.work.k[0] = self._kept[0], self._kept[1]
+        engine.y[:], engine.stepper.work.k[0] = self._kept[0], self._kept[1]
         engine.grid_index, engine.elapsed = self._kept[2], self._kept[3]
         self.renew()
 
     def renew(self) -> None:
         """New vectors from the present parameters, where the method has any."""
         if not METHODS[self.method].adaptive:
-            self.engine.work = self.engine.work._replace(along=self.engine.new_along())
+            self.engine.stepper.work = self.engine.stepper.work._replace(along=self.engine.stepper.new_simd_workspace())
 
     def into_state(self, rng: np.random.Generator) -> bool:
         """Whether a bad displacement or w of a bead is said at once, with bead, time and step."""
@@ -63,10 +65,10 @@ class Injector:
         n = self.engine.grid
         step = int(rng.integers(n // _SAMPLES))
         row = 2 * step + 2  # its end; what a step that is split has in its middle is not from this table
-        before = self.engine.drive[row].copy()
-        self.engine.drive[row] = np.nan
+        before = self.engine.stepper.drive[row].copy()
+        self.engine.stepper.drive[row] = np.nan
         found = self.outcome()
-        self.engine.drive[row] = before
+        self.engine.stepper.drive[row] = before
         return found is not None and (found.bead, found.step) == (1, step)
 
     def outcome(self) -> NumbersFailed | None:
@@ -83,7 +85,7 @@ class Injector:
 def injections(count: int) -> tuple[int, int]:
     """Injections made, and those not caught where they were made."""
     rng = np.random.default_rng(4)
-    injectors = [Injector(m, n) for m in ("rk4", "rk4-split", "dop853", "dopri5") for n in (1, 11)]
+    injectors = [Injector(m, n) for m in ("rk4", LIVE, CERTIFIED) for n in (1, 11)]
     wrong = 0
     for i in range(count):
         one = injectors[i % len(injectors)]
@@ -121,7 +123,7 @@ def bad_numbers(quick: bool) -> list[Figure]:
     """Injections, and the cost of subnormal numbers."""
     count, wrong = injections(2_000 if quick else 100_000)
     found = [Figure(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
-    for method, beads in (("rk4-split", 30), ("rk4-split", 200), ("dop853", 200)):
+    for method, beads in ((LIVE, 30), (LIVE, 200), (CERTIFIED, 200)):
         found.append(Figure(f"time of an evaluation with a subnormal tail over that without, {method}, {beads} beads",
                             slowing(method, beads, 20 if quick else 60), 1.2))
     return found

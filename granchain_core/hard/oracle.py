@@ -15,6 +15,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from ..errors import NumbersFailed
+from ..laws import LAWS
 from ..scene import Scene
 
 #: Most contact events of one solution; more are an accident.
@@ -106,10 +107,10 @@ def _event(chain: Plain, contact: int, closed: bool) -> Callable[[float, np.ndar
 def restitution(law: str, strength: float, cut: bool) -> float:
     """Speed after over speed before of a bead of mass 1 that meets a contact K = 1 at speed 1.
 
-    The force is δ^{3/2} + strength·g(δ)·δ̇ with g = 1, δ^{1/4} or δ^{1/2}. Integrated in s = t^{1/4}, in which the
-    motion behind the onset is smooth; with a cut it ends where the force does, else where the overlap does.
+    The force is δ^{3/2} + strength·g(δ)·δ̇ with g = δ^a. Integrated in s = t^{1/4}, in which the motion behind the
+    onset is smooth; with a cut it ends where the force does, else where the overlap does.
     """
-    power = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}[law]
+    power = LAWS[law].exponent
 
     def force(state: np.ndarray) -> float:
         d = max(state[0], 0.0)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..drift import observer_drift
-from ..integrate import Engine, Setting
-from ..integrate.lane_block import scaled_state
+from ..integrate import Engine, certified
+from ..observe.drift import observer_drift
 from ..orbits import periodic_orbit
 from ..orbits.flow import StroboscopicMap
-from ..run import run
+from ..run.run import run
 from ..scene import scene
 from ..steady.curve import CurvePoint, iter_curve
 from ..steady.regime import find_period
@@ -18,7 +17,7 @@ from .case import Figure, Picture, Trace
 from .drafts import observed_apart
 from .oracle import Plain
 
-#: Strobes of a normal form that are looked at, and its dimension.
+#: Strobes of a normal form, and its dimension.
 _STROBES, _BEADS = 400, 3
 
 
@@ -172,7 +171,7 @@ def two_attractors_picture() -> Picture:
     """Output force on both orbits over three drive periods, and from rest, which is all one run shows."""
     chosen, traces = scene("sec2").evolve(f=_SHARED), []
     for start, point in arrivals().items():
-        engine = Engine(chosen, Setting("dop853", 1.0, 1e-10), 100)
+        engine = Engine(chosen, certified(1e-10), 100)
         engine.start(point.state)
         force = engine.record(300).force[:, -1] * engine.lowered.scales.force
         traces.append(Trace(f"swept {start}", force))
@@ -183,7 +182,7 @@ def two_attractors_picture() -> Picture:
 
 
 def drifting(quick: bool) -> list[Figure]:
-    """The observer without a foundation drifts and that is said by name; with one it does not, and nothing is said."""
+    """The observer without a foundation drifts, and the verdict says so; with one it does not."""
     wrong = []
     for base, drifts in (("fig11-free", True), ("fig11-founded", False)):
         for frequency in ((100.0,) if quick else (100.0, 200.0)):
@@ -214,7 +213,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
     """
     orbit = periodic_orbit(scene(base), observer=True)
     strobe = StroboscopicMap(orbit.scene, orbit.period)
-    start = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    start = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
     derivative, beads = strobe(start, observer=True).derivative, orbit.scene.N
     difference, found = np.concatenate([np.full(beads, 1e-6), np.zeros(beads)]), np.empty(count)
     for i in range(count):
@@ -226,7 +225,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
 def _two_runs(tolerance: float, count: int) -> np.ndarray:
     """The same (count,) where chain and observer are two runs of SciPy from the same state on the chain's orbit."""
     orbit = periodic_orbit(scene("fig11-free"))
-    scales = Engine(orbit.scene, Setting("dop853")).lowered.scales
+    scales = Engine(orbit.scene, certified()).lowered.scales
     start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])
     apart = observed_apart(Plain.of(orbit.scene), start, count - 1, tolerance)
     return np.where(apart > 0.0, apart, np.nan)

@@ -1,6 +1,8 @@
 """Methods and the engine that carries a state through time with one of them."""
 
-from .engine import Engine, State
-from .methods import METHODS, Method, Setting, method_for
+from ..state import State
+from .counts import Counts
+from .engine import Engine
+from .methods import METHODS, Method, Setting, certified, live, method_for
 
-__all__ = ["METHODS", "Engine", "Method", "Setting", "State", "method_for"]
+__all__ = ["METHODS", "Counts", "Engine", "Method", "Setting", "State", "certified", "live", "method_for"]

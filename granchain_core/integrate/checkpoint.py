@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..scene import Scene
+from ..stop import Stop
 from .engine import Engine
 from .methods import METHODS, Setting
 
@@ -62,14 +63,14 @@ def checkpoint(engine: Engine) -> Checkpoint:
     if adaptive and engine.grid_index != 0:
         raise BadInput(f"{engine.setting.method} can be stopped at whole drive periods only; the nearest is "
                        f"{engine.grid - engine.grid_index} of {engine.grid} grid points ahead.")
-    control = np.array([engine.clock[0], *engine.work.scale]) if adaptive else np.zeros(0)
+    control = np.array([engine.stepper.clock[0], *engine.stepper.work.scale]) if adaptive else np.zeros(0)
     setting = engine.setting
     return Checkpoint(engine.lowered.scene.digest, setting.method, float(setting.refine), setting.tolerance,
-                      engine.samples, engine.y.copy(), engine.work.k[0].copy(), control, engine.grid_index,
+                      engine.samples, engine.y.copy(), engine.stepper.work.k[0].copy(), control, engine.grid_index,
                       float(engine.elapsed))
 
 
-def resumed(scene: Scene, kept: Checkpoint, stop: np.ndarray | None = None) -> Engine:
+def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:
     """A new engine that goes on from a checkpoint of the same scene; `BadInput` for one of another scene."""
     if scene.digest != kept.digest:
         raise BadInput(f"This checkpoint belongs to scene {kept.digest}, not to {scene.digest} ({scene.name}); "
@@ -77,8 +78,8 @@ def resumed(scene: Scene, kept: Checkpoint, stop: np.ndarray | None = None) -> E
     row = scene.N + 2
     engine = Engine(scene, Setting(kept.method, kept.refine, kept.tolerance), kept.samples,
                     balance=len(kept.y) > 2 * row, stop=stop)
-    engine.y[:], engine.work.k[0] = kept.y, kept.slope
+    engine.y[:], engine.stepper.work.k[0] = kept.y, kept.slope
     if len(kept.control):
-        engine.clock[0], engine.work.scale[:] = kept.control[0], kept.control[1:]
+        engine.stepper.clock[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]
     engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed
     return engine

@@ -6,206 +6,140 @@ from typing import Any
 
 import numpy as np
 
-from ..kernels import sampling
-from ..kernels.along import Along
-from ..kernels.certified import run_certified
-from ..kernels.dop853 import ALL_STAGES, Dop853, Work
-from ..kernels.dopri5 import Dopri5, run_without_events
-from ..kernels.effects.driver import Harmonic
-from ..kernels.events import ENDS
-from ..kernels.fixed_step import Rk4, Rk4Split, Stages
-from ..kernels.largest_forces import new_log
-from ..kernels.motion import place
-from ..kernels.naive import Rk4Naive, VerletNaive, naive_motion
-from ..kernels.peaks import MEMORY, ROWS, forget, next_period
-from ..kernels.simd import LANES, aligned
-from ..kernels.wide import BLOCK, KEPT, WIDTHS, Wide
+from ..kernels.forces.largest import new_log
+from ..kernels.forces.peaks import MEMORY, ROWS, forget
+from ..kernels.samples import Samples
+from ..kernels.status import DONE, NOT_FINITE
 from ..lower import Lowered, lower
 from ..scene import Scene
-from .failures import check_start, raise_for
+from ..state import State, rest
+from ..stop import Stop
+from .counts import Counts
+from .failure import Failure, not_finite
 from .flushed import flushed
 from .methods import METHODS, Setting
-from .state import Counts, State, new_stop, rest
-
-#: The certified method makes at least this many steps a period, so that the driver is never stepped over.
-_LEAST_STEPS = 16
+from .stepper import Output, Start, empty_samples
 
 #: Places for closings of a contact in one period; one that bounces more often does so ever more gently.
 _CLOSINGS = 4
-#: Steps in a period up to which the driver's motion is tabulated.
-_LARGEST_TABLE = 200_000
-
-_FIXED: dict[str, Any] = {"rk4": Rk4, "rk4-split": Rk4Split, "rk4-naive": Rk4Naive, "verlet-naive": VerletNaive}
-#: Adaptive methods with the kernel that runs them.
-_ADAPTIVE: dict[str, Any] = {"dop853": (Dop853, run_certified), "dopri5": (Dopri5, run_without_events)}
 
 
 class Engine:
-    """Carries a state of `scene` through time; all arrays are allocated here, none in a kernel.
+    """Carries a state of `scene` through time; all arrays are allocated before, none in a kernel.
 
-    `samples` is the number of recorded samples a period. `stop` is a flag from `new_stop`. `lowered` may be given where
-    more than the scene's own chain moves.
+    `samples` is the number of recorded samples a period. `stop` ends a call from another thread. `lowered` may be
+    given where more than the scene's own chain moves. What depends on the method is in `stepper`.
     """
 
     def __init__(self, scene: Scene, setting: Setting, samples: int = 1, balance: bool = False,
-                 stop: np.ndarray | None = None, lowered: Lowered | None = None) -> None:
-        self._in_uv = METHODS[setting.method].variables == "uv"
-        self.lowered = (lower(scene, balance and not self._in_uv) if lowered is None else lowered).own()
+                 stop: Stop | None = None, lowered: Lowered | None = None) -> None:
+        method = METHODS[setting.method]
+        ready = (lower(scene, balance and method.has_account) if lowered is None else lowered).own()
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
         self.log = new_log()
-        self.stop = new_stop() if stop is None else stop
-        self.y = np.zeros(self.lowered.size)
-        self._adaptive = METHODS[setting.method].adaptive
-        if self._adaptive:
-            self._prepare_adaptive()
-        else:
-            self._prepare_fixed()
-        self.start(rest(scene) if lowered is None else State(np.zeros(lowered.beads), np.zeros(lowered.beads)))
-        self._before = self.y.copy(), self.work.k[0].copy(), self.grid_index
+        self.stop = Stop() if stop is None else stop
+        self.y = np.zeros(ready.size)
+        self.stepper: Any = method.stepper(setting, ready, samples)
+        self.grid: int = self.stepper.grid
+        self.start(rest(scene) if lowered is None else State(np.zeros(ready.beads), np.zeros(ready.beads)))
+        self._remember()
 
-    # --- set-up --------------------------------------------------------------------------------------------
+    @property
+    def lowered(self) -> Lowered:
+        """The scene in scaled arrays."""
+        found: Lowered = self.stepper.lowered
+        return found
 
-    def _prepare_fixed(self) -> None:
-        lo = self.lowered
-        n = self.setting.steps_per_period(lo, self.samples)
-        self.method: Any = _FIXED[self.setting.method](n)
-        self.h = lo.period / n
-        # the table is the faster way, but a period of many steps would not fit into memory
-        theta = np.pi * np.arange(2 * n + 1 if n <= _LARGEST_TABLE else 0) / n
-        driver = lo.slots.driver
-        self.drive = np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
-        self.work: Any = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size),
-                                np.zeros((ENDS, lo.row - 1)), lo.forces(),
-                                self.new_along())
-        self.grid = n
-
-    def new_along(self) -> Along | Wide | None:
-        """The workspace of SIMD steps: neither tension cut nor energy account in the equations, and one chain."""
-        lo, slots = self.lowered, self.lowered.slots
-        if self.setting.method != "rk4-split" or slots.tension is not None or slots.balance is not None:
-            return None
-        if not isinstance(slots.driver, Harmonic):
-            return None
-        width = next((lanes for lanes in WIDTHS if lo.row <= lanes), 0)
-        if width:
-            return self._wide(width)
-        blocks = -(-lo.row // LANES)
-
-        def padded(values: np.ndarray) -> np.ndarray:
-            return np.pad(values, (0, blocks * LANES - len(values))).reshape(blocks, LANES)
-
-        def empty(rows: int) -> np.ndarray:
-            return np.zeros((rows, LANES))
-
-        preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
-        return Along(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
-                     now=empty(2 * blocks), before=empty(2 * blocks), acc=empty(2 * blocks), first=empty(2 * blocks),
-                     second=empty(2 * blocks), gap=empty(blocks), slope=empty(blocks), elastic=empty(blocks),
-                     signs=np.zeros(blocks, dtype=np.int64))
-
-    def _wide(self, width: int) -> Wide:
-        """The workspace of a chain whose bodies fit into one vector."""
-        slots = self.lowered.slots
-
-        def padded(values: np.ndarray) -> np.ndarray:
-            row = aligned(1, width)
-            row[0, : len(values)] = values
-            return row
-
-        preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
-        return Wide(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
-                    aligned(2 * KEPT, width), aligned(ENDS, width), np.zeros((3, BLOCK)))
-
-    def _prepare_adaptive(self) -> None:
-        lo = self.lowered
-        kind, self._run = _ADAPTIVE[self.setting.method]
-        self.method = kind(self.setting.tolerance, lo.period / _LEAST_STEPS)
-        size = lo.size
-        self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
-                         slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2), forces=lo.forces())
-        self.clock = np.array([min(0.01, lo.period / _LEAST_STEPS)])
-        self.grid = self.samples
+    def use(self, lowered: Lowered) -> None:
+        """Go on with other values or effects of the same chain; the step stays what it is."""
+        self.stepper.use(lowered)
 
     # --- state ---------------------------------------------------------------------------------------------
 
     def start(self, state: State) -> None:
         """Put the chain into `state`; the energy account starts at zero."""
-        lo, row = self.lowered, self.lowered.row
+        scales = self.lowered.scales
         self.grid_index = round(state.phase * self.grid) % self.grid
-        self.y[:] = 0.0
-        self.y[1 : row - 1] = state.displacement / lo.scales.length
-        self.y[row + 1 : 2 * row - 1] = state.velocity / lo.scales.velocity
-        self._begin(from_velocity=True)
+        self._begin(state.displacement / scales.length, state.velocity / scales.velocity, from_velocity=True)
 
     def start_scaled(self, x: np.ndarray) -> None:
         """Put the chain into a scaled state (2N,) of displacements, then w, at phase 0."""
-        row, n = self.lowered.row, self.lowered.beads
+        n = self.lowered.beads
         self.grid_index = 0
-        self.y[:] = 0.0
-        self.y[1 : row - 1], self.y[row + 1 : 2 * row - 1] = x[:n], x[n:]
-        self._begin(from_velocity=False)
+        self._begin(x[:n], x[n:], from_velocity=False)
 
-    def _begin(self, from_velocity: bool) -> None:
-        row = self.lowered.row
+    def _begin(self, displacement: np.ndarray, other: np.ndarray, from_velocity: bool) -> None:
+        """Start from scaled displacements and velocities, or w."""
+        self.y[:] = 0.0
+        first, second = self.lowered.rows(self.y)
+        first[:], second[:] = displacement, other
         self.elapsed = 0.0
         self.place(from_velocity)
-        if self._adaptive:
-            self.work.scale[0] = max(1e-3, float(np.abs(self.y[1 : row - 1]).max()))
-            self.work.scale[1] = max(1e-3, float(np.abs(self.y[row + 1 : 2 * row - 1]).max()))
+        self.stepper.prepare(self.y)
         self.forget_peaks()
 
     def place(self, from_velocity: bool = False) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
-        theta, slots = 2 * np.pi * self.grid_index / self.grid, self.lowered.slots
-        if slots.tension is not None:  # what the last step left behind
-            slots.tension.slack[:] = 0
-        if self._in_uv:
-            v0 = slots.driver.amplitude * slots.driver.beta * np.cos(theta)
-            naive_motion(slots, slots.driver.amplitude * np.sin(theta), v0, self.y, self.work.k[0], self.work.forces)
-        else:
-            place(slots, theta, self.y, self.work.k[0], self.work.forces, from_velocity)
+        if self.lowered.slots.tension is not None:  # what the last step left behind
+            self.lowered.slots.tension.slack[:] = 0
+        self.stepper.place(2 * np.pi * self.grid_index / self.grid, self.y, from_velocity)
 
     @property
     def state(self) -> State:
         """The present state in SI."""
-        lo, row = self.lowered, self.lowered.row
+        lo = self.lowered
         self.place(from_velocity=False)
-        return State(self.y[1 : row - 1] * lo.scales.length, self.work.k[0, 1 : row - 1] * lo.scales.velocity,
+        return State(lo.rows(self.y)[0] * lo.scales.length, lo.rows(self.stepper.work.k[0])[0] * lo.scales.velocity,
                      self.grid_index / self.grid)
 
     # --- motion --------------------------------------------------------------------------------------------
 
-    def empty_samples(self, rows: int) -> sampling.Samples:
+    def empty_samples(self, rows: int) -> Samples:
         """Arrays for `rows` samples in scaled units."""
-        n = self.lowered.beads
-        energy = np.zeros((rows, 3)) if self.lowered.slots.balance is not None else None
-        return sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)
+        return empty_samples(self.lowered, rows)
 
     @flushed
-    def record(self, count: int) -> sampling.Samples:
+    def record(self, count: int) -> Samples:
         """Advance by `count` samples and keep them, the present one first: count + 1 rows.
 
         Raises `NumbersFailed`, `Cancelled`.
         """
         self._remember()
-        samples, periods = self.empty_samples(count + 1), count / self.samples
-        self.log = new_log(self.log, round(_CLOSINGS * (1.0 + periods) * self.lowered.row))
-        every = self.grid // self.samples
-        lo, work = self.lowered, self.work
-        if self._adaptive:
-            status, rows = self._run(self.method, lo.slots, lo.beta, lo.period, self.y, work, self.clock,
-                                     self.grid_index, count * every, self.grid, every, samples, self.log,
-                                     self.counts.array, self.stop)
-        else:
-            status, rows = sampling.run_samples(self.method, lo.slots, self.drive, self.h, self.y, work,
-                                                self.grid_index, every, samples, self.log, self.counts.array,
-                                                self.stop)
-        self.grid_index = (self.grid_index + count * every) % self.grid
-        raise_for(self, status, max(0, rows - 1) / self.samples, self._before)
-        self.elapsed += count / self.samples
+        stepper, periods = self.stepper, count / self.samples
+        samples = empty_samples(stepper.lowered, count + 1)
+        out = self._output(round(_CLOSINGS * (1.0 + periods) * stepper.lowered.row))
+        status, rows = stepper.samples(self.y, self.grid_index, samples, out)
+        self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid
+        if status != DONE:
+            self.raise_for(status, max(0, rows - 1) / self.samples, self._before)
+        self.elapsed += periods
         return samples
+
+    @flushed
+    def periods(self, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:
+        """Advance by whole periods from phase 0.
+
+        Returns the stroboscopic states (count + 1, 2, N), displacement and velocity in scaled units, and the largest
+        input, output and elastic output force of each period (count, 3); without `watch` the certified method does
+        not look for the forces and they are NaN.
+        """
+        self._remember()
+        stepper = self.stepper
+        strobes, tops = np.zeros((count + 1, 2, stepper.lowered.row)), np.full((count, 3), np.nan)
+        status, done = stepper.periods(self.y, strobes, tops, watch, self._output())
+        if status != DONE:
+            self.raise_for(status, done, self._before)
+        self.elapsed += count
+        return strobes[:, :, 1:-1], tops
+
+    def _output(self, closings: int = 0) -> Output:
+        """A new log with places for so many closings, the counts and the stop flag."""
+        self.log = new_log(self.log, closings)
+        return Output(self.log, self.counts.array, self.stop.flag)
+
+    # --- largest forces ------------------------------------------------------------------------------------
 
     def forget_peaks(self) -> None:
         """Watch for the largest forces afresh."""
@@ -242,44 +176,26 @@ class Engine:
         self.record(periods * self.samples)
         return self.tops
 
-    @flushed
-    def periods(self, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:
-        """Advance by whole periods from phase 0.
+    # --- failures ------------------------------------------------------------------------------------------
 
-        Returns the stroboscopic states (count + 1, 2, N), displacement and velocity in scaled units, and the largest
-        input, output and elastic output force of each period (count, 3); without `watch` the certified method does
-        not look for the forces and they are NaN.
+    def raise_for(self, status: int, done: float, before: Start | None = None) -> None:
+        """Turn the status of a kernel into an outcome, after `done` periods of a call from `before`, if that is known.
+
+        Raises `NumbersFailed`, `Cancelled`.
         """
-        self._remember()
-        self.log = new_log(self.log)
-        strobes, tops = np.zeros((count + 1, 2, self.lowered.row)), np.full((count, 3), np.nan)
-        if self._adaptive:
-            self._certified_periods(strobes, tops, watch)
-        else:
-            status, done = sampling.run_periods(self.method, self.lowered.slots, self.drive, self.h, self.y, self.work,
-                                                strobes, self.log, tops, self.counts.array, self.stop)
-            raise_for(self, status, done, self._before)
-        self.elapsed += count
-        return strobes[:, :, 1:-1], tops
-
-    def _certified_periods(self, strobes: np.ndarray, tops: np.ndarray, watch: bool) -> None:
-        lo, keep, row = self.lowered, self.empty_samples(2), self.lowered.row
-        strobes[0] = self.y[:row], self.work.k[0, :row]
-        for p in range(len(tops)):
-            next_period(self.log.peaks)
-            status, _ = self._run(self.method, lo.slots, lo.beta, lo.period, self.y, self.work, self.clock, 0,
-                                  self.grid, self.grid, self.grid if watch else 0, keep, self.log,
-                                  self.counts.array, self.stop)
-            self.raise_for(status, p)
-            strobes[p + 1] = self.y[:row], self.work.k[0, :row]
-            if watch:
-                tops[p] = self.tops
-
-    def raise_for(self, status: int, done: float) -> None:
-        """Turn the status of a kernel that someone ran with this engine into an outcome, after `done` periods."""
-        raise_for(self, status, done, None)
+        if status == DONE:
+            return
+        found = self.stepper.locate_failure(self.y, before, done) if status == NOT_FINITE else (0, None)
+        raise self._failure(status, done, *found).error
 
     def _remember(self) -> None:
-        """Keep the state from which a failure would have to be searched; one that is there already is said at once."""
-        check_start(self)
-        self._before = self.y.copy(), self.work.k[0].copy(), self.grid_index
+        """Keep where a call begins; a number that is not finite there already is said at once."""
+        stepper = self.stepper
+        bead = not_finite(self.y, stepper.lowered.row)
+        if bead:
+            raise self._failure(NOT_FINITE, 0.0, bead, stepper.step_at(self.grid_index)).error
+        self._before: Start = self.y.copy(), stepper.work.k[0].copy(), self.grid_index
+
+    def _failure(self, status: int, done: float, bead: int, step: int | None) -> Failure:
+        return Failure(status, self.elapsed + done, bead, step, self.counts.by_name, self.lowered.scene,
+                       self.setting.method)

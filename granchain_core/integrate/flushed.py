@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
 from ..kernels.jit import kernel
-from ..kernels.subnormals import flush_subnormals, restore_subnormals
+from ..kernels.simd.subnormals import flush_subnormals, restore_subnormals
 
 P = ParamSpec("P")
 R = TypeVar("R")

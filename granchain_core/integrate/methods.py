@@ -1,39 +1,32 @@
-"""The table of methods: what each is, what it may be used for, how fine it runs for an accuracy."""
+"""The table of methods: what each is, what it may be used for, what it costs, how fine it runs for an accuracy."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..errors import unknown_name
+from ..kernels.equations.velocity_form import Rk4Naive, VerletNaive
+from ..kernels.rk4.step import Rk4, Rk4Split
 from ..lower import Lowered
+from .adaptive import Adaptive
+from .fixed import FixedStep, FixedStepInVelocity
+from .stepper import Stepper
 
+#: Names of the two methods that do the work.
+LIVE, CERTIFIED = "rk4-split", "dop853"
 
-@dataclass(frozen=True)
-class Method:
-    """One way to integrate.
-
-    `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
-    for, `order_with_cut` where tension is cut: only the certified method ends its steps at the force's kink, F = 0. All
-    are measured, the least of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
-    `variables` are "uw" or "uv".
-    """
-
-    name: str
-    title: str
-    order_smooth: float
-    order: float
-    events: bool
-    adaptive: bool
-    symplectic: bool
-    restrictions: str
-    reference: str
-    variables: str = "uw"
-    order_with_cut: float = 1.0
-
-
+#: Above this relative error the live method is the cheaper one (`granchain accuracy sec2` measures it).
+_LIVE_IS_CHEAPER = 1e-10
+#: The live method's relative error at the live step is about that; it falls with the fourth power of the step.
+_LIVE_ERROR = 7e-6
+#: How much larger than as a rule the error is in one random scene of some thousand (`python -m
+#: tests.numerics.honesty`).
+_SPREAD = 8.0
 #: Smallest tolerance of a step that is still followed by a finer one.
 _SMALLEST = 1e-15
 
@@ -49,7 +42,8 @@ class Setting:
     def finer(self) -> Setting:
         """The next finer setting: half the step, or a tolerance so much smaller that the error surely is.
 
-        Error control makes errors uneven: an eighth of the tolerance now and then left as large an error as before.
+        With error control the error does not fall evenly with the tolerance: an eighth of it sometimes left the error
+        unchanged, so the next tolerance is a sixty-fourth.
         """
         if METHODS[self.method].adaptive:
             return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST), self.tolerance / 8.0))
@@ -73,67 +67,136 @@ class Setting:
         return math.ceil(self.refine * lowered.steps_per_period(samples) / samples) * samples
 
 
+@dataclass(frozen=True)
+class StepCost:
+    """Seconds of a step: so much, and so much for each contact; of an accepted one with those it rejects.
+
+    With error control also steps in a unit of scaled time at a tolerance of 1e-8, and the power of the tolerance by
+    which there are more. Measured on section 2's chain and the rig (docs/hard-cases.md).
+    """
+
+    fixed: float
+    each: float
+    rate: float = 0.0
+    power: float = 0.0
+
+
+@dataclass(frozen=True)
+class Method:
+    """One way to integrate.
+
+    `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
+    for, `order_with_cut` where tension is cut: only the certified method ends its steps at the force's kink, F = 0. All
+    are measured, the least of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
+    `stepper` makes what the engine steps with. `usual_error` is the relative error at the live step, or over the
+    tolerance, 0 where none is known; with `even` it falls evenly with the step, contact events or not. `variables` are
+    "uw" or "uv".
+    """
+
+    name: str
+    title: str
+    order_smooth: float
+    order: float
+    events: bool
+    adaptive: bool
+    symplectic: bool
+    restrictions: str
+    reference: str
+    stepper: Callable[[Setting, Lowered, int], Stepper]
+    cost: StepCost
+    usual_error: float = 0.0
+    even: bool = False
+    variables: str = "uw"
+    order_with_cut: float = 1.0
+
+    @property
+    def has_account(self) -> bool:
+        """Whether its equations can have the energy account."""
+        return self.variables == "uw"
+
+
+def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, Lowered, int], Stepper]:
+    """Makes the stepper of a method with fixed steps in (u, w)."""
+    return lambda setting, lowered, samples: FixedStep(kind(setting.steps_per_period(lowered, samples)), lowered,
+                                                       samples, simd)
+
+
+def _in_velocity(kind: Any) -> Callable[[Setting, Lowered, int], Stepper]:
+    """The same in (u, v)."""
+    return lambda setting, lowered, samples: FixedStepInVelocity(kind(setting.steps_per_period(lowered, samples)),
+                                                                 lowered, samples)
+
+
+def _adaptive(setting: Setting, lowered: Lowered, samples: int) -> Stepper:
+    """The stepper of the method with error control."""
+    return Adaptive(setting.tolerance, lowered, samples)
+
+
 METHODS: dict[str, Method] = {
     m.name: m
     for m in (
         Method("rk4", "RK4 in w", 4.0, 2.0, False, False, False, "fixed step; order 2 at contact events; a touch "
                "shorter than a step is not resolved, its jump read off the step's ends",
-               "Kutta 1901; w-variables: docs/model.md"),
-        Method("rk4-split", "RK4 in w, steps split at contact events, what Simpson's rule misses there given back", 4.0,
+               "Kutta 1901; w-variables: docs/model.md", _fixed(Rk4), StepCost(350e-9, 35e-9)),
+        Method(LIVE, "RK4 in w, steps split at contact events, quadrature corrected there", 4.0,
                3.9, True, False, False, "fixed step; order 3.5 below errors of about 1e-9; with more than 30 beads two "
                "changes of one contact inside a step are not seen",
-               "Kutta 1901; w-variables and events: docs/model.md"),
+               "Kutta 1901; w-variables and events: docs/model.md", _fixed(Rk4Split, simd=True),
+               StepCost(450e-9, 45e-9), usual_error=_LIVE_ERROR, even=True),
         Method("rk4-naive", "RK4 in (u, v), as one would write it first", 4.0, 1.0, False, False, False,
                "no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
-               "Kutta 1901", "uv"),
+               "Kutta 1901", _in_velocity(Rk4Naive), StepCost(120e-9, 40e-9), variables="uv"),
         Method("verlet-naive", "velocity Verlet in (u, v), as one would write it first", 1.0, 1.0, False, False, True,
                "no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
-               "Verlet 1967; Swope et al. 1982", "uv"),
-        Method("dopri5", "Dormand–Prince 5 in w, error control without events", 5.4, 4.0, False, True, False,
-               "a contact that opens and closes within a step is not resolved; its jump is read off the step's ends",
-               "Dormand & Prince 1980; Hairer, Nørsett & Wanner 1993, section II.5"),
-        Method("dop853", "Dormand–Prince 8 in w, contact events located", 8.5, 7.5, True, True, False,
-               "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5", order_with_cut=7.5),
+               "Verlet 1967; Swope et al. 1982", _in_velocity(VerletNaive), StepCost(80e-9, 12e-9), variables="uv"),
+        Method(CERTIFIED, "Dormand–Prince 8 in w, contact events located", 8.5, 7.5, True, True, False,
+               "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5", _adaptive,
+               StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
     )
 }
 
-#: Above this relative error the live method is the cheaper one; its error at the live step is about that below, and
-#: falls with the fourth power of the step (`granchain accuracy sec2` measures both).
-_LIVE_IS_CHEAPER, _LIVE_ERROR = 1e-10, 7e-6
-#: How much larger than as a rule the error is in one random scene of some thousand (`python -m
-#: tests.numerics.honesty`).
-_SPREAD = 8.0
 #: A largest force stands at a jump if the largest jump is at least this part of it.
 AT_A_JUMP = 0.95
-#: Simpson's rule gives 0.0024 h^{5/2} too much of ∫ s^{3/2} over the step behind an onset; several contacts may do so.
+#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step behind an onset, for several contacts.
 _JUMP = 0.01
 #: Coarsest steps for one of the live method's.
 _COARSEST = 0.5
 
 
+def live(refine: float = 1) -> Setting:
+    """The live method with `refine` times the live steps."""
+    return Setting(LIVE, refine)
+
+
+def certified(tolerance: float = 0.0) -> Setting:
+    """The certified method at a relative tolerance per step."""
+    return Setting(CERTIFIED, tolerance=tolerance)
+
+
 def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
     if accuracy >= _LIVE_IS_CHEAPER and not tension_cut:  # with a cut it is of order 1
-        return Setting("rk4-split", refine=max(_COARSEST, (_LIVE_ERROR / accuracy) ** 0.25))
-    return Setting("dop853", tolerance=min(1e-3, 0.1 * accuracy))
+        return live(max(_COARSEST, (_LIVE_ERROR / accuracy) ** 0.25))
+    return certified(min(1e-3, 0.1 * accuracy))
 
 
 def typical_error(setting: Setting) -> float:
     """The relative error that few scenes exceed with this setting; 0 for methods of which none is known."""
-    if METHODS[setting.method].adaptive:
-        return _SPREAD * setting.tolerance
-    return _SPREAD * _LIVE_ERROR / setting.refine**4 if setting.method == "rk4-split" else 0.0
+    method = METHODS[setting.method]
+    if method.adaptive:
+        return _SPREAD * method.usual_error * setting.tolerance
+    return _SPREAD * method.usual_error / setting.refine**method.order_smooth
 
 
 def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndarray, tops: np.ndarray) -> np.ndarray:
-    """What the relative errors (3,) of the largest forces are at least, where they stand at jumps (2,) [scaled].
+    """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,) [scaled].
 
-    What Simpson's rule gives too much behind an onset is taken back at the end of a split step, for the next two steps
-    too. Where another contact closes meanwhile, its rate is off by a part of K v^{3/2} h^{5/2} (events.py), v being the
-    speeds, of either sign from one step size to the next: the difference of two computations does not bound it.
+    The quadrature error behind an onset is subtracted at the end of the split step and of the next two steps. If
+    another contact closes in between, its rate is off by a part of K v^{3/2} h^{5/2} (contact_events.py), with v the
+    approach speeds. Its sign changes with the step size, so the difference of two computations does not bound it.
     """
     least = np.zeros(3)
-    if setting.method == "rk4-split" and lowered.slots.dissipation is not None:
+    if setting.method == LIVE and lowered.slots.dissipation is not None:
         chain, step = lowered.slots.chain, lowered.period / setting.steps_per_period(lowered, samples)
         speeds = np.sqrt(jumps / lowered.slots.dissipation.coefficient)
         at_jump = jumps > AT_A_JUMP * tops[:2]

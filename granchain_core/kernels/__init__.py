@@ -1,0 +1,1 @@
+"""Everything Numba compiles: effects, equations, methods."""

@@ -51,7 +51,7 @@ def cache_folder() -> Path:
 CACHE_FOLDER = cache_folder()
 
 
-def inlined(function):
+def inline_llvm(function):
     """Decorator for what belongs into its caller's code: values that stay in registers."""
     return numba.njit(nogil=True, forceinline=True, **_OPTIONS)(function)
 
@@ -66,7 +66,7 @@ def kernel(function):
         numba.config.CACHE_DIR = before
 
 
-def part(function):
+def inline_numba(function):
     """Decorator for a kernel called at one place: it becomes part of that code, and is not compiled for itself as well.
 
     Compiled code is linked and optimised again in every caller, up to the kernel that Python calls; of a step of the
@@ -75,29 +75,40 @@ def part(function):
     return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
 
 
-def term(absent, forceinline=False):
+#: Every function made by `by_slot`, with the code it has for each slot class.
+_TERMS: list[Any] = []
+#: Slot classes for which the SIMD kernels have code.
+_IN_SIMD_KERNELS: set[type] = set()
+
+
+def by_slot(absent, forceinline=False):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 
-    The decorated function is the code for an absent effect (slot None). `function.of(Slot)` registers the code
-    for slots of the NamedTuple class `Slot`. An absent effect leaves no code behind, in no caller.
+    The decorated function is the code for an absent effect (slot None). `function.of(Slot, …)` registers the code
+    for slots of these NamedTuple classes. An absent effect leaves no code behind, in no caller. A slot without code
+    is a TypeError that names slot and function, in Python and while a kernel is typed.
     """
     implementations = {type(None): absent}
 
+    def chosen(slot_class):
+        if slot_class not in implementations:
+            raise TypeError(_missing(slot_class, [generic]))
+        return implementations[slot_class]
+
     def generic(*args):
-        return implementations[type(args[0])](*args)
+        return chosen(type(args[0]))(*args)
 
     generic.__name__ = generic.__qualname__ = absent.__name__
-    generic.__doc__ = absent.__doc__
+    generic.__doc__, generic.__module__ = absent.__doc__, absent.__module__
 
     @overload(generic, strict=False, jit_options=_OPTIONS | {"forceinline": forceinline})
     def _typed(*args):
         slot = args[0]
-        found = slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)
-        return implementations[found]
+        return chosen(slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None))
 
-    def of(slot_class):
+    def of(*slot_classes):
         def register(implementation):
-            implementations[slot_class] = implementation
+            implementations.update(dict.fromkeys(slot_classes, implementation))
             return implementation
 
         return register
@@ -106,10 +117,47 @@ def term(absent, forceinline=False):
         """Let slots of these classes be as good as absent to this function."""
         implementations.update(dict.fromkeys(slot_classes, absent))
 
-    generic.of, generic.absent_for = of, absent_for
+    generic.of, generic.absent_for, generic.implementations = of, absent_for, implementations
+    _TERMS.append(generic)
     return generic
 
 
-def inlined_term(absent):
+def by_slot_inlined(absent):
     """A term that becomes part of its caller's code: for one that takes many arguments and is called at each step."""
-    return term(absent, forceinline=True)
+    return by_slot(absent, forceinline=True)
+
+
+def in_simd_kernels(slot_class):
+    """Class decorator for slots that the SIMD kernels know; a chain with another one is left to the scalar kernels."""
+    _IN_SIMD_KERNELS.add(slot_class)
+    return slot_class
+
+
+def all_in_simd_kernels(slots):
+    """Whether the SIMD kernels know every effect that is present in these slots."""
+    return all(slot is None or type(slot) in _IN_SIMD_KERNELS for slot in slots)
+
+
+def require_terms(slot_class, *terms):
+    """Check that all these functions have code for a slot class; TypeError with the names of those that have none."""
+    missing = [term for term in terms if slot_class not in term.implementations]
+    if missing:
+        raise TypeError(_missing(slot_class, missing))
+
+
+def check_effects(package):
+    """Check the effects in the modules of a package: a slot has code for every term of the module it stands in.
+
+    Called when the effects have been imported. TypeError names the first slot with what it lacks.
+    """
+    for module in sorted({term.__module__ for term in _TERMS if term.__module__.startswith(package)}):
+        terms = [term for term in _TERMS if term.__module__ == module]
+        slots = dict.fromkeys(slot for term in terms for slot in term.implementations if slot.__module__ == module)
+        for slot_class in slots:
+            require_terms(slot_class, *terms)
+
+
+def _missing(slot_class, terms):
+    names = ", ".join(f"`{term.__name__}`" for term in terms)
+    return (f"{slot_class.__name__} ({slot_class.__module__}) has no {names}: register its code with "
+            f"@{terms[0].__name__}.of({slot_class.__name__}).")

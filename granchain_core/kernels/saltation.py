@@ -4,7 +4,7 @@ Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + λ_{i-1} δδ̇_{i-
 Saltation  at the onset of contact c   δv_c −= (λ/m_c) δδ_c,   δv_{c+1} += (λ/m_{c+1}) δδ_c,   at release the reverse:
            the velocity of neighbouring motions changes its slope there at another time than that of this one
 Source     saltation matrices: Leine & Nijmeijer 2004, chapter 7; for this force they are constant shears
-Use        a check of kernels/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
+Use        a check of equations/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
            Liouville's formula cannot see whether it is there; the columns do. Linear dashpot or no damping.
 """
 
@@ -15,15 +15,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .dop853_tableau import STAGES, A, C
+from .dop853.event_step import keep_gaps
+from .dop853.flow import jump
+from .dop853.tableau import STAGES, A, C
+from .dop853.time_map import rate_at
 from .effects.contact import positive_part
 from .effects.dissipation import damping
 from .effects.foundation import foundation_pull
-from .flow import jump
-from .flow_step import keep_gaps
-from .jit import part
-from .root_time import rate_at
-from .tangent import carry, stage_gaps
+from .equations.tangent import carry, stage_gaps
+from .jit import inline_numba
 
 
 class VelocityTangent(NamedTuple):
@@ -44,7 +44,7 @@ def _(tangent, slots, state, stage):
     stage_gaps(slots, state, stage, tangent.gaps)
 
 
-@part
+@inline_numba
 def velocity_slope(slots, rate, gaps, closed, T, out):
     """Slope of all columns T at one stage, times dt/dx."""
     n, columns = T.shape[0] // 2, T.shape[1]

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..scene import scene
+from ..stop import Stop
 from .twin import Twin, twin
 
 #: What the observer is off by at first: small enough for many periods of linear growth.
@@ -45,7 +46,7 @@ class Figure11:
 
 
 def figure_11(frequencies: tuple[float, ...] = (100.0, 200.0), periods: int = 40, perturbation: float = PERTURBATION,
-              stop: np.ndarray | None = None) -> tuple[Figure11, ...]:
+              stop: Stop | None = None) -> tuple[Figure11, ...]:
     """The figure's two rows (κ = 0, then 0.001) at every frequency."""
     found = []
     for frequency in frequencies:

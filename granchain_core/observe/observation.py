@@ -18,9 +18,11 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import State
-from ..integrate.engine import new_stop, rest
+from ..integrate.methods import LIVE
 from ..result import Cost
 from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
 
@@ -46,11 +48,39 @@ class Residual:
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """The motion of an observer at every sample (T,) of its input: displacement, velocity (T, N), force (T, N + 1), SI.
+    """The motion of an observer at the T samples of its input, in SI.
 
-    Column 0 of `force` is the input force. Errors are largest differences of any displacement over the largest
-    displacement: `integration_error` of the steps, `interpolation_error` of what is between the samples, and their sum.
-    `residual` compares with the measured output force, `residual_elastic` the elastic part with it.
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    record : ForceRecord
+        The input.
+    displacement, velocity : numpy.ndarray, shape (T, N)
+        [m] and [m/s].
+    force : numpy.ndarray, shape (T, N + 1)
+        Forces of the contacts [N]; column 0 is the input.
+    max_output_force, max_output_force_elastic : float
+        Largest force on the wall and its elastic part [N].
+    integration_error, interpolation_error : float
+        Relative errors of the displacements, by the steps and by what is between the samples; `error_estimate` is
+        their sum.
+    status : str
+        "done" or "accuracy-not-reached".
+    cost : Cost
+        What it took.
+    residual, residual_elastic : Residual or None
+        Difference from the measured output force, of the total and of the elastic force: `rms`, `largest` [N],
+        `relative`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from granchain_core import observe, scene
+    >>> time = np.linspace(0.0, 1e-3, 65)
+    >>> found = observe(scene("sec2").evolve(N=2), time, np.sin(np.pi * time / 1e-3) ** 2)
+    >>> found.time.shape, found.force.shape
+    ((65,), (65, 3))
     """
 
     scene: Scene
@@ -94,14 +124,57 @@ class Observation:
 
 
 def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,
-            offset: float | str = 0.0, gap: str = "refuse", stop: np.ndarray | None = None,
+            offset: float | str = 0.0, gap: str = "refuse", stop: Stop | None = None,
             progress: Callable[[float], None] | None = None) -> Observation:
-    """The chain of `scene` pushed by a force given at times [s] in N; or `time` is a `ForceRecord` that was read.
+    """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
 
-    `output` is a measured output force at the same times. The chain begins at rest or in `start`. `offset` [N] or
-    "median" is subtracted from the force; `gap` says what a gap is ("refuse", "zero", "interpolate"). Status is "done",
-    or "accuracy-not-reached" for an observer that amplifies every error.
-    Raises `BadInput`, `NumbersFailed`, `Cancelled`.
+    The motion is computed with halved steps until two computations agree, and once from every second sample, which
+    bounds what is lost between the samples (docs/observers.md).
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its driver is left out.
+    time : array_like, shape (T,), or ForceRecord
+        Times of the samples [s], ascending; or a record that was read from a file.
+    force : array_like, shape (T,)
+        Force on bead 1 [N].
+    output : array_like, shape (T,), optional
+        Measured output force at the same times [N], to compare with.
+    start : State, optional
+        Where the chain begins; at rest if not given.
+    offset : float or "median"
+        Subtracted from the force [N].
+    gap : str
+        What is done with a gap in the record: "refuse", "zero" or "interpolate".
+    stop : Stop, optional
+        A byte that another thread sets to 1 to end the computation.
+    progress : callable, optional
+        Called with the part that is done, 0 to 1.
+
+    Returns
+    -------
+    Observation
+        The motion at every sample. Its `status` is "done", or "accuracy-not-reached" for an observer that magnifies
+        every error.
+
+    Raises
+    ------
+    BadInput
+        The arrays do not fit together, times do not ascend, or there is a gap.
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import observe, run, scene
+    >>> chain = scene("sec2").evolve(N=2, f=2000.0)
+    >>> true = run(chain, periods=0, record=4, samples=256)
+    >>> found = observe(chain, true.time, true.input_force, true.output_force)
+    >>> found.displacement.shape, found.residual.relative < 0.05
+    ((1025, 2), True)
     """
     record = time if isinstance(time, ForceRecord) else force_record(time, force, output)
     record = prepared(record, scene, offset, gap)
@@ -109,9 +182,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_VALUES:.0e} values; "
                        f"give at most {MOST_VALUES // scene.N} samples.")
     began = clock.perf_counter()
-    flag = new_stop() if stop is None else stop
+    stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else start
-    chain = PushedChain(scene, record, flag)
+    chain = PushedChain(scene, record, stop)
     before, halvings = chain.run(begin, 0), 0
     while True:
         halvings += 1
@@ -123,7 +196,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
             break
         before = now
     thin = record.thinned()
-    coarse = PushedChain(scene, thin, flag, chain.counts).run(begin, halvings)
+    coarse = PushedChain(scene, thin, stop, chain.counts).run(begin, halvings)
     kept = np.searchsorted(record.time, thin.time)
     tops, scales = chain.tops, chain.lowered.scales
     displacement = now.displacement * scales.length
@@ -138,7 +211,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         integration_error=integration,
         interpolation_error=_UNEVEN * _difference(now.displacement[kept], coarse.displacement),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",
-        cost=Cost.of(clock.perf_counter() - began, chain.counts, "rk4-split"),
+        cost=Cost.of(clock.perf_counter() - began, chain.counts, LIVE),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )
 

@@ -11,14 +11,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
+from ..integrate import Engine, State, certified
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import FAR
+from ..kernels.effects.given_force import ObserverCoupling
 from ..kernels.effects.preload import Preload
-from ..kernels.effects.pushed import Echo
-from ..kernels.sampling import Samples
+from ..kernels.samples import Samples
 from ..lower import Lowered, lower
 from ..scene import Scene
+from ..stop import Stop
 
 #: Tolerance of one step, relative to the largest displacement and w: the pair is then followed to about 1e-11.
 TOLERANCE = 1e-13
@@ -35,7 +36,7 @@ def lower_pair(scene: Scene) -> Lowered:
     slots = one.slots._replace(
         chain=Chain(np.concatenate([mass, mass[1:]]), np.concatenate([stiffness, [0.0], stiffness[1:]])),
         preload=Preload(np.concatenate([static, [-FAR], static[1:]])),
-        driver=Echo(1.0, one.beta, scene.N + 1),
+        driver=ObserverCoupling(1.0, one.beta, scene.N + 1),
     )
     return replace(one, slots=slots)
 
@@ -46,9 +47,9 @@ class Pair:
     Both go through the same arithmetic: an observer that starts where its chain is stays there to the last bit.
     """
 
-    def __init__(self, scene: Scene, samples: int, stop: np.ndarray | None = None) -> None:
+    def __init__(self, scene: Scene, samples: int, stop: Stop | None = None) -> None:
         self.scene = scene
-        self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop,
+        self.engine = Engine(scene, certified(TOLERANCE), samples, stop=stop,
                              lowered=lower_pair(scene))
 
     def start(self, chain: State, observer: State) -> None:

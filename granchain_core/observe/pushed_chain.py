@@ -7,18 +7,19 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..integrate import State
-from ..integrate.engine import Counts
-from ..kernels import sampling
-from ..kernels.effects.pushed import Sampled
-from ..kernels.events import ENDS
-from ..kernels.fixed_step import Rk4Split, Stages
-from ..kernels.largest_forces import new_log
-from ..kernels.motion import place
-from ..kernels.observed import run_observed
-from ..kernels.peaks import MEMORY, ROWS, forget
+from ..integrate import Counts, State
+from ..kernels.effects.given_force import Sampled
+from ..kernels.equations.motion import place
+from ..kernels.forces.largest import new_log
+from ..kernels.forces.peaks import MEMORY, ROWS, forget
+from ..kernels.rk4.contact_events import ENDS
+from ..kernels.rk4.observed import run_observed
+from ..kernels.rk4.step import Rk4Split, Stages
+from ..kernels.samples import Samples, first_not_finite
+from ..kernels.status import CANCELLED, NOT_FINITE
 from ..lower import lower
 from ..scene import Scene
+from ..stop import Stop
 from .record import ForceRecord
 
 #: More steps than this are refused: minutes of computing.
@@ -28,7 +29,7 @@ MOST_STEPS = 200_000_000
 class PushedChain:
     """A scene's chain without its driver, pushed by a record's force; `counts` adds up over its runs."""
 
-    def __init__(self, scene: Scene, record: ForceRecord, stop: np.ndarray, counts: Counts | None = None) -> None:
+    def __init__(self, scene: Scene, record: ForceRecord, stop: Stop, counts: Counts | None = None) -> None:
         driven = lower(scene)
         self.lowered = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
         self.record = record
@@ -47,8 +48,8 @@ class PushedChain:
         """Largest input, output and elastic output force of the last run, in scaled units."""
         return self._log.peaks[:MEMORY:ROWS].copy()
 
-    def run(self, start: State, halvings: int) -> sampling.Samples:
-        """The motion from `start` in steps halved so many times; one row a sample, in scaled units."""
+    def run(self, start: State, halvings: int) -> Samples:
+        """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
         lo, n, row = self.lowered, self.lowered.beads, self.lowered.row
         if len(start.displacement) != n:
             raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
@@ -57,21 +58,21 @@ class PushedChain:
             raise BadInput(f"The record needs {float(substeps.sum()):.1e} steps; at most {MOST_STEPS:.0e} are allowed: "
                            "give a shorter record or ask for less accuracy.")
         y = np.zeros(lo.size)
-        y[1 : row - 1] = start.displacement / lo.scales.length
-        y[row + 1 : 2 * row - 1] = start.velocity / lo.scales.velocity
+        displacement, velocity = lo.rows(y)
+        displacement[:], velocity[:] = start.displacement / lo.scales.length, start.velocity / lo.scales.velocity
         stages = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), np.zeros((ENDS, row - 1)),
                         lo.forces(), None)
         lo.slots.driver.piece[:] = self._pieces[0]
         place(lo.slots, 0.0, y, stages.k[0], stages.forces, True)
         forget(self._log.peaks)
         rows = len(self._spans) + 1
-        samples = sampling.Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
+        samples = Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
         status, done = run_observed(Rk4Split(0), lo.slots, self._spans, self._pieces, substeps, y, stages,
-                                    np.zeros((0, 2)), samples, self._log, self.counts.array, self._stop)
-        if status == sampling.CANCELLED:
+                                    np.zeros((0, 2)), samples, self._log, self.counts.array, self._stop.flag)
+        if status == CANCELLED:
             raise Cancelled
-        if status == sampling.NOT_FINITE:
-            bead = max(1, sampling.first_not_finite(y, row))
+        if status == NOT_FINITE:
+            bead = max(1, first_not_finite(y, row))
             raise NumbersFailed(f"The motion of bead {bead} stopped being a finite number at about "
                                 f"{self.record.time[done - 1]:.6g} s; look at the force there, or lower the damping.",
                                 "not-finite")

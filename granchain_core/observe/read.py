@@ -1,7 +1,7 @@
 """A measured force from a file: strict CSV with time and force, or HDF5 as granchain writes it.
 
 CSV columns: time, force and, if there is one, output force; a header may name the units (time_ms, force_mN), else they
-are what the caller says, seconds and newtons where nothing is said.
+are the caller's, or seconds and newtons by default.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ import numpy as np
 from ..errors import BadInput
 from ..scene import Scene
 
-#: A spacing so many times the usual (median) one is a gap.
+#: A spacing of more than this factor times the median one is a gap.
 GAP = 1.5
 #: What may be done with gaps: refuse them, take the force as zero in them, or draw the cubic across.
 GAPS = ("refuse", "zero", "interpolate")

@@ -16,6 +16,7 @@ import numpy as np
 from ..errors import BadInput, NumbersFailed
 from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
+from ..stop import Stop
 
 #: A crossing is located to this part of the distance between the two values it lies between.
 LOCATED = 1e-3
@@ -63,7 +64,7 @@ class ObserverStability:
 
 
 def observer_stability(scene: Scene, knob: str, values: Sequence[float], period: int | None = None,
-                       stop: np.ndarray | None = None) -> ObserverStability:
+                       stop: Stop | None = None) -> ObserverStability:
     """Largest observer multiplier of `scene` with `knob` (kappa, k, D, f, A0, F0) at each of `values`.
 
     `period` of the orbit in drive periods; else that of the steady state at the first value. Raises `BadInput`.
@@ -91,7 +92,7 @@ def observer_stability(scene: Scene, knob: str, values: Sequence[float], period:
 
 
 def _follow(scene: Scene, before: Orbit | None, period: int | None,
-            stop: np.ndarray | None) -> tuple[Orbit | None, str]:
+            stop: Stop | None) -> tuple[Orbit | None, str]:
     """The orbit nearest to the one before, else the one reached from rest, else none and why."""
     if before is not None:
         try:
@@ -111,7 +112,7 @@ def _point(value: float, orbit: Orbit | None, failure: str) -> ObserverPoint:
 
 
 def _locate(scene: Scene, knob: str, a: ObserverPoint, b: ObserverPoint, orbit: Orbit,
-            stop: np.ndarray | None) -> Threshold:
+            stop: Stop | None) -> Threshold:
     """Bisection of a crossing, the orbit followed to every middle."""
     low, high, stable_at_low = a.value, b.value, a.observer_largest < 1.0
     while abs(high - low) > LOCATED * abs(b.value - a.value):

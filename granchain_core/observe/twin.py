@@ -15,10 +15,12 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import State
+from ..integrate.methods import CERTIFIED
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
 from ..steady.settle import settle
+from ..stop import Stop
 from .pair import Pair
 
 #: Distances between these are small enough to be linear and large enough not to be rounding.
@@ -109,7 +111,7 @@ class Twin:
 
 
 def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,
-         stop: np.ndarray | None = None) -> Twin:
+         stop: Stop | None = None) -> Twin:
     """Chain and observer of `scene` over `periods` drive periods, `samples` samples each, or until they are in step.
 
     The chain starts on its settled orbit. `perturbation` is the observer's first distance: a number moves its beads at
@@ -139,7 +141,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
         observer_output_force=force[:, -1] * scales.force, distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
         translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
-        cost=Cost.of(time.perf_counter() - began, pair.engine.counts, "dop853"),
+        cost=Cost.of(time.perf_counter() - began, pair.engine.counts, CERTIFIED),
     )
 
 

@@ -1,12 +1,12 @@
 """Periodic orbits as fixed points of the stroboscopic map, their stability, and branches of them."""
 
-from .branch import Branch, Continuation, begin_branch, continue_branch
-from .branch_axis import CONTINUOUS, KnobAxis
-from .branch_check import check_branch
-from .branch_point import BranchPoint
-from .branch_special import SpecialPoint
-from .branch_switch import switch_to_doubled
-from .branch_walk import Arm
+from .branch.axis import CONTINUOUS, KnobAxis
+from .branch.branch import Branch, Continuation, begin_branch, continue_branch
+from .branch.check import check_branch
+from .branch.point import BranchPoint
+from .branch.special import SpecialPoint
+from .branch.switch import switch_to_doubled
+from .branch.walk import Arm
 from .orbit import Orbit, periodic_orbit, random_state
 from .response import Response, response
 

@@ -7,16 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import Engine, Setting
-from ..kernels.dop853_tableau import STAGES
+from ..integrate import Engine, certified
+from ..kernels.dop853.event_step import Path
+from ..kernels.dop853.flow import run_flow
+from ..kernels.dop853.tableau import STAGES
+from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
-from ..kernels.flow import run_flow
-from ..kernels.flow_step import Path
+from ..kernels.equations.tangent import Tangent
 from ..kernels.saltation import VelocityTangent
-from ..kernels.simd import LANES, aligned
-from ..kernels.tangent import Tangent
+from ..kernels.simd.vector import LANES, aligned
 from ..lower import Lowered
 from ..scene import Scene
+from ..stop import Stop
 
 #: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
 TOLERANCE = 1e-13
@@ -52,18 +54,19 @@ class StroboscopicMap:
     Raises `BadInput` for a scene that cuts tension: it knows contacts that are open and contacts that press.
     """
 
-    def __init__(self, scene: Scene, periods: int, stop: np.ndarray | None = None) -> None:
+    def __init__(self, scene: Scene, periods: int, stop: Stop | None = None) -> None:
         refuse_cut(scene)
-        self.engine = Engine(scene, Setting("dop853", tolerance=TOLERANCE), 1, stop=stop)
+        self.engine = Engine(scene, certified(TOLERANCE), 1, stop=stop)
         self.periods = periods
         row = self.engine.lowered.row
         self._path = Path(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
                           np.zeros((_EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))
+        held = self.engine.stepper.work.forces._replace(held=Held(self._path.closed))
+        self._work = self.engine.stepper.work._replace(forces=held)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
-        row = self.engine.lowered.row
-        return np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
+        return self.engine.lowered.beads_of(y)
 
     def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
         """The flow from x with the derivative, or its product with the columns of `directions` (2N, columns).
@@ -108,10 +111,10 @@ class StroboscopicMap:
         engine = self.engine
         engine.start_scaled(x)
         lo = engine.lowered
-        engine.clock[0] = min(0.1, lo.period / STAGES)
-        status, done, trace = run_flow(engine.method, lo.slots, lo.beta, lo.period, self.periods, engine.y,
-                                       engine.work, self._path, engine.clock, tangent, engine.counts.array,
-                                       engine.stop)
+        engine.stepper.clock[0] = min(0.1, lo.period / STAGES)
+        status, done, trace = run_flow(engine.stepper.method, lo.slots, lo.beta, lo.period, self.periods, engine.y,
+                                       self._work, self._path, engine.stepper.clock, tangent, engine.counts.array,
+                                       engine.stop.flag)
         engine.raise_for(status, done)
         return float(trace)
 

@@ -17,9 +17,9 @@ import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
 from ..errors import BadInput, NumbersFailed
-from ..integrate import Engine, Setting
-from ..integrate.lane_block import scaled_state
+from ..integrate import Engine, certified
 from ..steady.poincare import Section
+from ..stop import Stop
 from .flow import TOLERANCE, StroboscopicMap
 from .krylov import derivative_at
 from .orbit import DENSE, Orbit
@@ -45,7 +45,7 @@ class Mode:
     closure: float
 
 
-def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: np.ndarray | None = None) -> Mode:
+def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = None) -> Mode:
     """The mode of the multiplier at place `rank` by modulus; of a complex pair the one with positive imaginary part.
 
     Raises `BadInput` for a rank that is not there, `NumbersFailed`, `Cancelled`.
@@ -54,7 +54,7 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: np.ndarray | None
         raise BadInput(f"mode {rank} is outside 0 to {len(orbit.multipliers) - 1}; the nearest valid value is "
                        f"{min(max(rank, 0), len(orbit.multipliers) - 1)}.")
     strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
     value, vector = _eigenpair(strobe, x, rank)
     if value.imag < 0.0:
         value, vector = value.conjugate(), vector.conj()
@@ -90,23 +90,23 @@ def leading_pairs(strobe: StroboscopicMap, x: np.ndarray, count: int) -> tuple[n
 
 
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
-             stop: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+             stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
     """δu (n·samples + 1, N) and δx (2N,) at the end that start as `direction`, as a central difference."""
-    engine = Engine(orbit.scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop)
-    row, ways = engine.lowered.row, []
+    engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
+    ways = []
     for sign in (1.0, -1.0):
         engine.start_scaled(x + sign * size * direction)
         record = engine.record(orbit.period * samples)
-        ways.append((record.displacement, np.concatenate([engine.y[1 : row - 1], engine.y[row + 1 : 2 * row - 1]])))
+        ways.append((record.displacement, engine.lowered.beads_of(engine.y)))
     (u_plus, x_plus), (u_minus, x_minus) = ways
     return (u_plus - u_minus) / (2.0 * size), (x_plus - x_minus) / (2.0 * size)
 
 
-def orbit_section(orbit: Orbit, samples: int = 48, stop: np.ndarray | None = None) -> Section:
+def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
     """The orbit's own n points at every phase, by the certified method: n periods of an unstable orbit stay on it."""
     strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
-    engine = Engine(orbit.scene, Setting("dop853", tolerance=TOLERANCE), samples, stop=stop)
-    engine.start_scaled(strobe.inner(scaled_state(strobe.engine.lowered, orbit.state)))
+    engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
+    engine.start_scaled(strobe.inner(strobe.engine.lowered.scaled(orbit.state)))
     record, scales = engine.record(orbit.period * samples), engine.lowered.scales
     shape = (orbit.period, samples, -1)
     return Section(orbit.scene, record.displacement[:-1].reshape(shape) * scales.length,

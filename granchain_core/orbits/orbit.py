@@ -14,11 +14,11 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import State
-from ..integrate.lane_block import scaled_state, state_of
 from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settle import settle
+from ..stop import Stop
 from .flow import Flow, StroboscopicMap, refuse_cut
 from .krylov import leading_multipliers, newton_step
 
@@ -34,13 +34,36 @@ _MOST_HALVINGS = 6
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic orbit of `period` drive periods through `state` at phase 0.
+    """A periodic orbit with its Floquet multipliers.
 
-    `residual` is the map's remaining change over the state's largest entry, `newton_residuals` its history.
-    `multipliers` (2N,) are sorted by modulus, largest first; of chains of more than `DENSE` beads they are the leading
-    ones. `liouville` is the difference between the logarithm of their product and ∫ trace, relative to the latter;
-    None where not all are known, or where the smallest are mere rounding. `changes` are the contact events along the
-    orbit, as in `Flow`.
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    period : int
+        In drive periods.
+    state : State
+        Where the orbit is at drive phase 0.
+    residual : float
+        What the map still changes, over the state's largest entry.
+    newton_residuals : tuple of float
+        Its history.
+    multipliers : numpy.ndarray of complex, shape (2N,)
+        Sorted by modulus, largest first; of more than 100 beads the leading ones only.
+    liouville : float or None
+        Difference between the logarithm of their product and ∫ trace, relative to the latter; None where not all are
+        known or the smallest are rounding.
+    changes : numpy.ndarray
+        Contact events along the orbit.
+    observer_multipliers : numpy.ndarray of complex or None
+        Those of the observer of model (4), where they were asked for.
+
+    Examples
+    --------
+    >>> from granchain_core import orbit, scene
+    >>> found = orbit(scene("sec2").evolve(N=2, f=2000.0))
+    >>> found.multipliers.shape, found.stable
+    ((4,), True)
     """
 
     scene: Scene
@@ -67,11 +90,46 @@ class Orbit:
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
-                   stop: np.ndarray | None = None) -> Orbit:
-    """The orbit nearest to `start`, or to the steady state from rest; `period` in drive periods, else the settled one.
+                   stop: Stop | None = None) -> Orbit:
+    """A periodic orbit by Newton's method on the stroboscopic map, stable or not. Also called `orbit`.
 
-    Raises `BadInput` for a period out of range, `NumbersFailed` with the residual history where Newton's method does
-    not converge, and `Cancelled`.
+    Its Floquet multipliers are the eigenvalues of the map's derivative, computed with the orbit (docs/orbits.md).
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its tension must not be cut.
+    period : int, optional
+        In drive periods; the steady state's if not given.
+    start : State, optional
+        Newton's method begins here; in the steady state reached from rest if not given.
+    observer : bool
+        Whether to compute the multipliers of the observer, model (4) of Zhang et al. 2016.
+    stop : Stop, optional
+        A byte that another thread sets to 1 to end the computation.
+
+    Returns
+    -------
+    Orbit
+        The orbit that was found.
+
+    Raises
+    ------
+    BadInput
+        The period is out of range, or the scene cuts tension.
+    NumbersFailed
+        Newton's method did not converge; the message has its residuals.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import orbit, scene
+    >>> found = orbit(scene("sec2").evolve(N=2, f=2000.0))
+    >>> found.period, found.residual < 1e-10
+    (1, True)
+    >>> bool(abs(found.multipliers[0]) < 1.0)
+    True
     """
     if period is not None and not 1 <= period <= LONGEST_PERIOD:
         raise BadInput(f"period {period} is outside 1 to {LONGEST_PERIOD}; the nearest valid value is "
@@ -84,7 +142,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
         start = way.engine.state
     n = n or 1
     strobe = StroboscopicMap(scene, n, stop)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, start))
+    x = strobe.inner(strobe.engine.lowered.scaled(start))
     x, flow, history = _newton(strobe, x)
     return _orbit(scene, n, strobe, x, flow, history, observer)
 
@@ -156,11 +214,9 @@ def _orbit(scene: Scene, n: int, strobe: StroboscopicMap, x: np.ndarray, flow: F
     else:
         multipliers = leading_multipliers(strobe, x)
         watched = leading_multipliers(strobe, x, observer=True) if observer else None
-    lowered, beads = strobe.engine.lowered, scene.N
-    y = np.zeros(2 * lowered.row)
-    y[1 : beads + 1], y[lowered.row + 1 : lowered.row + beads + 1] = x[:beads], x[beads:]
-    return Orbit(scene, n, state_of(lowered, y), history[-1], tuple(history), multipliers, liouville, flow.changes,
-                 watched)
+    lowered = strobe.engine.lowered
+    return Orbit(scene, n, lowered.unscaled(lowered.embed(x)), history[-1], tuple(history), multipliers, liouville,
+                 flow.changes, watched)
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:

@@ -22,7 +22,8 @@ from math import pi
 
 import numpy as np
 
-from ..integrate import Engine, Setting
+from ..integrate import Engine, certified
+from ..integrate.methods import CERTIFIED
 from ..result import Cost, Run, run_from
 from ..steady.regime import Regime
 from ..steady.resonance import ENDED, STOPS, pushes
@@ -36,7 +37,7 @@ _SAMPLES, _TOLERANCE = 480, 1e-9
 
 @dataclass(frozen=True)
 class Response:
-    """Strong pushes in so many periods, what that is, and the evidence.
+    """Strong pushes of the driver per number of periods, the kind of response, and the evidence.
 
     `kind` is "resonance", "anti-resonance" or "". `contact_phase` and `peak_phase` are the drive's phase [degrees, 0
     where it moves forward through its middle] where the strongest push begins and is strongest, None where driver and
@@ -89,9 +90,9 @@ def _begin(force: np.ndarray, peak: int) -> int | None:
 
 def recorded(orbit: Orbit) -> Run:
     """The orbit as a run over its whole period."""
-    engine = Engine(orbit.scene, Setting("dop853", tolerance=_TOLERANCE), _SAMPLES)
+    engine = Engine(orbit.scene, certified(_TOLERANCE), _SAMPLES)
     engine.start(orbit.state)
     samples = engine.record(orbit.period * _SAMPLES)
     leading = float(np.abs(orbit.multipliers).max())
     regime = Regime("periodic", orbit.period, None, None, orbit.period, multiplier=leading)
-    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, "dop853"))
+    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, CERTIFIED))

@@ -14,8 +14,8 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import State
-from ..integrate.lane_block import scaled_state
 from ..scene import Scene
+from ..stop import Stop
 from .flow import StroboscopicMap
 from .orbit import Orbit, periodic_orbit
 
@@ -28,7 +28,7 @@ _SAME = 1e-8
 
 
 def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
-                 stop: np.ndarray | None = None) -> Orbit:
+                 stop: Stop | None = None) -> Orbit:
     """An orbit of `period` drive periods near `start` or near where its section passes one.
 
     `strobes` (P, 2, N) are states at phase 0 in SI, the transient left out; P may be 0. Of an orbit that repeats sooner
@@ -72,13 +72,13 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
             return
 
 
-def least_period(orbit: Orbit, stop: np.ndarray | None = None) -> int:
+def least_period(orbit: Orbit, stop: Stop | None = None) -> int:
     """The smallest number of drive periods after which the orbit is back."""
     for shorter in range(1, orbit.period):
         if orbit.period % shorter:
             continue
         strobe = StroboscopicMap(orbit.scene, shorter, stop)
-        x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+        x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
         end = strobe(x, directions=np.zeros((len(x), 0))).end
         if np.abs(end - x).max() < _SAME * np.abs(x).max():
             return shorter

@@ -1,6 +1,7 @@
 """Scenes: frozen descriptions in SI and the presets."""
 
-from .description import Bead, Scene, hertz_stiffness
+from .description import Bead, hertz_stiffness
+from .model import Scene
 from .presets import ASSETS, scene, scene_names
 
 __all__ = ["ASSETS", "Bead", "Scene", "hertz_stiffness", "scene", "scene_names"]

@@ -2,22 +2,38 @@
 
 from __future__ import annotations
 
-import hashlib
 import itertools
-import json
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, unknown_name
+from ..laws import LAWS
 from ..quantities import QUANTITIES, WALL_FACTORS
 
 
 @dataclass(frozen=True)
 class Bead:
-    """One elastic sphere: mass [kg], radius [m], Young's modulus [Pa], Poisson's ratio."""
+    """One elastic sphere.
+
+    Attributes
+    ----------
+    mass : float
+        [kg]
+    radius : float
+        [m]
+    young : float
+        Young's modulus [Pa].
+    poisson : float
+        Poisson's ratio [1].
+
+    Examples
+    --------
+    >>> from granchain_core import Bead
+    >>> Bead(mass=2.8e-2, radius=9.5e-3, young=193e9, poisson=0.3).radius
+    0.0095
+    """
 
     mass: float
     radius: float
@@ -36,13 +52,48 @@ def hertz_stiffness(left: Bead, right: Bead) -> float:
 
 
 @dataclass(frozen=True)
-class Scene:
-    """A driven chain, immutable and hashable; `evolve` gives a new one.
+class Description:
+    """The values of a driven chain, immutable and hashable, and what follows from them.
 
-    Beads are `pattern` repeated to N (two entries make a dimer), with `impurities` ((bead number from 1, Bead), …)
-    in place of some. Contact 0 joins driver and bead 1, contact N joins bead N and the wall. `tension_cut` and
-    `dissipation` choose the contact's law; `reference_overlap` [m] is where D of an overlap-dependent law is
-    stated. `ranges` are slider ranges, (knob, low, high). `start_velocity` is ((bead number, m/s), …) at t = 0.
+    The model is eq. (1) of Zhang et al. 2016: N spheres in Hertz contact between a harmonic driver and a wall
+    (docs/model.md). Contact 0 joins driver and bead 1, contact N joins bead N and the wall.
+
+    Attributes
+    ----------
+    name, title, look_at, paper : str
+        What it is called, what to look at, and where in the paper it stands.
+    pattern : tuple of Bead
+        Repeated to N beads: two entries make a dimer.
+    N : int
+        Number of beads.
+    f : float
+        Drive frequency [Hz].
+    A0 : float
+        Drive amplitude [m]: the driver is at A0 sin 2πft.
+    D : float
+        Damping coefficient of a contact [N s/m].
+    k : float
+        Stiffness of each bead's foundation spring [N/m].
+    F0 : float
+        Static preload [N].
+    wall : str or float
+        "bead", "same-material", "rigid", or the wall contact's stiffness over that of two beads.
+    dissipation : str
+        "linear", "tsuji", "kuwabara-kono" or "none".
+    tension : str
+        "allowed", or "cut" where a contact must not pull.
+    accuracy : float
+        Relative error of the displacements that is asked for.
+    reference_overlap : float
+        Overlap at which D of a law that depends on it is stated [m].
+    impurities : tuple of (int, Bead)
+        Beads in place of the pattern's, by number from 1.
+    start_velocity : tuple of (int, float)
+        Beads that move at t = 0, by number, with their velocities [m/s].
+    ranges : tuple of (str, float, float)
+        Ranges of the sliders.
+    preset : tuple
+        The knobs of the preset it comes from.
     """
 
     name: str
@@ -131,21 +182,6 @@ class Scene:
         return {n: v for n, v in self.knobs.items() if n != "kappa" and n in base and base[n] != v}
 
     @property
-    def effects(self) -> list[str]:
-        """Names of the effects that are in this scene, and therefore in its kernel."""
-        found = ["contact", "driver", "wall"]
-        if self.has_dissipation:
-            found.append({"linear": "dashpot", "tsuji": "Tsuji damping",
-                          "kuwabara-kono": "Kuwabara–Kono damping"}[self.dissipation])
-            if self.tension == "cut":
-                found.append("tension cut")
-        if self.k > 0:
-            found.append("foundation")
-        if self.F0 > 0:
-            found.append("preload")
-        return found
-
-    @property
     def has_dissipation(self) -> bool:
         """Whether contacts lose energy at all."""
         return self.dissipation != "none" and self.D > 0
@@ -153,65 +189,9 @@ class Scene:
     @property
     def forces_jump(self) -> bool:
         """Whether a contact's force jumps when it closes in motion: a linear dashpot's does, as g(0) > 0."""
-        return self.has_dissipation and self.dissipation == "linear"
+        return self.has_dissipation and LAWS[self.dissipation].jumps
 
     @property
     def cuts_tension(self) -> bool:
         """Whether contact forces are cut at zero: there has to be damping for them to be below."""
         return self.tension == "cut" and self.has_dissipation
-
-    def equation_latex(self) -> str:
-        """The equation of motion with the terms that are computed, and no others."""
-        from .equation import latex
-
-        return latex(self)
-
-    def validity(self) -> list[str]:
-        """Sentences on where the model itself stops being valid for this scene (none, when it is fine)."""
-        from .validity import warnings
-
-        return warnings(self)
-
-    # --- identity and change -------------------------------------------------------------------------------
-
-    def to_json(self) -> dict[str, Any]:
-        """The whole scene as plain data, enough to build it again."""
-        return asdict(self)
-
-    @classmethod
-    def from_json(cls, data: dict[str, Any]) -> Scene:
-        """The scene that `to_json` described."""
-        pairs = ("ranges", "start_velocity", "preset")
-        return cls(**{**data, "pattern": tuple(Bead(**b) for b in data["pattern"]),
-                      "impurities": tuple((int(i), Bead(**b)) for i, b in data["impurities"]),
-                      **{p: tuple(tuple(x) for x in data[p]) for p in pairs}})
-
-    @property
-    def digest(self) -> str:
-        """Hash of everything that changes the answer: the key of caches and the identity of a share link."""
-        physics = {k: v for k, v in self.to_json().items()
-                   if k not in ("name", "title", "look_at", "paper", "ranges", "preset")}
-        return hashlib.sha256(json.dumps(physics, sort_keys=True).encode()).hexdigest()[:16]
-
-    def evolve(self, **changes: Any) -> Scene:
-        """This scene with other knobs; `kappa` sets k = κ·K·√A0 with the resulting scene's own A0.
-
-        Raises `BadInput` for unknown knobs, values outside their range, and k together with kappa.
-        """
-        for name in changes:
-            if name not in QUANTITIES:
-                raise unknown_name("knob", name, QUANTITIES)
-        if "k" in changes and "kappa" in changes:
-            raise BadInput("k and kappa say the same thing: give one of them, not both.")
-        checked = {name: QUANTITIES[name].check(value) for name, value in changes.items()}
-        kappa = checked.pop("kappa", None)
-        new = replace(self, **checked)  # type: ignore[arg-type]  # checked above against the table
-        special = (*new.impurities, *new.start_velocity)
-        if special and max(i for i, _ in special) > new.N:
-            place = max(i for i, _ in special)
-            raise BadInput(f"number of beads N = {new.N} leaves no bead {place}, which is special in scene "
-                           f"{self.name!r}; the nearest valid value is {place}.")
-        if kappa is not None:
-            k = float(kappa) * new.K * math.sqrt(new.A0)
-            new = replace(new, k=QUANTITIES["k"].check(k))  # type: ignore[arg-type]
-        return new

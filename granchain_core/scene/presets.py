@@ -10,7 +10,8 @@ from typing import Any
 
 from ..errors import BadInput, unknown_name
 from ..quantities import QUANTITIES
-from .description import Bead, Scene
+from .description import Bead
+from .model import Scene
 
 ASSETS = Path(__file__).resolve().parents[2] / "assets"
 _SECTIONS = {"parent", "title", "look_at", "paper", "order", "chain", "knobs", "ranges"}
@@ -41,14 +42,53 @@ def _read(name: str) -> dict[str, Any]:
 
 @functools.cache
 def scene_names() -> tuple[str, ...]:
-    """Names of all presets, in teaching order."""
+    """Names of all presets, in teaching order.
+
+    Returns
+    -------
+    tuple of str
+        Names that `scene` takes.
+
+    Examples
+    --------
+    >>> from granchain_core import scene_names
+    >>> scene_names()[:3]
+    ('sec2', 'fig3a', 'fig3b')
+    """
     names = [p.stem for p in (ASSETS / "scenes").glob("*.toml")]
     return tuple(sorted(names, key=lambda n: (_read(n).get("order", 1000), n)))
 
 
 @functools.cache
 def scene(name: str) -> Scene:
-    """The preset called `name`; `BadInput` names the nearest one for a name that does not exist."""
+    """A preset by its name.
+
+    Parameters
+    ----------
+    name : str
+        One of `scene_names()`: "sec2", "fig3a", "rig", … (files in assets/scenes).
+
+    Returns
+    -------
+    Scene
+        A frozen description in SI; `evolve` gives one with other knobs.
+
+    Raises
+    ------
+    BadInput
+        There is no such scene; the message names the nearest one.
+
+    Examples
+    --------
+    >>> from granchain_core import scene
+    >>> chain = scene("sec2")
+    >>> chain.N, chain.f, chain.A0
+    (11, 340.0, 5e-07)
+    >>> scene("sec22")
+    Traceback (most recent call last):
+    ...
+    granchain_core.errors.BadInput: Unknown scene 'sec22'; the nearest is 'sec2'; known: ...
+    """
     if name not in scene_names():
         raise unknown_name("scene", name, scene_names())
     data = _read(name)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from .description import Scene
+from .description import Description
 
 #: Hertz's theory takes the contact patch as small against the sphere; at an overlap of 1 % of the radius the
 #: patch radius √(Rδ/2) is already 7 % of R.
@@ -21,7 +19,7 @@ ONSET_OF_YIELD = 1.6
 YIELD_STRESS = 2.28e9
 
 
-def contact_geometry(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+def contact_geometry(scene: Description) -> tuple[np.ndarray, np.ndarray]:
     """E* [Pa] and R* [m] of every contact (N+1,); the driver is a bead like bead 1.
 
     The wall is flat where it is called so, and a rigid one has no compliance of its own; a wall that is a number times
@@ -38,13 +36,13 @@ def contact_geometry(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     return modulus, radius
 
 
-def peak_pressures(scene: Scene, overlaps: np.ndarray) -> np.ndarray:
+def peak_pressures(scene: Description, overlaps: np.ndarray) -> np.ndarray:
     """Hertz's peak pressure p0 = (1/π)(6 F E*²/R*²)^{1/3} = (2E*/π)√(δ/R*) of contacts (N+1,) pressed by `overlaps`."""
     modulus, radius = contact_geometry(scene)
     return 2.0 * modulus / np.pi * np.sqrt(np.maximum(overlaps, 0.0) / radius)
 
 
-def overlap_warnings(scene: Scene, largest_overlap: float | np.ndarray) -> list[str]:
+def overlap_warnings(scene: Description, largest_overlap: float | np.ndarray) -> list[str]:
     """Sentences for a chain whose contacts reached these overlaps [m], one number or one for each contact."""
     overlaps = np.broadcast_to(np.asarray(largest_overlap, dtype=float), scene.N + 1)
     found, largest = [], float(overlaps.max())
@@ -61,6 +59,6 @@ def overlap_warnings(scene: Scene, largest_overlap: float | np.ndarray) -> list[
     return found
 
 
-def warnings(scene: Scene) -> list[str]:
+def warnings(scene: Description) -> list[str]:
     """Sentences known before anything is run: the drive amplitude and the preload already overlap the beads."""
     return overlap_warnings(scene, np.maximum(scene.A0, scene.static_overlap()))

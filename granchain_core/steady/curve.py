@@ -12,15 +12,15 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed, unknown_name
 from ..integrate import Engine, State
-from ..integrate.engine import new_stop
-from ..integrate.lane_block import can_share_lanes
+from ..integrate.batch import can_share_batch
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, ForceErrors, relative_changes
 from ..scene import Scene
-from .lane_curve import lane_results
-from .lane_job import LaneResult
+from ..stop import Stop
+from .batch_settle import batch_results
 from .regime import Regime
 from .settle import Settling, relax, settle
+from .steady_state import SteadyState
 from .threads import on_all_cores
 
 STARTS = ("rest", "up", "down")
@@ -32,10 +32,31 @@ MOST_POINTS = 100_000
 
 @dataclass(frozen=True, eq=False)
 class CurvePoint:
-    """The steady state at one frequency: largest forces [N], regime, relative errors of the forces.
+    """The steady state at one frequency.
 
-    Where the motion is not periodic the forces are the largest seen in the last periods and no error is claimed.
-    `failure` is a sentence if the numbers failed there, `status` the outcome's name; the forces are then NaN.
+    Attributes
+    ----------
+    frequency : float
+        [Hz]
+    max_output_force, max_output_force_elastic, max_input_force : float
+        Largest forces [N]; where the motion is not periodic, those of the last periods. NaN where the numbers failed.
+    regime : Regime
+        What kind of motion it is.
+    force_errors : ForceErrors
+        Relative errors of the three; None where the motion is not periodic.
+    state : State
+        Where the chain is at drive phase 0.
+    failure : str
+        A sentence where the numbers failed.
+    status : str
+        "done", or the failure's name.
+
+    Examples
+    --------
+    >>> from granchain_core import resonance_curve, scene
+    >>> point = resonance_curve(scene("sec2").evolve(N=2), [2000.0]).points[0]
+    >>> point.status, point.regime.period, point.error_estimate < 1e-3
+    ('done', 1, True)
     """
 
     frequency: float
@@ -48,6 +69,13 @@ class CurvePoint:
     failure: str = ""
     status: str = "done"
 
+    @classmethod
+    def of(cls, found: SteadyState) -> CurvePoint:
+        """The point of a steady state."""
+        entered, arrived, elastic = map(float, found.tops)
+        return cls(found.scene.f, arrived, elastic, entered, found.regime, found.force_errors, found.state,
+                   found.failure, found.status)
+
     @property
     def error_estimate(self) -> float | None:
         """Relative error of the output force; None where none is claimed."""
@@ -56,7 +84,26 @@ class CurvePoint:
 
 @dataclass(eq=False)
 class Curve:
-    """A resonance curve in ascending frequency."""
+    """A resonance curve in ascending frequency.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    start : str
+        "rest", "up" or "down".
+    points : list of CurvePoint
+        One for each frequency.
+    wall_s : float
+        Wall-clock time [s].
+
+    Examples
+    --------
+    >>> from granchain_core import resonance_curve, scene
+    >>> curve = resonance_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0])
+    >>> curve.column("max_input_force").shape
+    (2,)
+    """
 
     scene: Scene
     start: str
@@ -82,16 +129,16 @@ def coarse_first(count: int) -> list[int]:
     return order
 
 
-def curve_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
+def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     """The steady state of `scene` from rest or from `start`, certified where it is periodic."""
     way = settle(scene, start, stop)
     if way.regime.name == "periodic":
-        return _certified_point(way)
+        return _certified(way)
     tops = way.tops[-min(len(way.tops), 100) :].max(axis=0) * way.engine.lowered.scales.force
-    return _point(scene, tops, way.regime, None, way.engine)
+    return SteadyState(scene, tops, way.regime, None, way.engine.state)
 
 
-def _certified_point(way: Settling) -> CurvePoint:
+def _certified(way: Settling) -> SteadyState:
     """Largest forces on the certified orbit; the error is what they still change plus the distance's share."""
     engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
     n = way.regime.period
@@ -103,23 +150,24 @@ def _certified_point(way: Settling) -> CurvePoint:
     # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
     errors = CAUTION * relative_changes(tops, before) + 1.5 * distance
     errors += jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
-    return _point(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer)
+    return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
 
 
-def _point(scene: Scene, tops: np.ndarray, regime: Regime, errors: np.ndarray | None, engine: Engine) -> CurvePoint:
-    return CurvePoint(scene.f, float(tops[1]), float(tops[2]), float(tops[0]), regime, ForceErrors.of(errors),
-                      engine.state)
-
-
-def safe_point(scene: Scene, start: State | None, stop: np.ndarray) -> CurvePoint:
-    """A point, or a point that says why there is none: one failed frequency does not lose a curve."""
+def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
+    """A steady state, or one that says why there is none: one failed frequency does not lose a curve."""
     try:
-        return curve_point(scene, start, stop)
+        return steady_state(scene, start, stop)
     except NumbersFailed as failed:
-        nothing = Regime("unsettled", None, None, None, 0)
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
-        return CurvePoint(scene.f, np.nan, np.nan, np.nan, nothing, ForceErrors(), start or resting, failed.sentence,
-                          failed.status)
+        return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(0), None, start or resting, failed.sentence,
+                           failed.status)
+
+
+def second_look(doubtful: SteadyState, stop: Stop) -> SteadyState:
+    """What a batch left in doubt: the chain by itself, from where the batch left it."""
+    found = safe_state(doubtful.scene, doubtful.state, stop)
+    run = doubtful.regime.periods_run + found.regime.periods_run
+    return replace(found, regime=replace(found.regime, periods_run=run), number=doubtful.number)
 
 
 def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray) -> list[Scene]:
@@ -130,78 +178,127 @@ def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray)
 
 
 def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
-               stop: Callable[[], bool] | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
+               stop: Stop | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
     """Points of a resonance curve as they are finished.
 
-    From "rest" every point starts at rest and they come coarse first, on all cores; "up" and "down" carry the state
-    along in that direction. `stop` is asked between points and may end the curve; a running point is then given up.
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its own frequency does not matter.
+    frequencies : sequence of float
+        Drive frequencies [Hz].
+    start : str
+        "rest": points come coarse first, from all cores; "up" or "down": the state is carried along in that direction.
+    stop : Stop, optional
+        Looked at between points; once it is set the curve ends, and a running point is given up.
+    workers : int, optional
+        Threads; one for each core if not given.
+
+    Yields
+    ------
+    CurvePoint
+        One for each frequency.
+
+    Raises
+    ------
+    BadInput
+        No frequency, too many, one out of range, or another word for `start`.
+
+    Examples
+    --------
+    >>> from granchain_core import iter_curve, scene
+    >>> points = iter_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0], start="down")
+    >>> [point.frequency for point in points]
+    [2000.0, 1800.0]
     """
     if start not in STARTS:
         raise unknown_name("start", start, STARTS)
     scenes = checked_frequencies(scene, frequencies)
-    flag = new_stop()
+    ended = Stop()
     if start == "rest":
-        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], flag, stop, workers)
+        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], ended, stop, workers)
         return
     state: State | None = None
     for one in sorted(scenes, key=lambda s: s.f, reverse=start == "down"):
-        if stop is not None and stop():
+        if stop:
             return
-        point = safe_point(one, state, flag)
-        state = point.state if not point.failure else None
-        yield point
+        found = safe_state(one, state, ended)
+        state = found.state if not found.failure else None
+        yield CurvePoint.of(found)
 
 
-def _from_rest(scenes: list[Scene], flag: np.ndarray, stop: Callable[[], bool] | None,
+def _from_rest(scenes: list[Scene], ended: Stop, stop: Stop | None,
                workers: int | None) -> Iterator[CurvePoint]:
     """Independent points on all cores: by lanes where they can, else one by one; closing the generator stops them."""
-    yield from on_all_cores(lambda shared: _points(shared, flag), scenes, flag, stop,
+    yield from on_all_cores(lambda shared: _points(shared, ended), scenes, ended, stop,
                             min(workers or os.cpu_count() or 1, len(scenes)))
 
 
-def _points(scenes: Iterator[Scene], flag: np.ndarray) -> Iterator[CurvePoint]:
+def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
     first = next(scenes, None)
     if first is None:
         return
     rest_of_them = itertools.chain([first], scenes)
-    if can_share_lanes(first):
-        yield from (_from_lane(result) if not result.doubtful else second_look(result, flag)
-                    for result in lane_results(rest_of_them, flag))
+    if can_share_batch(first):
+        for found in batch_results(rest_of_them, ended):
+            yield CurvePoint.of(second_look(found, ended) if found.doubtful else found)
         return
     for one in rest_of_them:
-        yield safe_point(one, None, flag)
+        yield CurvePoint.of(safe_state(one, None, ended))
 
 
-def second_look(result: LaneResult, stop: np.ndarray) -> CurvePoint:
-    """The point of a result that the lanes left in doubt: its chain by itself, from where they left it."""
-    point = safe_point(result.scene, result.state, stop)
-    run = result.regime.periods_run + point.regime.periods_run
-    return replace(point, regime=replace(point.regime, periods_run=run))
-
-
-def _from_lane(result: LaneResult) -> CurvePoint:
-    tops = result.tops
-    return CurvePoint(result.scene.f, float(tops[1]), float(tops[2]), float(tops[0]), result.regime,
-                      ForceErrors.of(result.errors), result.state, result.failure,
-                      "not-finite" if result.failure else "done")
-
-
-def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: np.ndarray) -> list[CurvePoint]:
+def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
     """A first impression of the curve from rest, on one core, to be drawn while a knob still moves.
 
     Coarse steps and few periods: no errors are claimed, and what is not periodic by then is unsettled. Empty for scenes
-    that lanes cannot run. `stop` is a flag from `new_stop`. Raises `BadInput` and `Cancelled`.
+    that lanes cannot run. Raises `BadInput` and `Cancelled`.
     """
-    if not can_share_lanes(scene):
+    if not can_share_batch(scene):
         return []
     scenes = iter(checked_frequencies(scene, frequencies))
-    return [_from_lane(result) for result in lane_results(scenes, stop, draft=True)]
+    return [CurvePoint.of(result) for result in batch_results(scenes, stop, draft=True)]
 
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
-                    stop: Callable[[], bool] | None = None, on_point: Callable[[CurvePoint], None] | None = None,
+                    stop: Stop | None = None, on_point: Callable[[CurvePoint], None] | None = None,
                     workers: int | None = None) -> Curve:
-    """The whole curve in ascending frequency; `on_point` is called with each point as it is finished."""
+    """The resonance curve: largest forces of the steady state over the drive frequency.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its own frequency does not matter.
+    frequencies : sequence of float
+        Drive frequencies [Hz], 1 to 100,000 of them, in any order.
+    start : str
+        "rest": every point begins at rest, all cores work; "up" or "down": the state is carried along that way, so
+        that hysteresis shows.
+    stop : Stop, optional
+        Looked at between points; once it is set the curve ends with what there is.
+    on_point : callable, optional
+        Called with each `CurvePoint` as it is finished.
+    workers : int, optional
+        Threads; one for each core if not given.
+
+    Returns
+    -------
+    Curve
+        Its points in ascending frequency. A point whose numbers fail says so and does not end the curve.
+
+    Raises
+    ------
+    BadInput
+        No frequency, too many, one out of range, or another word for `start`.
+
+    Examples
+    --------
+    >>> from granchain_core import resonance_curve, scene
+    >>> curve = resonance_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0, 2200.0])
+    >>> curve.column("frequency")
+    array([1800., 2000., 2200.])
+    >>> max(curve.points, key=lambda point: point.max_output_force_elastic).frequency
+    1800.0
+    """
     began = time.perf_counter()
     curve = Curve(scene, start)
     for point in iter_curve(scene, frequencies, start, stop, workers):

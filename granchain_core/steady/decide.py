@@ -1,8 +1,8 @@
-"""What a motion is that has come to look periodic, or has not for a long time: one decision after the other.
+"""The regime of a motion that seems periodic, or that has not settled for a long time, in successive decisions.
 
-A motion that seems settled is confirmed by the multipliers of its orbit. One that is still moving is asked whether it
-goes to an orbit beside it, or leaves one: the first is followed to its orbit, the second is taken to where its
-departure is no longer small. Only what does neither is told apart by its Lyapunov exponent, measured twice.
+A motion that seems settled is confirmed by the multipliers of its orbit. Otherwise the orbit beside the motion is
+examined: if the motion approaches it, the orbit is reported; if it departs, the departure is
+enlarged. A motion that does neither is classified by its Lyapunov exponent, measured twice.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from .lyapunov import exponents
 from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 from .regime import Regime, agree, clearly_chaotic, departing, irregular, slowing
 
-#: Periods after which a motion that has not settled is looked at in another way, and most that are run in all.
+#: Drive periods after which an unsettled motion is examined by its nearby orbit, and the largest number run in all.
 MOST_PERIODS, SLOW_PERIODS = 400, 4000
 #: Blocks and periods a block of one measurement of the Lyapunov exponent.
 BLOCKS, BLOCK = 10, 20
-#: Strobes looked at when something is decided.
+#: Strobes on which a decision is based.
 REMEMBERED = 420
 #: Measurements of the Lyapunov exponent for a motion that is not followed any further.
 _MEASUREMENTS = 3
@@ -29,11 +29,11 @@ _MEASUREMENTS = 3
 _ALWAYS = 30
 #: A claim is in doubt if changes shrink by less than this a drive period: an orbit that grows slowly may look like it.
 CLEAR_DECAY = 0.9
-#: A motion beside an unstable orbit is given so many times the periods: it leaves as slowly as others come.
+#: Factor on the number of periods for a motion beside an unstable orbit: it departs as slowly as others approach.
 _PATIENCE = 4
-#: Largest |μ| of a settled motion, as differences at its own state have it, that needs no Newton's method.
+#: Largest |μ| of a settled motion, by differences at its own state, below which Newton's method is not needed.
 _CLEAR = 0.97
-#: How often a motion that leaves an orbit is taken along its departure.
+#: How often the departure of a motion from an orbit is enlarged.
 _MOST_DEPARTURES = 6
 
 
@@ -47,7 +47,7 @@ class Decision:
 
 
 class Decisions:
-    """The decisions on one motion; `carried` if it began on a state that another setting left behind."""
+    """The decisions on one motion; `carried` if it began in a state taken over from another setting."""
 
     def __init__(self, scene: Scene, carried: bool) -> None:
         self.scene, self._carried = scene, carried
@@ -128,7 +128,7 @@ def as_it_stands(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
             return regime
         orbit = orbit_of(scene, regime.period, scaled(engine), stop)
         if orbit is None or not orbit.stable:
-            return Regime("unsettled", None, None, None, regime.periods_run)
+            return Regime.unsettled(regime.periods_run)
         return replace(regime, period=orbit.period, multiplier=orbit.modulus)
     if scene.N <= MOST_BEADS:
         for orbit in orbits_beside(scene, strobes, scaled(engine), stop):
@@ -154,5 +154,4 @@ def _told_apart(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
 
 def scaled(engine: Engine) -> np.ndarray:
     """The engine's state (2N,) of displacements, then w."""
-    row = engine.lowered.row
-    return np.concatenate([engine.y[1 : row - 1], engine.y[row + 1 : 2 * row - 1]])
+    return engine.lowered.beads_of(engine.y)

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kernels import approach
-from ..kernels.approach import ORBITS
-from ..kernels.lane_looks import LONGEST_JUMP
+from ..kernels.batch.period_end import LONGEST_JUMP
+from ..kernels.strobes import extrapolation as approach
+from ..kernels.strobes.extrapolation import ORBITS
 
 #: Successive changes used; as many slow modes less one are removed.
 ORDER = ORBITS

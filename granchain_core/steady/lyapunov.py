@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine
-from ..integrate.lane_block import NEVER, LaneBlock
-from ..kernels.lane_looks import REMEMBERED
-from ..kernels.largest_forces import new_log
-from ..kernels.section import LONGEST_PERIOD
-from ..kernels.shadow import run_shadowed
+from ..integrate.batch import NEVER, Batch
+from ..kernels.batch.period_end import REMEMBERED
+from ..kernels.forces.largest import new_log
+from ..kernels.rk4.lyapunov import run_two_trajectories
+from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..lower import Lowered
+from ..stop import Stop
 
 #: Distance of the shadow in drive amplitudes: far above rounding, far below the kinks of the contacts.
 _DISTANCE = 1e-8
@@ -20,7 +21,7 @@ MOST_APART = 2.5
 
 
 def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, block: int,
-                       stop: np.ndarray) -> list[tuple[np.ndarray, ...]]:
+                       stop: Stop) -> list[tuple[np.ndarray, ...]]:
     """`exponents` of up to four scenes side by side in lanes, each from its scaled state (2(N+2),) at phase 0.
 
     Of each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its last periods
@@ -30,7 +31,7 @@ def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, bl
     steps = [lowered.steps_per_period() for lowered, _ in scenes]
     if max(steps) > MOST_APART * min(steps):
         raise ValueError(f"steps a period {steps} differ by more than a factor {MOST_APART:g}")
-    pairs, periods = LaneBlock(scenes[0][0].scene, stop), (blocks + 1) * block
+    pairs, periods = Batch(scenes[0][0].scene, stop), (blocks + 1) * block
     for i, (lowered, y) in enumerate(scenes):
         row = lowered.row
         offset = np.random.default_rng(0).standard_normal(2 * row)
@@ -42,7 +43,7 @@ def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, bl
             for i in range(len(scenes))]
 
 
-def _record(pairs: LaneBlock, lane: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _record(pairs: Batch, lane: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Strobes, last largest forces and last state of a lane's own periods: a lane runs on until the slowest is done."""
     strobes = pairs.state.strobes[lane, : periods + 1]
     last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % REMEMBERED
@@ -64,8 +65,10 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     growth = np.zeros((blocks + 1) * block)
     strobes = np.zeros((len(growth), 2, row))
     # step by step, whatever vectors the engine has: one kernel for chains of every length
-    one, other = engine.work._replace(along=None), shadow.work._replace(along=None)
-    status, done = run_shadowed(engine.method, engine.lowered.slots, engine.drive, engine.h, engine.y, shadow.y,
-                                one, other, growth, strobes, new_log(), engine.counts.array, engine.stop)
+    stepper = engine.stepper
+    one, other = stepper.work._replace(along=None), shadow.stepper.work._replace(along=None)
+    status, done = run_two_trajectories(stepper.method, engine.lowered.slots, stepper.drive, stepper.h, engine.y,
+                                        shadow.y, one, other, growth, strobes, new_log(), engine.counts.array,
+                                        engine.stop.flag)
     engine.raise_for(status, done)
     return growth[block:].reshape(blocks, block).mean(axis=1), strobes[:, :, 1:-1]

@@ -1,9 +1,9 @@
-"""The periodic orbit beside a motion: is it one that the motion goes to, or one that it leaves?
+"""The periodic orbit beside a motion, and whether the motion approaches it or departs from it.
 
-A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one; while it
-lasts both look alike. So the orbit itself is found, its multipliers say what becomes of a small disturbance, and the
-way from the motion to the orbit is tried: from the whole distance and from shorter and shorter ones the motion must
-come nearer about as fast as the multipliers say.
+A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one;
+meanwhile both look alike. So the orbit itself is found by Newton's method, and its multipliers predict the growth of
+small disturbances. The prediction is tested: from its present distance and from smaller and smaller ones, the motion
+must approach the orbit about as fast as the multipliers say.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..kernels.section import LONGEST_PERIOD
+from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scene import Scene
+from ..stop import Stop
 from .regime import changes
 from .strobe_map import FixedPoint, StrobeMap, fixed_point, sizes
 
@@ -25,15 +26,15 @@ MOST_BEADS = 100
 UNSURE = 1e-5
 #: A motion that changes by more over n periods is not beside an orbit of n; nor is one so far from the orbit found.
 _BESIDE = 0.1
-#: A motion is looked at for the shortest period over which it changes by no more than so many times the least change.
+#: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _AS_SMALL = 3.0
-#: Distances are shortened by this factor until they are this small. Each is followed until the multipliers have taken
-#: this part of it away, for so many orbits at most, and this part of that must be gone: beside an orbit that has just
-#: become stable there may be a closed curve that the motion stays on, where distances go up and down by some per cent.
+#: Factor between the tested distances, and the smallest; the part of a distance that must decay according to the
+#: multipliers, orbits for that at most, and the part of it that must really decay. Beside an orbit that has just
+#: become stable there may be a closed curve on which the motion stays, and distances vary by some per cent.
 _CLOSER, _SMALLEST, _TAKEN, _MOST_ORBITS, _PART = 0.4, 1e-5, 0.2, 3000, 0.3
 #: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
 _TURN = 16
-#: Directions whose |μ| is below this, or below this part of the largest, are gone after so many orbits.
+#: Directions whose |μ| is below this, or below this part of the largest, have decayed after those orbits.
 _SLOW = 0.3
 #: Length to which a departure is drawn out along the directions that grow.
 _DRAWN_OUT = 3e-3
@@ -92,7 +93,7 @@ class NearbyOrbit:
                 return True
 
     def _lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
-        """The largest lengths of an offset from the orbit, now and so many orbits later; infinite if it gets lost."""
+        """Largest lengths of an offset from the orbit, now and after `orbits` orbits; infinite if the map fails."""
         try:
             passed = self.strobe.passed(self.point.x + offset, _TURN, orbits)
         except NumbersFailed:
@@ -125,7 +126,7 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.norm(offsets @ rows.T if len(rows) else offsets, axis=1))
 
 
-def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray) -> NearbyOrbit | None:
+def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
     """The orbit of `period` drive periods, or of a part of them, that Newton's method leads to from x; if any."""
     strobe = StrobeMap(scene, period, stop)
     found = fixed_point(strobe, x)
@@ -140,13 +141,13 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray) -> Near
     return NearbyOrbit(strobe, found, x, found.modulus)
 
 
-def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: np.ndarray, refine: float) -> float:
+def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
     """The largest |μ| at a state that is on its orbit to what is called settled, in a hurry: right to some 1e-4."""
     matrix = StrobeMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
 
-def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: np.ndarray) -> Iterator[NearbyOrbit]:
+def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) -> Iterator[NearbyOrbit]:
     """Orbits beside a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
     moved = [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]
     if not moved or min(moved) > _BESIDE:

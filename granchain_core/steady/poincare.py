@@ -1,4 +1,4 @@
-"""The Poincaré section: a chain's motion looked at once per drive period, at any phase of the drive.
+"""The Poincaré section: a chain's state once per drive period, at any phase of the drive.
 
 A driven chain's section at phase p is the set of states at t = (j + p)T, j = 0, 1, …: n points for a period-n orbit, a
 closed curve for a quasi-periodic motion, a cloud with structure for a chaotic one. The motion is recorded at many
@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State
-from ..integrate.engine import rest
+from ..integrate import Engine, State, live
 from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
 
 #: Most values of displacement that a section keeps: it holds fewer periods of a longer chain.
 MOST_VALUES = 1_500_000
@@ -58,12 +59,12 @@ def most_periods(scene: Scene, samples: int, wanted: int) -> int:
 
 
 def iter_section(scene: Scene, start: State | None, periods: int, samples: int = 48, seconds: float = 0.15,
-                 stop: np.ndarray | None = None) -> Iterator[Section]:
+                 stop: Stop | None = None) -> Iterator[Section]:
     """The section from `start` (None is the scene's own start), by the live method, ever longer: about every `seconds`.
 
     It ends after `most_periods` of `periods`. Raises `NumbersFailed`, `Cancelled`.
     """
-    engine = Engine(scene, Setting("rk4-split"), samples, stop=stop)
+    engine = Engine(scene, live(), samples, stop=stop)
     engine.start(start if start is not None else rest(scene))
     most = most_periods(scene, samples, periods)
     displacement = np.zeros((most, samples, scene.N), dtype=np.float32)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..kernels import section
-from ..kernels.section import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
+from ..kernels.strobes import periodicity as section
+from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
@@ -28,12 +28,35 @@ SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
 @dataclass(frozen=True)
 class Regime:
-    """What the motion is and how one knows.
+    """What kind of motion it is, and the evidence.
 
-    `decay` is by how much changes shrank per orbit where that was seen, `multiplier` the largest |μ| of the n-period
-    map where it was computed; `distance` is the bound on the relative distance to the orbit, `lyapunov` (exponent per
-    period, its standard error) there where it was measured. `followed`: the motion was still on its way, and the orbit
-    it goes to was found ahead of it. `approaches` is the period of an orbit that an unsettled motion goes to.
+    Attributes
+    ----------
+    name : str
+        "periodic", "quasi-periodic", "chaotic" or "unsettled".
+    period : int or None
+        In drive periods, where the motion is periodic.
+    decay : float or None
+        By how much changes shrank per orbit, where that was seen.
+    distance : float or None
+        Bound on the relative distance to the orbit.
+    periods_run : int
+        Drive periods that were run.
+    lyapunov : tuple of float or None
+        Lyapunov exponent per drive period and its standard error, where it was measured.
+    multiplier : float or None
+        Largest |μ| of the n-period map, where it was computed.
+    followed : bool
+        The motion was still on its way, and the orbit it goes to was found ahead of it.
+    approaches : int or None
+        Period of an orbit that an unsettled motion goes to.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> regime = settle(scene("sec2").evolve(N=2, f=2000.0)).regime
+    >>> regime.name, regime.period, regime.distance < 1e-4
+    ('periodic', 1, True)
     """
 
     name: str
@@ -45,6 +68,11 @@ class Regime:
     multiplier: float | None = None
     followed: bool = False
     approaches: int | None = None
+
+    @classmethod
+    def unsettled(cls, periods_run: int) -> Regime:
+        """A motion of which nothing is known after so many periods."""
+        return cls("unsettled", None, None, None, periods_run)
 
     @property
     def slowness(self) -> float:
@@ -128,7 +156,7 @@ def in_words(seen: Sequence[float] | np.ndarray, run: int,
             distance = max(distance, rounding * rate / (1.0 - rate))
         return Regime("periodic", int(period), None if rate < 0.0 else float(rate), float(distance), run), None
     approach = Approach(int(approached), float(its_rate), float(its_change)) if approached else None
-    return Regime("unsettled", None, None, None, run), approach
+    return Regime.unsettled(run), approach
 
 
 def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING) -> Regime:

@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, method_for
-from ..integrate.engine import rest
+from ..integrate import Engine, Setting, State, live, method_for
 from ..integrate.methods import jump_errors
 from ..result import CAUTION, Cost, Run, relative_changes, run_from
 from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
 from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
 from .regime import Regime, changes, find_period
@@ -36,10 +37,29 @@ _MOST_ROUNDS = 12
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """A steady state (or how far one got): the recorded run, its regime, the state at phase 0.
+    """A steady state, or how far one got.
 
-    `start` says where it came from: "rest" or "previous state". A preview is a first picture from the live method;
-    `final` is the last and best.
+    Attributes
+    ----------
+    run : Run
+        The recorded orbit, or a few periods where the motion is not periodic.
+    regime : Regime
+        What kind of motion it is.
+    state : State
+        Where the chain is at drive phase 0.
+    start : str
+        Where the motion came from: "rest" or "previous state".
+    preview : bool
+        Whether this is a first picture by the live method.
+    final : bool
+        Whether it is the last and best.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> found = settle(scene("sec2").evolve(N=2, f=2000.0), samples=16)
+    >>> found.run.time.shape, found.state.displacement.shape
+    ((17,), (2,))
     """
 
     run: Run
@@ -53,9 +73,9 @@ class Settled:
 class Settling:
     """The live method on its way to the steady state, chunk by chunk, until it is decided what that is."""
 
-    def __init__(self, scene: Scene, start: State | None, stop: np.ndarray | None) -> None:
+    def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
         self.scene = scene
-        self.engine = Engine(scene, Setting("rk4-split"), 1, stop=stop)
+        self.engine = Engine(scene, live(), 1, stop=stop)
         self.stop = self.engine.stop
         self.engine.start(start if start is not None else rest(scene))
         self._steps = self.engine.grid
@@ -69,7 +89,7 @@ class Settling:
         first, scales = self.engine.state, self.engine.lowered.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
         self._run, self._stop_at = run, MOST_PERIODS
-        self.regime = Regime("unsettled", None, None, None, run)
+        self.regime = Regime.unsettled(run)
 
     @property
     def _here(self) -> int:
@@ -139,10 +159,37 @@ class Settling:
 
 
 def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
-             stop: np.ndarray | None = None) -> Iterator[Settled]:
+             stop: Stop | None = None) -> Iterator[Settled]:
     """Pictures on the way to the steady state: a quick preview first, the certified one last.
 
-    Raises `NumbersFailed` and `Cancelled`.
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    start : State, optional
+        Where the motion begins; at rest if not given.
+    samples : int
+        Samples a drive period of each picture.
+    stop : Stop, optional
+        A byte that another thread sets to 1 to end the computation.
+
+    Yields
+    ------
+    Settled
+        About ten a second; `final` is set on the last.
+
+    Raises
+    ------
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settling
+    >>> [picture.final for picture in settling(scene("sec2").evolve(N=2, f=2000.0))][-1]
+    True
     """
     origin = "rest" if start is None else "previous state"
     began = time.perf_counter()
@@ -158,8 +205,44 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
 
 
 def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
-            stop: np.ndarray | None = None) -> Settled:
-    """The steady state reached from rest or from `start`, certified where it is periodic."""
+            stop: Stop | None = None) -> Settled:
+    """The steady state that a chain reaches. Also called `settle`.
+
+    The live method runs until the distance to the orbit is bounded, or until it is decided otherwise what the motion
+    is; a periodic orbit is then computed by the certified method (docs/design.md, "Settled is a bound").
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    start : State, optional
+        Where the motion begins; at rest if not given.
+    samples : int
+        Samples a drive period of the recorded orbit.
+    stop : Stop, optional
+        A byte that another thread sets to 1 to end the computation.
+
+    Returns
+    -------
+    Settled
+        One orbit where the motion is periodic, else a few periods of it.
+
+    Raises
+    ------
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> found = settle(scene("sec2").evolve(N=2, f=2000.0))
+    >>> found.regime.name, found.regime.period
+    ('periodic', 1)
+    >>> f"{found.run.max_output_force_elastic:.3f} N"
+    '2.260 N'
+    """
     began = time.perf_counter()
     way = settle(scene, start, stop)
     origin = "rest" if start is None else "previous state"
@@ -168,7 +251,7 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
     return live_picture(way, samples, began, origin, final=True)
 
 
-def settle(scene: Scene, start: State | None, stop: np.ndarray | None) -> Settling:
+def settle(scene: Scene, start: State | None, stop: Stop | None) -> Settling:
     """Run to the end of the budget or to the steady state, without pictures."""
     way = Settling(scene, start, stop)
     way.go_on(np.inf)
@@ -176,7 +259,7 @@ def settle(scene: Scene, start: State | None, stop: np.ndarray | None) -> Settli
 
 
 def live_picture(way: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
-    """A picture of what the live method does now, over one orbit or a few periods; the way itself is not moved."""
+    """The present motion by the live method, over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(way.scene, way.engine.setting, samples, stop=way.stop)
     state = way.engine.state
     engine.start(state)
@@ -232,7 +315,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
 
     The orbit of the live method differs from the true one by its error; a few more periods take that away, and the
     change from one n-period map to the next over 1 − |μ| says how much is left. What is left behind an extrapolation is
-    known from the changes behind it, and one behind which they are not smaller is taken back.
+    known from the changes after it, and a jump after which they are not smaller is undone.
     """
     scene, n = way.scene, way.regime.period
     assert n is not None

@@ -2,7 +2,7 @@
 
 Whether a claim near |μ| = 1 holds is asked here, in the middle of settling: with kernels that are compiled already, and
 for cut tensions too. The tangent flow (`granchain_core/orbits`) is for orbits that are asked for by name; both agree on
-|μ| to 1e-5 (tests/numerics/test_confirmed_orbits.py).
+|μ| to 1e-5 (tests/numerics/test_label_honesty.py).
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import Engine, Setting
+from ..integrate import Engine, certified, live
 from ..scene import Scene
+from ..stop import Stop
 
 #: Steps for one of the live method's: multipliers are then right to some 1e-6, next to a tangent flow's.
 _REFINE = 4.0
@@ -34,8 +35,8 @@ _HALVINGS = 5
 class StrobeMap:
     """x → the state n drive periods later, for scaled x = (u, w) at phase 0, (2N,)."""
 
-    def __init__(self, scene: Scene, periods: int, stop: np.ndarray | None = None, refine: float = _REFINE) -> None:
-        setting = Setting("dop853", tolerance=_TOLERANCE) if scene.cuts_tension else Setting("rk4-split", refine=refine)
+    def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, refine: float = _REFINE) -> None:
+        setting = certified(_TOLERANCE) if scene.cuts_tension else live(refine)
         self.engine = Engine(scene, setting, 1, stop=stop)
         self.periods = periods
 
@@ -61,8 +62,7 @@ class StrobeMap:
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
-        row = self.engine.lowered.row
-        return np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
+        return self.engine.lowered.beads_of(y)
 
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by differences; those to one side take half the time and are right to some 1e-4."""

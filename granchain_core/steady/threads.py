@@ -11,9 +11,8 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
 
-import numpy as np
-
 from ..errors import Cancelled
+from ..stop import Stop
 
 #: Seconds between looks whether the computation is still wanted.
 _LOOK = 0.05
@@ -38,13 +37,14 @@ class _Shared(Generic[Item]):
             return next(self._items)
 
 
-def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterable[Item], flag: np.ndarray,
-                 stop: Callable[[], bool] | None = None, workers: int | None = None,
+def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterable[Item], ended: Stop,
+                 stop: Stop | None = None, workers: int | None = None,
                  pause: Callable[[], None] | None = None) -> Iterator[Result]:
     """What `work` yields from `items`, in one thread for each core, in the order found.
 
-    `stop` is asked between results and may end it; closing the generator does too, and `flag`, polled by the kernels,
-    is then raised. `pause` is called before an item is drawn and may wait. A problem in a thread is raised here.
+    `stop` is looked at between results and may end it; closing the generator does too, and `ended`, which the kernels
+    of `work` poll, is then set. `pause` is called before an item is drawn and may wait. A problem in a thread is raised
+    here.
     """
     shared: _Shared[Item] = _Shared(items, pause)
     found: queue.SimpleQueue[Any] = queue.SimpleQueue()
@@ -55,7 +55,7 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
         thread.start()
     try:
         while count > 0:
-            if stop is not None and stop():
+            if stop:
                 return
             try:
                 item = found.get(timeout=_LOOK)
@@ -68,7 +68,7 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
             else:
                 yield item
     finally:
-        flag[0] = 1
+        ended.set()
         for thread in threads:
             thread.join()
 

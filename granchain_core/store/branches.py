@@ -19,6 +19,7 @@ import h5py
 import numpy as np
 
 from ..errors import BadInput
+from ..integrate.methods import CERTIFIED
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
 from ..quantities import QUANTITIES
 from ..scene import Scene
@@ -32,7 +33,7 @@ def save_branch(branch: Branch, path: str | Path) -> Path:
     """Write a branch, finished or not; returns the path. Raises `BadInput` where it cannot be written."""
 
     def write(file: h5py.File) -> None:
-        _provenance(file, branch.axis.scene, "dop853", None)
+        _provenance(file, branch.axis.scene, CERTIFIED, None)
         file.attrs["branch"] = json.dumps({
             "knob": branch.axis.knob, "start": branch.axis.start, "end": branch.axis.end, "period": branch.period,
             "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}

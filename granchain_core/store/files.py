@@ -26,12 +26,14 @@ import numba
 import numpy as np
 
 from ..errors import BadInput
+from ..integrate.methods import CERTIFIED
 from ..quantities import QUANTITIES
 from ..result import Cost, ForceErrors, Jumps, Run
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..steady.curve import Curve
 from ..steady.regime import Regime
+from ..version import __version__
 
 SCHEMA = 1
 _RUN = {  # name: (dimensions, unit, meaning)
@@ -52,7 +54,35 @@ _ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elas
 
 
 def save(result: Run, path: str | Path) -> Path:
-    """Write a run to `path`; returns the path. Raises `BadInput` where it cannot be written."""
+    """Write a run to an HDF5 file with labelled axes and units (README.md, "Files").
+
+    Parameters
+    ----------
+    result : Run
+        What `run` returned.
+    path : str or pathlib.Path
+        The file; one that is there is replaced when the new one is complete.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    BadInput
+        It cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> from granchain_core import load, run, save, scene
+    >>> result = run(scene("sec2").evolve(N=2, f=2000.0), periods=0, record=1, samples=8)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     again = load(save(result, pathlib.Path(folder) / "run.h5"))
+    >>> bool((again.displacement == result.displacement).all())
+    True
+    """
 
     def write(file: h5py.File) -> None:
         _provenance(file, result.scene, result.cost.method, result.error_estimate)
@@ -90,7 +120,7 @@ def save_curve(curve: Curve, path: str | Path) -> Path:
 
     def write(file: h5py.File) -> None:
         reached = [p.error_estimate for p in curve.points if p.error_estimate is not None]
-        _provenance(file, curve.scene, "dop853", max(reached) if reached else None)
+        _provenance(file, curve.scene, CERTIFIED, max(reached) if reached else None)
         file.attrs["start"], file.attrs["wall_s"] = curve.start, curve.wall_s
         group = file.create_group("curve")
         _scale(group, "frequency", curve.column("frequency"), "Hz", "drive frequency")
@@ -112,7 +142,31 @@ def save_curve(curve: Curve, path: str | Path) -> Path:
 
 
 def load(path: str | Path) -> Run:
-    """The run that `save` wrote. Raises `BadInput` for a file that is not one."""
+    """Read the run that `save` wrote.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        The file.
+
+    Returns
+    -------
+    Run
+        The same numbers, bit by bit.
+
+    Raises
+    ------
+    BadInput
+        There is no such file, or it is not a run written by granchain.
+
+    Examples
+    --------
+    >>> from granchain_core import load
+    >>> load("nothing-there.h5")
+    Traceback (most recent call last):
+    ...
+    granchain_core.errors.BadInput: nothing-there.h5 is not a run written by granchain: ...
+    """
     try:
         return _read(path)
     except BadInput:
@@ -167,8 +221,6 @@ def _or_none(value: float) -> float | None:
 
 
 def _provenance(file: h5py.File, scene: Scene, method: str, reached: float | None) -> None:
-    from .. import __version__
-
     file.attrs.update({
         "Conventions": "CF-1.10", "granchain_schema": SCHEMA, "granchain_version": __version__,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import threading
 import time
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
+import scipy.integrate
 
 from app.cli import main
 from granchain_core import Cancelled, NumbersFailed, scene
 from granchain_core.accuracy import Row, WorkPrecision, cheapest, ways, work_precision
 from granchain_core.accuracy import work_precision as entry
-from granchain_core.accuracy.compiled import METHODS_PIECE, compile_piece
 from granchain_core.accuracy.limit import Limited
 from granchain_core.accuracy.naive import NATURAL_STEPS, lesson
 from granchain_core.accuracy.scipy_methods import solve
 from granchain_core.accuracy.ways import choices
 from granchain_core.integrate import METHODS
-from granchain_core.integrate.engine import new_stop
+from granchain_core.stop import Stop
+from granchain_core.warm import ACCURACY, compile_piece
 
 SHORT = scene("sec2").evolve(N=2, f=2000.0)
 
@@ -91,7 +95,7 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
         if name == "LSODA":
             raise NumbersFailed("SciPy's LSODA lost the motion.", "not-finite")
         if name == "RK45":
-            while not stop[0]:
+            while not stop:
                 time.sleep(0.005)
             raise Cancelled
         return solve(shown, name, tolerance, periods, samples, stop, located)
@@ -107,59 +111,69 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
     assert "failed: SciPy's LSODA lost the motion." in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("solver", ["LSODA", "RK45", "DOP853"])
-def test_a_solver_of_scipy_stops_at_once(solver: str) -> None:
-    stop = new_stop()
-    ended: list[float] = []
+def cancelled_in_the_middle(work: Callable[[Stop], object], reached: threading.Event) -> None:
+    """Run `work(stop)`, raise the flag as soon as it has reached its middle, and see it end as cancelled."""
+    stop = Stop()
+    ended: list[BaseException] = []
 
-    def work() -> None:
-        with pytest.raises(Cancelled):
-            solve(scene("rig"), solver, 1e-9, 1000, 16, stop)
-        ended.append(time.perf_counter())
+    def target() -> None:
+        try:
+            work(stop)
+        except Cancelled as cancelled:
+            ended.append(cancelled)
 
-    thread = threading.Thread(target=work)
+    thread = threading.Thread(target=target)
     thread.start()
-    time.sleep(0.3)
-    began = time.perf_counter()
-    stop[0] = 1
-    thread.join(10.0)
-    assert ended[0] - began < 0.5  # 0.2 on a quiet machine; tests run on others
-
-
-def test_a_measurement_is_cancelled_within_a_third_of_a_second() -> None:
-    compile_piece(scene("rig"), METHODS_PIECE)
-    stop = new_stop()
-    ended: list[float] = []
-
-    def work() -> None:
-        with pytest.raises(Cancelled):
-            entry(scene("rig"), stop)
-        ended.append(time.perf_counter())
-
-    thread = threading.Thread(target=work)
-    thread.start()
-    time.sleep(1.0)
-    began = time.perf_counter()
-    stop[0] = 1
+    assert reached.wait(60.0)
+    stop.set()
     thread.join(60.0)
-    assert ended[0] - began < 0.5  # 0.2 on a quiet machine; tests run on others
+    assert not thread.is_alive() and len(ended) == 1
 
 
-def test_a_limit_goes_up_by_itself_and_with_the_outer_flag() -> None:
-    outer = new_stop()
+@pytest.mark.parametrize("solver", ["LSODA", "RK45", "DOP853"])
+def test_a_solver_of_scipy_stops_between_two_steps(solver: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run of minutes; the flag goes up in its fifth step."""
+    reached, steps = threading.Event(), itertools.count()
+    step = getattr(scipy.integrate, solver).step
+
+    def counted(self: Any) -> Any:
+        if next(steps) == 5:
+            reached.set()
+        return step(self)
+
+    monkeypatch.setattr(getattr(scipy.integrate, solver), "step", counted)
+    cancelled_in_the_middle(lambda stop: solve(scene("rig"), solver, 1e-9, 1000, 16, stop), reached)
+
+
+def test_a_measurement_is_cancelled_in_its_middle() -> None:
+    """While rows of SciPy's solvers are measured, which take minutes with the rig."""
+    compile_piece(scene("rig"), ACCURACY)
+    reached = threading.Event()
+    cancelled_in_the_middle(lambda stop: entry(scene("rig"), stop, lambda part: reached.set() if part > 0.0 else None), reached)
+
+
+def test_a_limit_raises_its_flag_after_its_time_and_with_the_outer_flag() -> None:
+    outer = Stop()
     with Limited(outer, 0.05) as limit:
-        time.sleep(0.15)
-        assert limit.flag[0] == 1 and outer[0] == 0
-    with Limited(outer, 60.0) as limit:
-        assert limit.flag[0] == 0
-        outer[0] = 1
-        time.sleep(0.05)
-        assert limit.flag[0] == 1
+        wait_for(limit.stop)
+        assert not outer
+    with Limited(outer, 3600.0) as limit:
+        assert not limit.stop
+        outer.set()
+        wait_for(limit.stop)
+
+
+def wait_for(stop: Stop) -> None:
+    """Until a flag is up."""
+    end = time.monotonic() + 60.0
+    while not stop:
+        assert time.monotonic() < end, "the flag stays down"
+        time.sleep(0.001)
 
 
 def test_the_naive_force_is_wrong_and_names_where_it_blows_up() -> None:
     """At natural steps the rig's naive force is off by a good part of itself, or is not there at all."""
-    found = lesson(scene("rig"), new_stop())
+    found = lesson(scene("rig"), Stop())
     drawn = {(one.method, one.steps): one for one in found.drawn}
     assert set(drawn) == {(m.name, n) for m in METHODS.values() if m.variables == "uv" for n in NATURAL_STEPS}
     assert "stopped being a finite number" in drawn["rk4-naive", 100].failure

@@ -12,21 +12,19 @@ CORE = sorted((ROOT / "granchain_core").rglob("*.py"))
 ALL = [*CORE, *sorted((ROOT / "app").rglob("*.py"))]
 #: Each layer with those it may import, besides itself; what stands higher knows what stands lower, never back.
 LAYERS = {
-    "errors": set(), "quantities": {"errors"}, "kernels": set(), "scene": {"errors", "quantities"},
-    "lower": {"errors", "scene", "kernels"}, "integrate": {"errors", "scene", "kernels", "lower"},
+    "errors": set(), "stop": {"errors"}, "version": set(), "kernels": set(), "laws": {"kernels"}, "quantities": {"errors", "laws"},
+    "scene": {"errors", "laws", "quantities"}, "state": {"scene"}, "lower": {"errors", "laws", "scene", "state", "kernels"},
+    "integrate": {"errors", "stop", "scene", "state", "kernels", "lower"},
     "result": {"scene", "kernels", "integrate", "steady.regime"},
-    "steady": {"errors", "scene", "kernels", "lower", "integrate", "result"},
-    "budget": {"errors", "scene", "lower", "integrate"},
-    "run": {"errors", "scene", "kernels", "integrate", "result", "steady", "budget", "stated"},
-    "stated": {"integrate"},
-    "live": {"integrate", "result", "scene", "steady"}, "warm": {"integrate", "kernels", "lower", "scene", "steady"},
-    "pieces": {"scene", "warm", "orbits", "observe", "accuracy"},
-    "orbits": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "warm"},
-    "diagram": {"errors", "quantities", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits"},
-    "observe": {"errors", "scene", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment", "warm"},
-    "drift": {"integrate", "orbits"}, "hard": {"errors", "scene", "kernels", "integrate", "orbits", "run", "steady", "drift"},
-    "accuracy": {"errors", "scene", "kernels", "lower", "integrate", "warm"}, "experiment": {"errors", "scene"},
-    "store": {"errors", "diagram", "observe", "orbits", "quantities", "result", "scene", "steady", ""},
+    "steady": {"errors", "stop", "scene", "state", "kernels", "lower", "integrate", "result"},
+    "run": {"errors", "stop", "scene", "state", "kernels", "lower", "integrate", "result", "steady"},
+    "warm": {"stop", "scene", "state", "kernels", "lower", "integrate", "steady", "orbits", "observe", "accuracy"},
+    "orbits": {"errors", "stop", "quantities", "scene", "state", "kernels", "lower", "integrate", "result", "steady"},
+    "diagram": {"errors", "stop", "quantities", "scene", "state", "kernels", "lower", "integrate", "result", "steady", "orbits"},
+    "observe": {"errors", "stop", "scene", "state", "kernels", "lower", "integrate", "result", "steady", "orbits", "experiment"},
+    "hard": {"errors", "laws", "scene", "state", "kernels", "integrate", "orbits", "run", "steady", "observe.drift"},
+    "accuracy": {"errors", "stop", "scene", "state", "kernels", "lower", "integrate"}, "experiment": {"errors", "scene"},
+    "store": {"errors", "integrate", "diagram", "observe", "orbits", "quantities", "result", "scene", "state", "steady", "version"},
 }
 
 
@@ -64,13 +62,19 @@ def test_a_layer_imports_only_what_stands_above_it(path: Path) -> None:
 @pytest.mark.parametrize("path", ALL, ids=lambda p: str(p.relative_to(ROOT)))
 def test_a_file_can_be_held_and_says_what_it_is(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
-    assert text.count("\n") <= 300
     tree = ast.parse(text)
+    assert text.count("\n") - lines_of_docstrings(tree) <= 300
     assert ast.get_docstring(tree) or not tree.body
     for node in ast.walk(tree):
         public = isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_")
         if public and node in tree.body:
             assert ast.get_docstring(node), f"{path.name}: {node.name} has no docstring"  # type: ignore[arg-type]
+
+
+def lines_of_docstrings(tree: ast.Module) -> int:
+    """Lines that are documentation: the better a file is documented, the longer it may be."""
+    return sum(node.body[0].end_lineno - node.body[0].lineno + 1 for node in ast.walk(tree)
+               if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node))
 
 
 def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:
@@ -79,28 +83,31 @@ def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:
     assert jit._sources_hash() in jit.CACHE_FOLDER.name
 
 
-def test_a_part_is_called_at_one_place() -> None:
+def test_code_inlined_by_numba_is_called_at_one_place() -> None:
     """In two it would be compiled twice, in place of once for itself. Steps in t and steps of the flow have each one."""
     parts: set[str] = set()
     calls: list[tuple[str, str]] = []
     for path in CORE:
         if "kernels" not in path.parts:
             continue
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree, here = ast.parse(path.read_text(encoding="utf-8")), _dotted(path)
+        origin = {alias.asname or alias.name: f"{module}.{alias.name}" for module, alias in _names_imported(path, tree)}
         for node in ast.walk(tree):
-            if isinstance(node, ast.FunctionDef) and any(ast.unparse(d) == "part" for d in node.decorator_list):
-                parts.add(f"{path.stem}.{node.name}")
+            if isinstance(node, ast.FunctionDef) and any(ast.unparse(d) == "inline_numba" for d in node.decorator_list):
+                parts.add(f"{here}.{node.name}")
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-                calls.append((_where_from(tree, path.stem, node.func.id), path.stem))
-    assert len(parts) > 30
+                calls.append((origin.get(node.func.id, f"{here}.{node.func.id}"), here))
     assert [call for call in calls if call[0] in parts and calls.count(call) > 1] == []
     callers = {name: [caller for called, caller in calls if called == name] for name in parts}
     assert all(1 <= len(found) <= 2 for found in callers.values()), callers
 
 
-def _where_from(tree: ast.Module, here: str, name: str) -> str:
-    """Module and name of a function called `name` in a module of kernels."""
-    for node in tree.body:
-        if isinstance(node, ast.ImportFrom) and any((alias.asname or alias.name) == name for alias in node.names):
-            return f"{(node.module or '').split('.')[-1]}.{name}"
-    return f"{here}.{name}"
+def _dotted(path: Path) -> str:
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts)
+
+
+def _names_imported(path: Path, tree: ast.Module) -> list[tuple[str, ast.alias]]:
+    """Module, absolute, and alias of every `from … import …` at the top of a file."""
+    package = _dotted(path).split(".")[:-1]
+    return [(".".join([*package[: len(package) - node.level + 1], node.module or ""]), alias)
+            for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]

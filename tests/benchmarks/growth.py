@@ -9,9 +9,9 @@ import numpy as np
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import LaneBlock
-from granchain_core.kernels.lanes import LANES, lane_steps
+from granchain_core.integrate.batch import Batch
+from granchain_core.kernels.batch.run import LANES, batch_steps
+from granchain_core.stop import Stop
 
 from . import problem
 from .machine import timed
@@ -27,11 +27,11 @@ _LONGEST_C = 100
 
 def lanes(beads: int, evaluations: float) -> float:
     """Contact evaluations a second of eight chains in lanes, from a chain already in motion."""
-    block = LaneBlock(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), new_stop())
+    block = Batch(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Stop())
     steps = max(4, round(evaluations / (4 * LANES * (beads + 1))))
     stirred(block.state.y, beads)
-    lane_steps(block.lanes, block.state, 2)
-    spent = timed(lambda: lane_steps(block.lanes, block.state, steps), 0.1, 7)
+    batch_steps(block.lanes, block.state, 2)
+    spent = timed(lambda: batch_steps(block.lanes, block.state, steps), 0.1, 7)
     return 4 * LANES * (beads + 1) * steps / spent.median
 
 

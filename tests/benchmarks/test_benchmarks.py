@@ -74,7 +74,7 @@ class TestC:
     @pytest.mark.parametrize("shape", [c_program.SHAPES[0], (2, 3), (1, 12)])
     def test_the_peaks_are_those_of_the_lanes(self, shape: tuple[int, int]) -> None:
         """The C program is plain RK4 in w, of order 2 at contact events: at a twelfth of the step it is 1e-5 off."""
-        lanes = granchain.lane_peaks(PERIODIC, 6).values
+        lanes = granchain.batch_peaks(PERIODIC, 6).values
         ours = c_program.sweep_peaks(PERIODIC, c_program.STEP / 12.0, shape).values
         assert np.allclose(ours, lanes, rtol=1e-5, atol=0.0)
 
@@ -83,4 +83,4 @@ def test_peaks_are_equal_to_the_certified_ones() -> None:
     certified, periodic = granchain.certified_peaks(PERIODIC)
     assert periodic.all()
     # order 2 at contact changes; the curve calls answers equal at 1e-4
-    assert np.allclose(granchain.lane_peaks(PERIODIC, 3).values, certified, rtol=1e-4, atol=0.0)
+    assert np.allclose(granchain.batch_peaks(PERIODIC, 3).values, certified, rtol=1e-4, atol=0.0)

@@ -56,6 +56,8 @@ window.painted = [];
 document.addEventListener("DOMContentLoaded", () => {
   if (window.granchain) granchain.on("painted", (event) => window.painted.push(event));
 });
+// Resolves when what was drawn last is on the screen.
+window.shown = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))));
 window.canvasIn = (id) => {
   const find = (node) => {
     for (const element of node.querySelectorAll("*")) {

@@ -9,11 +9,11 @@ import subprocess
 import sys
 import time
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from playwright.sync_api import Browser, Playwright
+from playwright.sync_api import Browser, Page, Playwright
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -21,6 +21,14 @@ CHROMIUM_OPTIONS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
     "--disable-component-update", "--disable-sync",
 ]
+
+
+def until(page: Page, holds: Callable[[], bool], seconds: float = 20.0) -> None:
+    """Wait until something holds that the browser alone cannot tell."""
+    end = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end, "did not come"
+        page.wait_for_timeout(50)
 
 
 def free_port() -> int:
@@ -54,7 +62,7 @@ class Server:
 
     def start(self) -> None:
         """Start it and wait until it answers."""
-        code = f"from app.server import serve; serve(port={self._port})"
+        code = f"from app.serve.server import serve; serve(port={self._port})"
         with self._log.open("ab") as output:
             self.process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output,
                                             env={**os.environ, **self._environment})

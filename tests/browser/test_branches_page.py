@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
+from started import until
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile the kernels of branches, on a machine that runs tests.
@@ -64,16 +65,18 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
     sheet.get_by_label("period of the orbits").select_option("1")
     sheet.get_by_role("button", name="follow from here").click()
     page.wait_for_function("[0, 1].every((stable) => granchain.branches?.arms[0]?.orbits.some((o) => o[2] === stable))", timeout=COMPILED)
-    page.wait_for_timeout(1500)
+    page.wait_for_function("granchain.branches.special.some((one) => one.kind === 'period_doubling')"
+                           " && granchain.branches.arms[0].orbits.filter((orbit) => !orbit[2]).length > 5", timeout=60_000)
     sheet.get_by_role("button", name="stop").click()
     expect(sheet).to_contain_text("stopped; what was found stays")
-    page.wait_for_timeout(1000)  # the last of the branch is still drawn, every mark anew
-    for _ in range(10):
-        sheet.locator('.special[data-kind="period_doubling"]').first.hover(force=True)
-        if sheet.locator(".tip").is_visible():
-            break
-        page.wait_for_timeout(300)
+
+    def tip_comes() -> bool:
+        """The last of the branch is still drawn, every mark anew, so one hover may be lost."""
         page.mouse.move(0, 0)
+        sheet.locator('.special[data-kind="period_doubling"]').first.hover(force=True)
+        return sheet.locator(".tip").is_visible()
+
+    until(page, tip_comes)
     expect(sheet.locator(".tip")).to_contain_text(re.compile(r"period doubling at 255\.(79|80)"))
     expect(sheet.locator(".tip")).to_contain_text("±")
     sheet.locator('.special[data-kind="period_doubling"]').first.click(force=True)

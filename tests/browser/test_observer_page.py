@@ -13,13 +13,20 @@ COMPILED = 240_000
 LAST = "granchain.observer?.history.at(-1)"
 
 
+def drawn(source: str, points: int) -> str:
+    """Whether a line of the figure on the page has so many points or more."""
+    return f"""Bokeh.documents.some((one) => one.roots()[0].name === "observer"
+        && one.get_model_by_name("{source}")?.data.period.length >= {points})"""
+
+
 def opened(page: Page) -> Locator:
     """The page with its first periods, opened from the corner, for the scene of figure 11."""
     page.get_by_label("scene").first.select_option("fig11-free")
     page.get_by_role("tab", name="observer").click()
     page.get_by_role("button", name="open the page").click()
     sheet = page.locator('[data-cover="observer"]')
-    expect(sheet.locator("path.distance")).to_be_visible(timeout=COMPILED)
+    page.wait_for_function(drawn("distance", 8), timeout=COMPILED)
+    expect(sheet.locator(".trace canvas").first).to_be_visible()
     return sheet
 
 
@@ -29,11 +36,11 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
     expect(sheet).to_contain_text("it drifts; an offset of its beads, which nothing pulls back", timeout=COMPILED)
     expect(sheet).to_contain_text("predicted × 4.418")  # PHYSICS.md, section 3: one real multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5", timeout=30_000)
-    chains = sheet.locator("canvas")
+    chains = sheet.locator(".chains canvas")
     assert chains.count() == 3
     sheet.get_by_role("button", name="0.001").click()
     expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
-    expect(sheet.locator("line.predicted")).to_be_visible(timeout=30_000)
+    page.wait_for_function(drawn("prediction", 2), timeout=30_000)
     page.wait_for_function(f"{LAST}[1] < 0.1", timeout=30_000)
     expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("0.001")
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
+from started import until
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile the tangent flow, on a machine that runs tests.
@@ -28,9 +30,18 @@ def opened(page: Page, words: str = "Stable") -> Locator:
     return sheet
 
 
-def points(sheet: Locator) -> str:
-    """The dots of the section as they are drawn."""
-    return "".join(one.get_attribute("d") or "" for one in sheet.locator("path.dots").all())
+def section(page: Page, source: str) -> dict[str, Any]:
+    """A source of the section's figure, empty until that is there."""
+    return dict(page.evaluate(f"""() => {{
+      const one = Bokeh.documents.find((one) => one.roots()[0].name === "section");
+      return one?.get_model_by_name("{source}").data ?? {{}};
+    }}"""))
+
+
+def axis_title(page: Page, axis: str) -> str:
+    """The title of an axis of the section."""
+    return str(page.evaluate(f"""Bokeh.documents.find((one) => one.roots()[0].name === "section")
+        .get_model_by_name("{axis}").axis_label"""))
 
 
 def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) -> None:
@@ -69,8 +80,7 @@ def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Vis
     assert sheet.locator("path.swing").first.get_attribute("d") != before
     moment = sheet.locator("line.moment")
     there = moment.get_attribute("transform")
-    page.wait_for_timeout(300)
-    assert moment.get_attribute("transform") != there
+    until(page, lambda: moment.get_attribute("transform") != there)
 
 
 def test_the_observer_is_a_second_set_and_off_at_first(visit: Visit) -> None:
@@ -98,17 +108,17 @@ def test_multipliers_leave_a_trail_and_the_evidence_follows(visit: Visit) -> Non
 def test_the_section_follows_bead_and_phase(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=1130")
     sheet = opened(page)
-    expect(sheet.locator("path.own")).to_have_count(3)
-    first = points(sheet)
+    until(page, lambda: len(section(page, "orbit").get("u", ())) == 3)
+    first = section(page, "way")
+    assert len(first["u"]) > 20
     sheet.get_by_label("bead of the section").select_option("7")
-    expect(sheet).to_contain_text("displacement of bead 7 (nm)")
-    second = points(sheet)
-    assert second != first
+    until(page, lambda: axis_title(page, "displacement") == "displacement of bead 7 (nm)")
+    second = section(page, "way")
+    assert second["u"] != first["u"]
     sheet.get_by_label("drive phase of the section").fill("12")
     expect(sheet.locator("output")).to_have_text("0.25 T")
-    expect(sheet.locator("path.own")).to_have_count(3)
-    page.wait_for_timeout(200)
-    assert points(sheet) != second
+    until(page, lambda: section(page, "way")["u"] != second["u"])
+    assert len(section(page, "orbit")["u"]) == 3
 
 
 def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: Visit) -> None:
@@ -116,13 +126,13 @@ def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: 
     sheet = opened(page, "No multipliers: the motion is chaotic")
     expect(sheet.locator(".multiplier:visible")).to_have_count(2)  # those of the key
     expect(sheet).to_contain_text("1200 drive periods, one point each", timeout=20_000)
-    assert points(sheet).count("M") > 1000
+    until(page, lambda: len(section(page, "way").get("u", ())) + len(section(page, "dots").get("u", ())) > 1000)
     expect(sheet.locator(".evidence")).to_contain_text("Lyapunov exponent")
     sheet.get_by_role("button", name="search").click()
     expect(sheet.locator(".mine")).to_contain_text("the chain does not follow this orbit", timeout=COMPILED)
     expect(sheet.locator(".say")).to_contain_text("Unstable: a disturbance grows 1.57-fold")
     expect(sheet.locator(".plane .draw .multiplier.outside")).to_have_count(3)
-    expect(sheet.locator("path.own.unstable")).to_have_count(1)
+    until(page, lambda: len(section(page, "unstable orbit")["u"]) == 1)
     sheet.get_by_role("button", name="back to what the chain does").click()
     expect(sheet.locator(".say")).to_contain_text("No multipliers", timeout=20_000)
     expect(sheet.locator(".mine")).to_be_hidden()

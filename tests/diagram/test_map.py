@@ -21,6 +21,7 @@ from granchain_core.diagram import Axis, Diagram, Grid, diagram
 from granchain_core.diagram.blocks import Blocks, folder_of
 from granchain_core.diagram.cells import REGIMES, empty_cells
 from granchain_core.diagram.scheduled import blocks_of, describe, iter_blocks, work_on
+from granchain_core.stop import Stop
 from granchain_core.store.diagrams import load_diagram, save_diagram
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -84,12 +85,14 @@ def test_the_first_cells_are_spread_over_the_whole_diagram() -> None:
 
 
 def test_a_stopped_diagram_says_what_is_missing() -> None:
-    count = [0]
+    count, stop = [0], Stop()
 
     def look(_: Diagram, __: float) -> None:
         count[0] += 1
+        if count[0] >= 10:
+            stop.set()
 
-    found = diagram(scene("sec2"), ("f", np.linspace(300, 2000, 20)), ("A0", AMPLITUDES), stop=lambda: count[0] >= 10,
+    found = diagram(scene("sec2"), ("f", np.linspace(300, 2000, 20)), ("A0", AMPLITUDES), stop=stop,
                     progress=look)
     assert not found.complete and (found.cells["regime"] >= 0).sum() == count[0] >= 10
     missing = found.cells["regime"] < 0

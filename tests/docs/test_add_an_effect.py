@@ -2,65 +2,36 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from pages import ROOT, blocks, edited
+from documents import ROOT
+from edited_tree import edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
-_PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml")
 
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made."""
-    copy = tmp_path_factory.mktemp("effect") / "tree"
-    for part in _PARTS:
-        source, target = ROOT / part, copy / part
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if source.is_dir():
-            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy(source, target)
-    for block in blocks(PAGE):
-        if block.language == "console":
-            continue
-        file = copy / block.path
-        if block.is_new_file:
-            assert not file.exists(), f"{block.path} is there already"
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(block.text, encoding="utf-8")
-        else:
-            file.write_text(edited(file.read_text(encoding="utf-8"), block.text), encoding="utf-8")
-    return copy
+    return edited_copy(PAGE, tmp_path_factory.mktemp("effect") / "tree")
 
 
-def follow(tree: Path, *arguments: str) -> str:
-    """What a command prints in the edited tree."""
-    done = subprocess.run([sys.executable, *arguments], cwd=tree, capture_output=True, text=True, timeout=400,
-                          env={**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(tree / "cache"), "NUMBA_OPT": "1"})
-    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-    return done.stdout
+def test_the_page_edits_and_writes_as_many_files_as_it_says() -> None:
+    edits, new = files_of(PAGE)
+    assert (len(edits), len(new)) == (8, 3)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 8 files, write 3"
 
 
-def test_the_page_has_five_steps():
-    text = PAGE.read_text(encoding="utf-8")
-    assert [line[3] for line in text.splitlines() if line.startswith("## ")] == list("12345")
-
-
-def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path):
+def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
     """Force, energy and tangent of the page's effect are right in every kernel."""
     assert "3 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics/test_drag.py")
 
 
-def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path):
+def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> None:
     """The scene names it, the equation shows it, a scene without it has no slot."""
     told = follow(tree, "-c", """
-from app.explain import explanation
+from app.cli.explain import explanation
 from granchain_core import scene
 from granchain_core.lower import lower
 one = scene("drag")
@@ -72,3 +43,47 @@ print(explanation(one, None))
     assert "ground drag" in first.split("]")[0] and r"- c\,\dot u_i" in first
     assert "ground drag" not in first.rsplit("[", 1)[1] and absent == "None"
     assert "ground drag (Drag)" in explained[0]
+
+
+def test_the_new_effect_has_a_switch_in_the_panel_a_slider_a_cost_and_axes(tree: Path) -> None:
+    """Off and on again by its switch, with its own kernel each time; the knob is under "more", and can be followed."""
+    told = follow(tree, "-c", """
+from app.page.session import Session
+from app.pages.effects.switches import EFFECTS, present, variants
+from app.parts.knobs import knob_state
+from granchain_core import scene
+from granchain_core.diagram.grid import KNOBS
+from granchain_core.orbits import CONTINUOUS
+from granchain_core.warm import structure
+session = Session(scene=scene("drag"))
+print(EFFECTS["drag"].title, "|", present("drag", session.scene, False))
+for on in (False, True):
+    session.switch("drag", on)
+    print(session.scene.c, structure(session.scene))
+print(scene("sec2").c, [one.scene.c for one in variants("drag", scene("sec2"))])
+print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name"] == "c"], "c" in KNOBS, "c" in CONTINUOUS)
+""").splitlines()
+    assert told == ["ground drag | True", "0.0 linear, 16 lanes", "20.0 linear+drag, 16 lanes", "0.0 [10.0, 0.0]",
+                    "[True] True True"]
+
+
+@pytest.mark.parametrize(("path", "right", "wrong", "sentence"), [
+    ("kernels/effects/drag.py", "@drag_loss.of(Drag)\n", "", "Drag (granchain_core.kernels.effects.drag) has no `drag_loss`"),
+    ("lower.py", '    "drag": lambda', '    "dragged": lambda',
+     "effect 'drag': lower.py does not say how its slot 'drag' is filled"),
+    ("kernels/equations/motion.py", "    drag: Any = None\n", "",
+     "effect 'drag': Slots (kernels/equations/motion.py) has no field 'drag'"),
+    ("quantities.py", 'Quantity("c", "c"', 'Quantity("C", "c"', "effect 'drag': its knob 'c' is not among QUANTITIES"),
+])
+def test_what_the_effect_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
+    """Nothing is computed: the first import says what is missing, and of which effect."""
+    file = tree / "granchain_core" / path
+    text = file.read_text(encoding="utf-8")
+    assert text.count(right) == 1
+    file.write_text(text.replace(right, wrong), encoding="utf-8")
+    try:
+        with pytest.raises(AssertionError) as told:
+            follow(tree, "-c", "import granchain_core")
+    finally:
+        file.write_text(text, encoding="utf-8")
+    assert f"TypeError: {sentence}" in str(told.value)

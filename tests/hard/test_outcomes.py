@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import json
 import sys
-import time
 from pathlib import Path
 
 import h5py
@@ -16,14 +15,14 @@ import app
 import granchain_core
 from app.cli import main
 from granchain_core import BadInput, Cancelled, NumbersFailed, State, run, scene
-from granchain_core.budget import estimate
 from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.integrate import Engine, Setting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
-from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits import periodic_orbit
-from granchain_core.run import warnings
+from granchain_core.run.budget import estimate
+from granchain_core.run.run import warnings
 from granchain_core.scene.validity import ONSET_OF_YIELD, YIELD_STRESS, peak_pressures
+from granchain_core.stop import Stop
 from granchain_core.store import load, save
 
 
@@ -34,8 +33,8 @@ def test_done_with_its_figures() -> None:
 
 
 def test_cancelled() -> None:
-    stop = new_stop()
-    stop[0] = 1
+    stop = Stop()
+    stop.set()
     with pytest.raises(Cancelled):
         run(scene("sec2"), periods=5, record=1, samples=8, stop=stop)
 
@@ -47,15 +46,12 @@ def test_accuracy_not_reached_in_chaos() -> None:
 
 
 @pytest.mark.parametrize("knobs", [{"N": 10_000, "f": 0.1}, {"f": 0.1, "D": 3e4}, {"N": 10_000, "f": 10.0, "A0": 1e-4}])
-def test_over_budget_is_refused_in_a_tenth_of_a_second_with_what_would_fit(knobs: dict[str, float]) -> None:
+def test_over_budget_is_refused_before_anything_is_computed_with_what_would_fit(knobs: dict[str, float],
+                                                                                monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = scene("sec2").evolve(**knobs)
-    spent = []
-    for _ in range(5):
-        began = time.perf_counter()
-        with pytest.raises(OverBudget, match=r"would fit|needed") as caught:
-            run(chosen, periods=10_000, record=1, samples=8)
-        spent.append(time.perf_counter() - began)
-    assert min(spent) < 0.1
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "Engine", None)  # nothing can be integrated
+    with pytest.raises(OverBudget, match=r"would fit|needed") as caught:
+        run(chosen, periods=10_000, record=1, samples=8)
     assert caught.value.estimate > caught.value.budget
     assert isinstance(caught.value, BadInput)
 
@@ -81,7 +77,7 @@ def test_the_steps_of_a_run_are_estimated_within_a_factor_of_two(knobs: dict[str
 
 def test_a_finer_computation_that_does_not_fit_is_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
     """This run needs a third computation; where that is taken for a very long one the second is what is returned."""
-    monkeypatch.setattr(sys.modules["granchain_core.run"], "_TWICE", 1e9)
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "_TWICE", 1e9)
     result = run(scene("sec2"), periods=20, record=1, samples=8)
     assert result.status == "over-budget"
     assert result.error_estimate > result.scene.accuracy
@@ -103,7 +99,7 @@ def test_a_step_in_the_middle_of_a_long_call_is_found_again() -> None:
     engine = Engine(scene("sec2"), Setting("rk4-split"), 1)
     engine.periods(3)
     step = engine.grid // 3
-    engine.drive[2 * step + 2] = np.nan
+    engine.stepper.drive[2 * step + 2] = np.nan
     with pytest.raises(NumbersFailed) as caught:
         engine.periods(4)
     assert (caught.value.bead, caught.value.step) == (1, step)
@@ -114,7 +110,7 @@ def test_step_too_small() -> None:
     engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
     engine.record(1)
     engine.lowered.slots.chain.stiffness[:] = 1e30
-    engine.clock[0] = 1e-14
+    engine.stepper.clock[0] = 1e-14
     with pytest.raises(NumbersFailed, match="shrank to nothing") as caught:
         engine.record(8)
     assert caught.value.status == "step-too-small"

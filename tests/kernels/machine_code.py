@@ -3,9 +3,9 @@
     python machine_code.py types > types.pickle
     NUMBA_CPU_NAME=… NUMBA_CPU_FEATURES=… GRANCHAIN_CACHE=<empty folder> python machine_code.py < types.pickle
 
-{kernel: {case: counts}} for `wide` (one chain along the lanes, its split step included) and `lanes` (eight chains), with
-nothing but contacts and driver, with one effect more, and, under "… by hand", for the same source with the absent
-effects struck out by hand (struck_out.py). Only code that is fresh can be read: what comes from the cache has none.
+{kernel: {case: counts}} for `chain` (one chain in a register, its split step included) and `batch` (eight chains), with
+nothing but contacts and driver and with one effect more. Only code that is fresh can be read: what comes from the cache
+has none.
 
 The first call runs kernels, to learn the types of their arguments; the second only compiles, for whatever processor it
 is told, and that need not be the one it runs on.
@@ -17,24 +17,19 @@ import json
 import pickle
 import re
 import sys
-import tempfile
 from collections import Counter
-from pathlib import Path
 
 import numba
-import struck_out
-from numba import types
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import LaneBlock
-from granchain_core.kernels import lanes, wide_run
+from granchain_core.integrate.batch import Batch
+from granchain_core.kernels.batch.run import batch_steps
+from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
+from granchain_core.stop import Stop
 
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
 NOTHING = {"dissipation": "none"}
-#: Cases that are written by hand too; compiling each takes some seconds.
-BY_HAND = ("nothing", "dissipation")
 #: Instructions by what they do; a multiplication and an addition in one count as both.
 KINDS = {"mul": "multiply", "add": "add", "sub": "add", "fmadd": "both", "fmsub": "both", "fnmadd": "both",
          "fnmsub": "both", "sqrt": "root", "div": "divide", "rsqrt14": "root", "max": "choose", "min": "choose",
@@ -79,21 +74,11 @@ def counts(kernel, arguments) -> dict:
 def argument_types(knobs: dict) -> dict[str, tuple]:
     """Types of the arguments of both kernels for section 2's chain with these knobs."""
     chain = scene("sec2").evolve(**knobs)
-    e, block = Engine(chain, Setting("rk4-split"), 1), LaneBlock(chain, new_stop())
-    one = (e.work.along, e.lowered.slots, e.drive, 0, 4, 0.01, e.h, e.y, e.work.k[0], e.work.forces.e, e.log,
-           e.counts.array, e.stop)
-    return {"wide": tuple(map(numba.typeof, one)), "lanes": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
-
-
-def by_hand(found: dict[str, tuple], absent: tuple[str, ...]) -> dict[str, dict]:
-    """Counts of both kernels with the absent effects struck out of their source."""
-    with tempfile.TemporaryDirectory() as folder:
-        struck = struck_out.without(absent, Path(folder))
-        workspace, *others = found["wide"]
-        width = numba.typeof(struck["wide"].WIDTHS[16])
-        own = types.NamedTuple((width, *workspace.types[1:]), struck["wide"].Wide)
-        return {"wide": counts(struck["wide_run"].wide_steps, (own, *others)),
-                "lanes": counts(struck["lanes"].lane_steps, found["lanes"])}
+    e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, Stop())
+    stepper = e.stepper
+    one = (stepper.work.along, e.lowered.slots, stepper.drive, 0, 4, 0.01, stepper.h, e.y, stepper.work.k[0],
+           stepper.work.forces.e, e.log, e.counts.array, e.stop.flag)
+    return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
 
 
 def cases() -> dict[str, dict]:
@@ -106,18 +91,9 @@ def main() -> None:
     if sys.argv[1:] == ["types"]:
         sys.stdout.buffer.write(pickle.dumps({case: argument_types(knobs) for case, knobs in cases().items()}))
         return
-    found: dict[str, dict] = {"wide": {}, "lanes": {}}
-    signatures_of = pickle.loads(sys.stdin.buffer.read())
-    for case, signatures in signatures_of.items():
-        found["wide"][case] = counts(wide_run.wide_steps, signatures["wide"])
-        found["lanes"][case] = counts(lanes.lane_steps, signatures["lanes"])
-        if case in BY_HAND:
-            absent = (*(effect for effect in EFFECTS if effect != case), "unequal")
-            for kernel, counted in by_hand(signatures, absent).items():
-                found[kernel][f"{case} by hand"] = counted
-    # the roots and divisions of a dashpot are those of its jumps: struck out, none is left
-    without = by_hand(signatures_of["dissipation"], ("foundation", "preload", "unequal", "jumps"))
-    found["lanes"]["dissipation without jumps"] = without["lanes"]
+    kernels = {"chain": run_short_chain, "batch": batch_steps}
+    signatures = pickle.loads(sys.stdin.buffer.read())
+    found = {name: {case: counts(kernel, signatures[case][name]) for case in signatures} for name, kernel in kernels.items()}
     print(json.dumps(found))
 
 

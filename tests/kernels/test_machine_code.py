@@ -1,6 +1,6 @@
 """An effect that is off leaves no trace in the machine code of the SIMD kernels, nor in their arrays.
 
-What is compared is code for a processor whose registers hold a whole vector of eight doubles. It is compiled for that
+What is counted is code for a processor whose registers hold a whole vector of eight doubles. It is compiled for that
 processor wherever the test runs, and not run. With narrower registers the compiler has too few of them for a step and
 computes some values twice instead of storing them; which ones differs from one source to the next, and the
 instructions then count its choices, not the effects.
@@ -21,11 +21,11 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import LaneBlock
+from granchain_core.integrate.batch import Batch
+from granchain_core.stop import Stop
 
 PROGRAM = Path(__file__).parent / "machine_code.py"
-KERNELS = ("wide", "lanes")
+KERNELS = ("chain", "batch")
 x86 = pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="reads x86-64 assembly")
 
 
@@ -50,12 +50,6 @@ def program(*words: str, environment: dict, given: bytes = b"") -> bytes:
     return done.stdout
 
 
-def arithmetic(found: dict) -> dict:
-    """Floating-point and shuffling instructions by mnemonic; moves to and from registers and memory left out."""
-    return {name: count for name, count in found["mnemonics"].items()
-            if name.startswith("v") and not name.startswith(("vmov", "vbroadcast", "vzeroupper"))}
-
-
 def added(kernel: str, effect: str) -> dict:
     """Packed instructions by kind that an effect adds to the bare kernel."""
     bare, more = (code()[kernel][case]["packed"] for case in ("nothing", effect))
@@ -64,40 +58,42 @@ def added(kernel: str, effect: str) -> dict:
 
 @x86
 @pytest.mark.parametrize("kernel", KERNELS)
-@pytest.mark.parametrize("case", ["nothing", "dissipation"])
-def test_absent_effects_leave_no_arithmetic_in_the_machine_code(kernel, case):
-    """Instruction by instruction the arithmetic is that of a kernel whose source does not know the absent effects.
-
-    Integer moves may differ by the registers that hand an empty slot to a function that is not inlined: below 2 %.
-    """
-    product, by_hand = code()[kernel][case], code()[kernel][f"{case} by hand"]
-    assert product["packed"] == by_hand["packed"]
-    assert arithmetic(product) == arithmetic(by_hand)
-    assert product["all"] <= 1.02 * by_hand["all"]
-    assert product["packed"]["multiply"] > 100  # vector code was found at all
+def test_the_code_is_vector_code(kernel):
+    """Else nothing below would count anything."""
+    assert code()[kernel]["nothing"]["packed"]["multiply"] > 100
 
 
 @x86
-@pytest.mark.parametrize("kernel", KERNELS)
-def test_an_effect_switched_on_adds_its_own_arithmetic_and_nothing_else(kernel):
-    """A foundation adds one multiplication with its subtraction for each evaluation, a preload one addition; a linear
-    dashpot multiplies and adds and takes no root but those of its jumps, which lanes look for."""
-    dashpot = "dissipation without jumps" if kernel == "lanes" else "dissipation"
-    founded, pressed, damped = (added(kernel, effect) for effect in ("foundation", "preload", dashpot))
+def test_switching_an_effect_on_adds_its_whole_formula_at_every_slope_of_a_chain():
+    """One root is taken for each slope in the code. A foundation adds to each one multiplication and one subtraction, a
+    preload one addition, which is all there is to them: so without them not one of these is left. A linear dashpot adds
+    at least its difference, product and sum, and no root or division."""
+    slopes = code()["chain"]["nothing"]["packed"]["root"]
+    assert slopes > 0
+    assert added("chain", "foundation") == {"multiply": slopes, "add": slopes}
+    assert added("chain", "preload") == {"add": slopes}
+    damped = added("chain", "dissipation")
+    assert damped["multiply"] >= slopes and damped["add"] >= 2 * slopes
+    assert not {"root", "divide"} & set(damped)
+
+
+@x86
+def test_switching_an_effect_on_adds_nothing_else_to_a_batch():
+    """As above; how many of the beads' slopes the compiler has merged is not known here. A dashpot's jumps, which a batch
+    looks for, take roots and divisions of their own."""
+    founded, pressed, damped = (added("batch", effect) for effect in ("foundation", "preload", "dissipation"))
     assert set(founded) == {"multiply", "add"}
     assert founded["multiply"] == founded["add"] > 0
     assert set(pressed) == {"add"}
     assert pressed["add"] > 0
-    assert damped["multiply"] > 0
-    assert damped["add"] > 0
-    assert not {"root", "divide"} & set(damped)
+    assert damped["multiply"] > founded["multiply"] and damped["add"] > pressed["add"]
 
 
 def test_absent_effects_have_no_arrays_in_the_simd_workspaces():
-    """None in place of the static overlaps, of the damping's and the foundation's lanes, of unequal beads."""
+    """None in place of the static overlaps, of the damping and the foundation of a batch, of unequal beads."""
     bare = scene("sec2").evolve(dissipation="none")
-    assert Engine(bare, Setting("rk4-split"), 1).work.along.preload is None
-    lanes = LaneBlock(bare, new_stop()).lanes
+    assert Engine(bare, Setting("rk4-split"), 1).stepper.work.along.preload is None
+    lanes = Batch(bare, Stop()).lanes
     assert (lanes.dissipation, lanes.foundation, lanes.preload, lanes.unequal) == (None, None, None, None)
-    full = LaneBlock(scene("sec2").evolve(kappa=0.001, F0=1.0), new_stop()).lanes
+    full = Batch(scene("sec2").evolve(kappa=0.001, F0=1.0), Stop()).lanes
     assert None not in (full.dissipation, full.foundation, full.preload)

@@ -16,8 +16,8 @@ import numpy as np
 
 from granchain_core import Scene, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.engine import new_stop
-from granchain_core.steady.lane_curve import lane_results
+from granchain_core.steady.batch_settle import batch_results
+from granchain_core.stop import Stop
 
 #: The orbit repeats itself to this, or the point is not judged after this many periods.
 REPEATS, PATIENCE = 1e-9, 3000
@@ -62,7 +62,7 @@ def true_force(chosen: Scene, state, period: int) -> float | None:
 def points(count: int, seed: int, base: str) -> Iterator[Point]:
     """Periodic points among `count` random scenes, judged."""
     rng = np.random.default_rng(seed)
-    for r in lane_results((random_scene(rng, base) for _ in range(count)), new_stop()):
+    for r in batch_results((random_scene(rng, base) for _ in range(count)), Stop()):
         if r.regime.name != "periodic" or r.failure:
             continue
         top = true_force(r.scene, r.state, r.regime.period)

@@ -19,7 +19,7 @@ import numpy as np
 
 from granchain_core import CurvePoint, Scene, State, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.engine import rest
+from granchain_core.state import rest
 from granchain_core.steady.lyapunov import exponents
 
 #: Frequencies [Hz] at which the period-1 branch of section 2 changes its stability (`granchain branch sec2`).

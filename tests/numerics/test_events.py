@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels import certified
+from granchain_core.kernels.dop853 import located as certified
 
 
 def grazing(depth: float, method: str, tolerance: float = 1e-9):
@@ -21,7 +21,7 @@ def grazing(depth: float, method: str, tolerance: float = 1e-9):
     engine = Engine(chain, Setting(method, refine=1, tolerance=tolerance), 64)
     slots = engine.lowered.slots
     far = slots.chain._replace(stiffness=np.array([1.0, 0.0]))  # the wall pushes with no force
-    engine.lowered = replace(engine.lowered, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0)))
+    engine.use(replace(engine.lowered, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0))))
     engine.start(State(np.array([(1.0 - depth) * chain.A0]), np.zeros(1), phase=0.125))
     return engine, engine.record(16)
 
@@ -69,21 +69,21 @@ def test_a_chain_that_never_opens_has_no_events():
 
 
 def test_certified_steps_end_on_the_events():
-    """After a step that found a contact opening or closing its overlap is zero, to the landing's own figure."""
+    """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
     engine = Engine(chain, Setting("dop853", tolerance=1e-9), 1)
     engine.periods(2)
     t, landed = 0.0, []
     for _ in range(400):
-        status, h, contact = certified.certified_step(engine.method, engine.lowered.slots, engine.lowered.beta, t,
-                                                      engine.lowered.period, engine.y, engine.work, engine.clock,
+        status, h, contact = certified.certified_step(engine.stepper.method, engine.lowered.slots, engine.lowered.beta, t,
+                                                      engine.lowered.period, engine.y, engine.stepper.work, engine.stepper.clock,
                                                       engine.counts.array)
         assert status == 0
         if contact >= 0:
-            end = engine.work.end
-            landed.append(abs(end[contact] - end[contact + 1]) / engine.work.scale[0])
-        engine.y[:] = engine.work.end
-        engine.work.k[0] = engine.work.k[12]
+            end = engine.stepper.work.end
+            landed.append(abs(end[contact] - end[contact + 1]) / engine.stepper.work.scale[0])
+        engine.y[:] = engine.stepper.work.end
+        engine.stepper.work.k[0] = engine.stepper.work.k[12]
         t += h
         if t >= engine.lowered.period * (1 - 1e-12):
             break

@@ -11,9 +11,9 @@ import pytest
 from forces.draw import FEW
 from forces.judge import Verdict, verdicts
 from forces.located import located
-from hard.fuzzing import oracle
 
 from granchain_core import scene
+from tools.fuzzing import oracle
 
 LAWS = [("linear", "allowed"), ("linear", "cut"), ("tsuji", "cut"), ("kuwabara-kono", "allowed")]
 #: Seed of the slice of random scenes, not one by which factors were chosen.

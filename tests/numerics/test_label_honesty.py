@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from granchain_core import resonance_curve, run, scene, settled
-from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import scaled_state
 from granchain_core.lower import lower
 from granchain_core.orbits import periodic_orbit
 from granchain_core.steady.nearby_orbit import NearbyOrbit, orbit_of
 from granchain_core.steady.settle import settle
 from granchain_core.steady.strobe_map import StrobeMap, fixed_point, sizes
+from granchain_core.stop import Stop
 from tests.numerics.label_honesty import judged
 
 
@@ -29,9 +28,9 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
     """The orbit found from a state so far away from the exact one, relative."""
     chain = scene("sec2").evolve(f=f, **knobs)
     exact = periodic_orbit(chain, period)
-    x = StrobeMap(chain, period).inner(scaled_state(lower(chain), exact.state))
+    x = StrobeMap(chain, period).inner(lower(chain).scaled(exact.state))
     shape = np.random.default_rng(1).standard_normal(len(x))
-    found = orbit_of(chain, period, x + offset * sizes(x) * shape, new_stop())
+    found = orbit_of(chain, period, x + offset * sizes(x) * shape, Stop())
     assert found is not None
     return found
 
@@ -47,7 +46,7 @@ def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
     """The fixed point of the map by steps of a quarter is the orbit to the map's error over 1 − |μ|."""
     chain = scene("sec2").evolve(f=340.0)
     strobe = StrobeMap(chain, 1)
-    exact = strobe.inner(scaled_state(lower(chain), periodic_orbit(chain, 1).state))
+    exact = strobe.inner(lower(chain).scaled(periodic_orbit(chain, 1).state))
     found = fixed_point(strobe, exact + 1e-3 * sizes(exact))
     assert found is not None and found.residual <= 1e-9
     assert np.abs((found.x - exact) / sizes(exact)).max() < 1e-6  # 7e-6 at the live step, /4⁴, over 1 − 0.36: 4e-8
@@ -56,8 +55,8 @@ def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
 def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
     """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period."""
     chain = scene("sec2").evolve(f=340.0)
-    x = StrobeMap(chain, 4).inner(scaled_state(lower(chain), settled(chain).state))
-    found = orbit_of(chain, 4, x, new_stop())
+    x = StrobeMap(chain, 4).inner(lower(chain).scaled(settled(chain).state))
+    found = orbit_of(chain, 4, x, Stop())
     assert found is not None and found.period == 1 and found.modulus == pytest.approx(0.361, abs=1e-3)
 
 

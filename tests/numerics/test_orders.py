@@ -1,6 +1,6 @@
-"""Every method converges with the order that is measured here regime by regime, and reaches what it says.
+"""Every method converges at least with the order that theory gives it, regime by regime, and reaches what it says.
 
-An order is the slope of a straight line through log error over log step, over at least three decades of error where
+A measured order is the slope of a straight line through log error over log step, over at least three decades of error where
 the method is of order 2 or more; errors of several scenes are averaged (geometric mean), since beside contact events
 a single one depends on where in a step the events fall.
 """
@@ -18,30 +18,33 @@ from granchain_core.integrate import METHODS, Engine, Setting
 PERIODS = 3
 REFINED = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)
 TOLERANCES = 10.0 ** np.arange(-4, -12.5, -1)
-#: How far a fit may be from the expected order.
-NEAR = 0.2
+#: How far a fit over few decades may be below the order that holds in the limit.
+TOLERANCE = 0.2
 _FREQUENCIES = (340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0)
 #: What the right-hand side is like: never a contact that opens; contacts without damping; with each damping law; cut.
 REGIMES = {
     "closed": {"F0": 5.0}, "none": {"dissipation": "none"}, "linear": {}, "Tsuji": {"dissipation": "tsuji"},
     "Kuwabara–Kono": {"dissipation": "kuwabara-kono"}, "cut": {"tension": "cut"},
 }
-#: Expected orders over these decades. RK4 has its 4 where all is smooth. Beside events rk4-split falls from 4 to 3.5 with
-#: the smallest steps; rk4 is left with the kink of [δ]_+ in G (2), what is smoother than it (Tsuji's δ^{5/4}, 2.25, and
-#: 2.5 of Kuwabara–Kono's δ^{3/2} and of the elastic force alone) falls from 3 to that. In (u, v) the dashpot jumps (1).
-#: Verlet in (u, v) is of order 2 only where no force depends on velocities. The certified method's mean step stands for
-#: steps that restart small at every event.
-ORDERS = {
-    ("rk4-split", "closed"): 4.0, ("rk4-split", "none"): 4.0, ("rk4-split", "linear"): 3.9,
-    ("rk4-split", "Tsuji"): 3.9, ("rk4-split", "Kuwabara–Kono"): 3.9,
-    ("rk4", "closed"): 4.0, ("rk4", "none"): 2.75, ("rk4", "linear"): 2.1, ("rk4", "Tsuji"): 2.4,
-    ("rk4", "Kuwabara–Kono"): 2.5,
-    ("rk4-naive", "closed"): 4.0, ("rk4-naive", "none"): 2.75, ("rk4-naive", "linear"): 1.0,
+#: Orders that theory gives, method by method; each is a lower bound, since over the coarser steps a smoother part of the
+#: error may still be the larger one. Where all is smooth a method has the order of its tableau: 4 for RK4, 8 for dop853; Verlet
+#: in (u, v) has 2 only where no force depends on velocities. A fixed step across a contact event is left with the
+#: smoothness of what begins there, [δ]_+^a, integrated over one step: order 1 + a of its integral, hence 2 for G = λδ of the
+#: linear dashpot, 2.25 for Tsuji's δ^{5/4}, 2.5 for Kuwabara and Kono's δ^{3/2} and for the elastic force alone, and 1 in
+#: (u, v), where the dashpot jumps. rk4-split takes the step's errors of 2 and 2.5 back, which leaves those that the
+#: rate's own change makes, 3.5. dop853 ends its steps at events, found on its dense output of order 7, and at the kink of a cut.
+THEORY = {
+    ("rk4-split", "closed"): 4.0, ("rk4-split", "none"): 3.5, ("rk4-split", "linear"): 3.5,
+    ("rk4-split", "Tsuji"): 3.5, ("rk4-split", "Kuwabara–Kono"): 3.5,
+    ("rk4", "closed"): 4.0, ("rk4", "none"): 2.5, ("rk4", "linear"): 2.0, ("rk4", "Tsuji"): 2.25,
+    ("rk4", "Kuwabara–Kono"): 2.5, ("rk4", "cut"): 1.0, ("rk4-split", "cut"): 1.0,
+    ("rk4-naive", "closed"): 4.0, ("rk4-naive", "none"): 2.5, ("rk4-naive", "linear"): 1.0,
     ("verlet-naive", "closed"): 1.0, ("verlet-naive", "none"): 2.0, ("verlet-naive", "linear"): 1.0,
-    ("dopri5", "closed"): 5.4, ("dopri5", "none"): 4.0, ("dopri5", "linear"): 4.4,
-    ("dop853", "closed"): 8.5, ("dop853", "none"): 7.7, ("dop853", "linear"): 8.1, ("dop853", "Tsuji"): 7.9,
-    ("dop853", "Kuwabara–Kono"): 7.35, ("dop853", "cut"): 9.55,
+    ("dop853", "closed"): 8.0, ("dop853", "none"): 7.0, ("dop853", "linear"): 7.0, ("dop853", "Tsuji"): 7.0,
+    ("dop853", "Kuwabara–Kono"): 7.0, ("dop853", "cut"): 7.0,
 }
+#: What a dashpot's contact events leave at most of a fixed step's order 4: the reason for w-variables and for split steps.
+LOST = {"rk4": 3.0, "rk4-naive": 2.0}
 
 
 @functools.cache
@@ -66,6 +69,7 @@ def errors(regime: str, settings) -> np.ndarray:
     return found
 
 
+@functools.cache
 def order(method: str, regime: str) -> float:
     """Slope of log error over log step: 1.5 decades of steps, or eight of the certified method's tolerance."""
     if METHODS[method].adaptive:
@@ -82,28 +86,28 @@ def adaptive_order(method: str, regime: str) -> float:
     return float(-np.polyfit(np.log(steps).mean(axis=1), error, 1)[0])
 
 
-@pytest.mark.parametrize(("method", "regime"), ORDERS)
+@pytest.mark.parametrize(("method", "regime"), THEORY)
 def test_every_method_has_its_order_in_every_regime(method, regime):
-    """Within 0.2 of the table, from both sides."""
+    """At least the theory's, less a fifth for the fit."""
     found = order(method, regime)
     print(f"{method}, {regime}: {found:.2f}")
-    assert found == pytest.approx(ORDERS[method, regime], abs=NEAR)
+    assert found >= THEORY[method, regime] - TOLERANCE
+
+
+@pytest.mark.parametrize(("method", "most"), LOST.items())
+def test_contact_events_take_orders_from_a_fixed_step(method, most):
+    """What a step across a kink or a jump cannot have; a measure that always said 4 would fail here."""
+    assert order(method, "linear") < most
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_table_of_methods_claims_no_more_than_is_measured(method):
-    """Its one order across contact events is not above the least of the regimes that have them, within the fit's 0.2."""
-    measured = min(o for (name, regime), o in ORDERS.items() if name == method and regime not in ("closed", "cut"))
-    assert METHODS[method].order <= measured + NEAR
-    assert METHODS[method].order_smooth == pytest.approx(ORDERS[method, "closed"], abs=NEAR)
-
-
-@pytest.mark.parametrize("method", ["rk4", "rk4-split"])
-def test_fixed_step_methods_keep_order_1_with_a_tension_cut(method):
-    """Fixed steps are not split at the cut's kink, F = 0: of a force that is cut order 1 is left, unevenly."""
-    found = order(method, "cut")
-    print(f"{method}, cut: {found:.2f}")
-    assert found == pytest.approx(METHODS[method].order_with_cut, abs=NEAR)
+    """Its orders are not above those measured where no contact opens, across contact events and with a tension cut."""
+    with_events = [regime for name, regime in THEORY if name == method and regime not in ("closed", "cut")]
+    assert METHODS[method].order_smooth <= order(method, "closed") + TOLERANCE
+    assert METHODS[method].order <= min(order(method, regime) for regime in with_events) + TOLERANCE
+    if (method, "cut") in THEORY:
+        assert METHODS[method].order_with_cut <= order(method, "cut") + TOLERANCE
 
 
 @pytest.mark.parametrize("regime", [r for r in REGIMES if r not in ("none", "cut")])

@@ -26,13 +26,13 @@ from granchain_core.hard.brushes import (
     run,
     workspace,
 )
-from granchain_core.kernels.certified import certified_step
-from granchain_core.kernels.dop853 import STAGES, Dop853, evaluate
+from granchain_core.kernels.dop853.located import certified_step
+from granchain_core.kernels.dop853.step import STAGES, Dop853, evaluate
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.foundation import Foundation
 from granchain_core.kernels.effects.preload import Preload
-from granchain_core.kernels.motion import Slots
+from granchain_core.kernels.equations.motion import Slots
 
 __all__ = ["DEPTH", "ONSETS", "ONSET_ERROR", "RELEASE_ERROR", "TOLERANCE", "draw", "missed", "moved", "run", "run_pairs"]
 

@@ -8,6 +8,7 @@ from recorded import Recorded, error, recorded
 
 from granchain_core import observe, scene
 from granchain_core.observe import force_record
+from granchain_core.stop import Stop
 
 FOUNDED = scene("fig11-founded")
 #: Kuwabara and Kono's damping vanishes with the overlap: its force does not jump where a contact closes.
@@ -63,12 +64,11 @@ def test_the_force_is_monotone_between_samples_and_zero_between_zeros() -> None:
 
 
 def test_steps_converge_with_their_fourth_power() -> None:
-    from granchain_core.integrate.engine import new_stop
     from granchain_core.observe.pushed_chain import PushedChain
     from granchain_core.observe.record import ForceRecord
 
     r = recorded(SMOOTH, 500)
-    chain = PushedChain(SMOOTH, ForceRecord(r.time, r.force), new_stop())
+    chain = PushedChain(SMOOTH, ForceRecord(r.time, r.force), Stop())
     found = [chain.run(r.start, halvings).displacement for halvings in range(5)]
     change = [error(a, found[-1]) for a in found[:3]]
     # RK4 split at events has 3.9 and more (granchain_core/integrate/methods.py); fitted over a factor of 4

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, scene
-from granchain_core.integrate.engine import rest
 from granchain_core.observe import figure_11, observer_stability, twin
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import rates
 from granchain_core.orbits import periodic_orbit
+from granchain_core.state import rest
 
 FREE, FOUNDED = scene("fig11-free"), scene("fig11-founded")
 CHAOTIC = scene("rig").evolve(f=140.0, N=2)

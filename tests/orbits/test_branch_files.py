@@ -11,9 +11,9 @@ import xarray
 
 from app.cli import main
 from granchain_core import BadInput, Cancelled, scene
-from granchain_core.integrate.engine import new_stop
 from granchain_core.orbits import Branch, Continuation, begin_branch, continue_branch, switch_to_doubled
-from granchain_core.orbits.branch_walk import SHORTEST
+from granchain_core.orbits.branch.walk import SHORTEST
+from granchain_core.stop import Stop
 from granchain_core.store import load_branch, save_branch
 
 
@@ -63,12 +63,12 @@ def test_points_one_by_one_are_those_of_both_threads(whole: Branch) -> None:
 
 
 def test_cancelled_it_stays_whole_and_can_go_on(whole: Branch) -> None:
-    branch, stop, seen = begun(), new_stop(), []
+    branch, stop, seen = begun(), Stop(), []
 
     def cancel(arm: object) -> None:
         seen.append(arm)
         if len(seen) == 3:
-            stop[0] = 1
+            stop.set()
 
     with pytest.raises(Cancelled):
         Continuation(branch, stop).run(on_point=cancel)
@@ -99,7 +99,7 @@ def test_a_file_that_is_no_branch_is_refused(tmp_path: Path) -> None:
 
 def test_a_branch_that_cannot_be_followed_says_so_with_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
     from granchain_core import NumbersFailed
-    from granchain_core.orbits.branch_equations import BranchEquations
+    from granchain_core.orbits.branch.equations import BranchEquations
 
     branch = begin_branch(scene("sec2"), "f", 2000.0, 2100.0, 1)
 

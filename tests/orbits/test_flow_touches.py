@@ -19,7 +19,7 @@ def test_a_brief_touch_is_in_the_map_and_in_its_derivative(depth: float) -> None
     # the wall pushes with no force, and no contact is damped
     slots = slots._replace(chain=slots.chain._replace(stiffness=np.array([1.0, 0.0])),
                            dissipation=type(slots.dissipation)(0.0))
-    strobe.engine.lowered = replace(lowered, slots=slots)
+    strobe.engine.use(replace(lowered, slots=slots))
     flow = strobe(np.array([1.0 - depth, 0.0]))
     assert [int(contact) for contact, _ in flow.changes] == [1, -1]
     # the touch lasts 1.4 % and 0.45 % of a period, a step of the flow up to a sixteenth

@@ -13,6 +13,7 @@ from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import mode, orbit_section
 from granchain_core.orbits.search import least_period, search_orbit
 from granchain_core.steady.poincare import Section, iter_section, most_periods
+from granchain_core.stop import Stop
 
 
 @cache
@@ -142,7 +143,8 @@ def test_a_search_without_success_says_where_it_looked() -> None:
 
 
 def test_a_raised_flag_stops_all_of_it() -> None:
-    stop = np.ones(1, dtype=np.uint8)
+    stop = Stop()
+    stop.set()
     with pytest.raises(Cancelled):
         mode(orbit_of("sec2"), stop=stop)
     with pytest.raises(Cancelled):

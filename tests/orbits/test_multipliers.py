@@ -116,5 +116,5 @@ def dashpot_wall(damping: float, period: float) -> StroboscopicMap:
     slots = lowered.slots._replace(chain=Chain(lowered.slots.chain.inverse_mass, np.array([1.0, 0.0])),
                                    preload=Preload(np.array([-10.0, 0.0])),  # a negative one is a gap
                                    dissipation=LinearDashpot(damping), driver=Harmonic(1.0, beta))
-    strobe.engine.lowered = replace(lowered, slots=slots, beta=beta)
+    strobe.engine.use(replace(lowered, slots=slots, beta=beta))
     return strobe

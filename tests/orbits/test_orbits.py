@@ -7,7 +7,6 @@ import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, NumbersFailed, scene
-from granchain_core.integrate.lane_block import scaled_state
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
 
@@ -96,5 +95,5 @@ def test_a_period_out_of_range_is_refused() -> None:
 def test_the_state_of_an_orbit_comes_back_after_its_period() -> None:
     orbit = periodic_orbit(scene("sec2").evolve(f=1130.0))
     strobe = StroboscopicMap(orbit.scene, 3)
-    x = strobe.inner(scaled_state(strobe.engine.lowered, orbit.state))
+    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
     assert np.abs(strobe(x).end - x).max() < 1e-10 * np.abs(x).max()  # the residual, after conversion to SI and back

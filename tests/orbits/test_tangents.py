@@ -7,11 +7,12 @@ import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, Cancelled, scene
-from granchain_core.integrate.engine import new_stop, rest
 from granchain_core.orbits import orbit as orbits
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.orbits.orbit import sorted_multipliers
+from granchain_core.state import rest
+from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize("changes", [{}, {"f": 1130.0}, {"kappa": 0.001}, {"F0": 0.5}, {"wall": "rigid", "N": 3},
@@ -117,8 +118,8 @@ def test_a_contact_that_rounding_closes_again_at_once_stops_nobody() -> None:
 
 
 def test_a_flow_stops_when_it_is_told_to() -> None:
-    stop = new_stop()
+    stop = Stop()
     strobe = StroboscopicMap(scene("sec2"), 1, stop)
-    stop[0] = 1
+    stop.set()
     with pytest.raises(Cancelled):
         strobe.end(np.zeros(22))

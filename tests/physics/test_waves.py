@@ -67,7 +67,7 @@ def swing(chain, mode: int, amplitude: float) -> float:
     engine = Engine(clock, Setting("dop853", tolerance=1e-12), 48)
     lowered = engine.lowered
     slots = lowered.slots._replace(driver=Harmonic(0.0, lowered.beta), dissipation=LinearDashpot(0.0))
-    engine.lowered = replace(lowered, slots=slots)
+    engine.use(replace(lowered, slots=slots))
     engine.start(State(amplitude * shape, np.zeros(chain.N)))
     moved = engine.record(48).displacement * lowered.scales.length
     linear = amplitude * np.outer(np.cos(2 * np.pi * 3 * np.arange(49) / 48), shape)

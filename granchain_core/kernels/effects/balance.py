@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import kernel, term
+from ..jit import by_slot, kernel
 from .contact import elastic_force, positive_part
 from .driver import driver_acceleration
 from .preload import overlap
@@ -26,7 +26,7 @@ class Balance(NamedTuple):
     present: int
 
 
-@term
+@by_slot
 def account(balance, slots, y, dy, e):
     """Write the integrands of W and Q behind the motion in dy; needs the velocities in dy and the forces in e."""
 
@@ -50,7 +50,7 @@ def _(balance, slots, y, dy, e):
     dy[dy.size - 1] = lost
 
 
-@term
+@by_slot
 def slack_loss(balance, slots, y, end):
     """What slack contacts lose from y to `end`, where it is accounted for. Absent: nothing is."""
     return 0.0
@@ -61,7 +61,7 @@ def _(balance, slots, y, end):
     return lost_in(slots.tension, slots, y, end)
 
 
-@term
+@by_slot
 def add_to_account(balance, y, work, lost):
     """Add to the work and to the energy lost in y. Absent: there is no account."""
 
@@ -88,7 +88,7 @@ def account_ends(slots, y, dy):
     return work, lost
 
 
-@term
+@by_slot
 def ends_of(balance, slots, y, dy):
     """`account_ends` where there is an account. Absent: nothing is left."""
     return 0.0, 0.0

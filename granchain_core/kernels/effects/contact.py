@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import kernel
-from ..simd_math import clip, root
+from ..jit import by_slot, in_simd_kernels, inline_llvm, kernel
+from ..simd.functions import clip, root
 
 
+@in_simd_kernels
 class Chain(NamedTuple):
     """Slot of the chain itself."""
 
@@ -22,10 +23,33 @@ class Chain(NamedTuple):
     stiffness: np.ndarray
 
 
+class Held(NamedTuple):
+    """Slot of contacts that stay as they are while a step is tried: closed (N+1,) is 0 where one stays open."""
+
+    closed: np.ndarray
+
+
 @kernel
 def positive_part(overlap):
     """[δ]_+, written so that a NaN overlap stays NaN instead of cutting the chain there."""
     return clip(overlap)
+
+
+@by_slot
+def pressed(held, c, overlap):
+    """[δ]_+ of contact c. Absent: the overlap's sign says whether the contact is closed."""
+    return positive_part(overlap)
+
+
+@pressed.of(Held)
+def _(held, c, overlap):
+    return positive_part(overlap) if held.closed[c] != 0 else 0.0
+
+
+@inline_llvm
+def three_halves(s):
+    """s^{3/2}, as the elastic force goes."""
+    return s * root(s)
 
 
 @kernel

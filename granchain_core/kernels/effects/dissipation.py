@@ -1,20 +1,34 @@
 """Contact damping g(δ) δ̇ whose primitive G (G' = g, G(0) = 0) makes the w-variables continuous.
 
-Equation   F_d = λ g(δ) δ̇ H(δ)
-             LinearDashpot   g = 1         G = δ              Zhang et al. 2016, eq. (1)
-             Tsuji           g = δ^{1/4}   G = (4/5) δ^{5/4}  Tsuji, Tanaka & Ishida 1992
-             KuwabaraKono    g = δ^{1/2}   G = (2/3) δ^{3/2}  Kuwabara & Kono 1987
-Values     coefficient: λ in scaled units, at an overlap of one length unit for the last two
+Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
+             LinearDashpot   a = 0     Zhang et al. 2016, eq. (1)
+             Tsuji           a = 1/4   Tsuji, Tanaka & Ishida 1992
+             KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
+Values     coefficient: λ in scaled units, at an overlap of one length unit where a > 0
+Law        its `exponent` a and its `power` δ^a; all other terms, here and in other files, are made of these two
 Terms      damping, primitive, keep_primitive, velocity (absent: v = w)
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
-from ..jit import term
-from ..simd import load
-from ..simd_math import gate, root
+from ..jit import by_slot, by_slot_inlined, in_simd_kernels, inline_llvm, require_terms
+from ..simd.functions import gate, root
+from ..simd.vector import load
+
+
+@by_slot_inlined
+def exponent(law):
+    """a of g = λ δ^a, a literal: what is computed from it alone is computed by the compiler."""
+    return 0.0
+
+
+@by_slot_inlined
+def power(law, d, r):
+    """δ^a from d = [δ]_+ and r = √d, for numbers and vectors. A root that is not used is not computed."""
+    return 0.0
 
 
 class LinearDashpot(NamedTuple):
@@ -23,10 +37,30 @@ class LinearDashpot(NamedTuple):
     coefficient: float
 
 
+@exponent.of(LinearDashpot)
+def _(law):
+    return 0.0
+
+
+@power.of(LinearDashpot)
+def _(law, d, r):
+    return 1.0
+
+
 class Tsuji(NamedTuple):
     """Slot of damping ∝ δ^{1/4}, whose restitution does not depend on the impact speed."""
 
     coefficient: float
+
+
+@exponent.of(Tsuji)
+def _(law):
+    return 0.25
+
+
+@power.of(Tsuji)
+def _(law, d, r):
+    return root(r)
 
 
 class KuwabaraKono(NamedTuple):
@@ -35,161 +69,168 @@ class KuwabaraKono(NamedTuple):
     coefficient: float
 
 
-LAWS = (LinearDashpot, Tsuji, KuwabaraKono)
-#: Those with g(0) = 0, whose force does not jump when a contact closes.
-SMOOTH_LAWS = (Tsuji, KuwabaraKono)
+@exponent.of(KuwabaraKono)
+def _(law):
+    return 0.5
 
 
-@term
+@power.of(KuwabaraKono)
+def _(law, d, r):
+    return r
+
+
+def checked(*laws):
+    """The laws, each checked to be complete; TypeError says by name which law lacks what."""
+    for law in laws:
+        require_terms(law, exponent, power)
+        if law._fields != ("coefficient",):
+            raise TypeError(f"damping law {law.__name__} has the fields {law._fields}; it needs `coefficient` alone.")
+        a = exponent(law(1.0))
+        if not 0.0 <= a < 1.5 or 4.0 * a % 1.0 != 0.0:
+            raise TypeError(f"damping law {law.__name__} has the exponent {a}; the time of contact events "
+                            f"(dop853/time_map.py) takes 0, 1/4, 1/2, … 5/4.")
+        if any(not math.isclose(power(law(1.0), d, math.sqrt(d)), d**a) for d in (0.3, 1.0, 2.0)):
+            raise TypeError(f"damping law {law.__name__}: `power` is not δ^{a}, which its `exponent` says.")
+        in_simd_kernels(law)  # which are made of the same two terms
+    return laws
+
+
+#: Every slot class for which an exponent or a power has been registered.
+LAWS = checked(*(slot for slot in exponent.implementations | power.implementations if slot is not type(None)))
+#: Those with g(0) > 0, whose force jumps when a contact closes, and those with g(0) = 0.
+JUMP_LAWS = tuple(law for law in LAWS if exponent(law(1.0)) == 0.0)
+SMOOTH_LAWS = tuple(law for law in LAWS if law not in JUMP_LAWS)
+
+
+@by_slot
 def damping(law, d):
     """Force per speed of approach g(d) for d = [δ]_+; 0 where the contact is open."""
     return 0.0
 
 
-@damping.of(LinearDashpot)
+@damping.of(*JUMP_LAWS)
 def _(law, d):
     return gate(d, law.coefficient)
 
 
-@damping.of(Tsuji)
+@damping.of(*SMOOTH_LAWS)
 def _(law, d):
-    return law.coefficient * root(root(d))
+    return law.coefficient * power(law, d, root(d))
 
 
-@damping.of(KuwabaraKono)
-def _(law, d):
-    return law.coefficient * root(d)
-
-
-@term
+@by_slot
 def damping_slope(law, d):
-    """g'(d) for d = [δ]_+; 0 where the contact is open, though the last two have an infinite slope there."""
+    """g'(d) for d = [δ]_+; 0 where the contact is open, though it is infinite there where 0 < a < 1."""
     return 0.0
 
 
-@damping_slope.of(LinearDashpot)
+damping_slope.absent_for(*JUMP_LAWS)
+
+
+@damping_slope.of(*SMOOTH_LAWS)
 def _(law, d):
-    return 0.0
+    return gate(d, exponent(law) * law.coefficient * power(law, d, root(d)) / d)
 
 
-@damping_slope.of(Tsuji)
-def _(law, d):
-    return gate(d, 0.25 * law.coefficient / (root(d) * root(root(d))))
+@inline_llvm
+def primitive_factor(law):
+    """1/(1 + a), the factor of G."""
+    return 1.0 / (1.0 + exponent(law))
 
 
-@damping_slope.of(KuwabaraKono)
-def _(law, d):
-    return gate(d, 0.5 * law.coefficient / root(d))
+@inline_llvm
+def primitive_power(law, s):
+    """s^{1+a}, as G goes."""
+    return s * power(law, s, root(s))
 
 
-@term
+@by_slot
 def primitive(law, d):
     """G(d) with G' = g and G(0) = 0."""
     return 0.0
 
 
-@primitive.of(LinearDashpot)
+@primitive.of(*LAWS)
 def _(law, d):
-    return law.coefficient * d
+    return primitive_factor(law) * law.coefficient * d * power(law, d, root(d))
 
 
-@primitive.of(Tsuji)
-def _(law, d):
-    return 0.8 * law.coefficient * d * root(root(d))
-
-
-@primitive.of(KuwabaraKono)
-def _(law, d):
-    return 2.0 / 3.0 * law.coefficient * d * root(d)
-
-
-@term
-def keep_primitive(law, G, c, d):
-    """Store G of contact c; without dissipation there is no array to store it in."""
-
-
-@term
-def put_primitive(law, G, c, value):
-    """Store another value for G of contact c; without dissipation there is no array to store it in."""
-
-
-@term
-def hand_primitive(law, G, source, target):
-    """G of one contact is that of another too; without dissipation there is none."""
-
-
-@term
-def velocity(law, inverse_mass, w, G, i):
-    """v_i = w_i + (G_{i-1} − G_i)/m_i, the inverse of the change of variables."""
-    return w
-
-
-@term
-def shifted(law, inverse_mass, v, G, i):
-    """w_i = v_i − (G_{i-1} − G_i)/m_i."""
-    return v
-
-
-@term
-def lane_values(law):
-    """The law with the values of all lanes, read from its (1, 8) arrays; what multiplies `shape` in the first."""
-    return None
-
-
-@lane_values.of(LinearDashpot)
-def _(law):
-    return LinearDashpot(load(law.coefficient, 0))
-
-
-@lane_values.of(Tsuji)
-def _(law):
-    return Tsuji(load(law.coefficient, 0))
-
-
-@lane_values.of(KuwabaraKono)
-def _(law):
-    return KuwabaraKono(load(law.coefficient, 0))
-
-
-@term
+@by_slot
 def shape(law, d, r):
     """G over its coefficient, from d and r = √d."""
     return 0.0
 
 
-@shape.of(LinearDashpot)
+@shape.of(*LAWS)
 def _(law, d, r):
-    return d
+    return primitive_factor(law) * d * power(law, d, r)
 
 
-@shape.of(Tsuji)
-def _(law, d, r):
-    return 0.8 * d * root(r)
+@by_slot
+def keep_primitive(law, G, c, d):
+    """Store G of contact c; without dissipation there is no array to store it in."""
 
 
-@shape.of(KuwabaraKono)
-def _(law, d, r):
-    return 2.0 / 3.0 * d * r
+@keep_primitive.of(*LAWS)
+def _(law, G, c, d):
+    G[c] = primitive(law, d)
+
+
+@by_slot
+def put_primitive(law, G, c, value):
+    """Store another value for G of contact c; without dissipation there is no array to store it in."""
+
+
+@put_primitive.of(*LAWS)
+def _(law, G, c, value):
+    G[c] = value
+
+
+@by_slot
+def put_prescribed_primitive(law, G, source, target):
+    """G of one contact is that of another too; without dissipation there is none."""
+
+
+@put_prescribed_primitive.of(*LAWS)
+def _(law, G, source, target):
+    G[target] = G[source]
+
+
+@by_slot
+def velocity(law, inverse_mass, w, G, i):
+    """v_i = w_i + (G_{i-1} − G_i)/m_i, the inverse of the change of variables."""
+    return w
+
+
+@velocity.of(*LAWS)
+def _(law, inverse_mass, w, G, i):
+    return w + inverse_mass[i] * (G[i - 1] - G[i])
+
+
+@by_slot
+def shifted(law, inverse_mass, v, G, i):
+    """w_i = v_i − (G_{i-1} − G_i)/m_i."""
+    return v
+
+
+@shifted.of(*LAWS)
+def _(law, inverse_mass, v, G, i):
+    return v - inverse_mass[i] * (G[i - 1] - G[i])
+
+
+@by_slot
+def batch_values(law):
+    """The law with the values of all lanes, read from its (1, 8) arrays; what multiplies `shape` in the first."""
+    return None
+
+
+def _read_by_lane(slot):
+    """Code of `batch_values` for a law: a compiled function makes a slot of a class that it knows by name."""
+
+    @batch_values.of(slot)
+    def _(law):
+        return slot(load(law.coefficient, 0))
 
 
 for _law in LAWS:
-
-    @keep_primitive.of(_law)
-    def _(law, G, c, d):
-        G[c] = primitive(law, d)
-
-    @put_primitive.of(_law)
-    def _(law, G, c, value):
-        G[c] = value
-
-    @hand_primitive.of(_law)
-    def _(law, G, source, target):
-        G[target] = G[source]
-
-    @velocity.of(_law)
-    def _(law, inverse_mass, w, G, i):
-        return w + inverse_mass[i] * (G[i - 1] - G[i])
-
-    @shifted.of(_law)
-    def _(law, inverse_mass, v, G, i):
-        return v - inverse_mass[i] * (G[i - 1] - G[i])
+    _read_by_lane(_law)

@@ -11,12 +11,13 @@ from __future__ import annotations
 from math import cos, sin
 from typing import NamedTuple
 
-from ..jit import term
+from ..jit import by_slot, in_simd_kernels
 
 #: Where an absent driver or wall stands, in length units: too far to touch, near enough not to overflow.
 FAR = 1e30
 
 
+@in_simd_kernels
 class Harmonic(NamedTuple):
     """Slot of the harmonic driver."""
 
@@ -24,7 +25,7 @@ class Harmonic(NamedTuple):
     beta: float
 
 
-@term
+@by_slot
 def driver_displacement(driver, theta):
     """u_0 at drive phase θ."""
     return -FAR
@@ -35,7 +36,7 @@ def _(driver, theta):
     return driver.amplitude * sin(theta)
 
 
-@term
+@by_slot
 def driver_velocity(driver, theta):
     """v_0 at drive phase θ."""
     return 0.0
@@ -46,7 +47,7 @@ def _(driver, theta):
     return driver.amplitude * driver.beta * cos(theta)
 
 
-@term
+@by_slot
 def driver_acceleration(driver, u0):
     """v̇_0 where the driver is at u_0."""
     return 0.0

@@ -9,28 +9,29 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import term
-from ..simd import load
+from ..jit import by_slot, in_simd_kernels
+from ..simd.vector import load
 
 
+@in_simd_kernels
 class Foundation(NamedTuple):
     """Slot of the foundation spring."""
 
     stiffness: float
 
 
-@term
-def pull_back(foundation, force, u):
+@by_slot
+def add_foundation_force(foundation, force, u):
     """Force on a bead with the foundation's pull taken off. Absent: the force itself."""
     return force
 
 
-@pull_back.of(Foundation)
+@add_foundation_force.of(Foundation)
 def _(foundation, force, u):
     return force - foundation.stiffness * u
 
 
-@term
+@by_slot
 def foundation_energy(foundation, u):
     """k u²/2."""
     return 0.0
@@ -41,7 +42,7 @@ def _(foundation, u):
     return 0.5 * foundation.stiffness * u * u
 
 
-@term
+@by_slot
 def lane_foundation(foundation):
     """The foundation with the stiffness of all lanes, read from its (1, 8) array."""
     return None
@@ -52,7 +53,7 @@ def _(foundation):
     return Foundation(load(foundation.stiffness, 0))
 
 
-@term
+@by_slot
 def foundation_pull(foundation):
     """The pull per displacement, for tangents."""
     return 0.0

@@ -10,17 +10,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import term
-from ..simd import load
+from ..jit import by_slot, in_simd_kernels
+from ..simd.vector import load
 
 
+@in_simd_kernels
 class Preload(NamedTuple):
     """Slot of the static overlaps."""
 
     static: np.ndarray
 
 
-@term
+@by_slot
 def overlap(preload, y, c):
     """δ_c from the displacements at the front of y. Absent: the sonic vacuum."""
     return y[c] - y[c + 1]
@@ -31,18 +32,18 @@ def _(preload, y, c):
     return y[c] - y[c + 1] + preload.static[c]
 
 
-@term
-def lane_overlap(preload, left, right, c):
+@by_slot
+def batch_overlap(preload, left, right, c):
     """δ_c in all lanes from the displacements on its two sides."""
     return left - right
 
 
-@lane_overlap.of(Preload)
+@batch_overlap.of(Preload)
 def _(preload, left, right, c):
     return left - right + load(preload.static, c)
 
 
-@term
+@by_slot
 def row_values(preload, read, width):
     """The slot with its values as one vector, read by `read(width, array, 0)`."""
     return None
@@ -53,7 +54,7 @@ def _(preload, read, width):
     return Preload(read(width, preload.static, 0))
 
 
-@term
+@by_slot
 def row_overlap(preload, left, right):
     """δ of all contacts from the displacements on their two sides."""
     return left - right

@@ -9,7 +9,7 @@ Terms      cut_tension adds what is missing to F ≥ 0 to the elastic forces, co
 Slack      The force is zero, before δ = 0 and behind it, but what is added to keep it so, −g(δ)δ̇, ends with a jump
            (linear) or with an infinite slope, and so does g. For the length of a step G goes on straight instead, with
            its value and slope at the start: the right-hand side is smooth, whatever the law. At the step's end
-           w is brought back to the law's own G (`leave_slack`).
+           w is brought back to the law's own G (`leave_force_free`).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import kernel, term
+from ..jit import by_slot, kernel
 from .contact import elastic_energy, positive_part
 from .dissipation import damping, primitive, put_primitive
 from .preload import overlap
@@ -46,7 +46,7 @@ def slacken(tension, slots, y, c):
     tension.offset[c] = primitive(slots.dissipation, d) - tension.slope[c] * d
 
 
-@term
+@by_slot
 def contact_primitive(tension, slots, y, c, d):
     """G of contact c, whose overlap is d if it touches. Absent: the law's."""
     return primitive(slots.dissipation, d)
@@ -59,7 +59,7 @@ def _(tension, slots, y, c, d):
     return primitive(slots.dissipation, d)
 
 
-@term
+@by_slot
 def keep_slack_primitive(tension, slots, y, G):
     """Let G of slack contacts go on straight, below δ = 0 too. Absent: no contact is slack."""
 
@@ -71,7 +71,7 @@ def _(tension, slots, y, G):
             put_primitive(slots.dissipation, G, c, contact_primitive(tension, slots, y, c, 0.0))
 
 
-@term
+@by_slot
 def cut_tension(tension, slots, y, dy, e):
     """Raise e[c] so that e[c] + g δ̇ ≥ 0; needs the velocities in dy. Absent: tension is allowed."""
 
@@ -88,7 +88,7 @@ def _(tension, slots, y, dy, e):
                 e[c] = -damped
 
 
-@term
+@by_slot
 def cut_at_zero(tension, force):
     """A contact's force as it acts. Absent: tension is allowed."""
     return force
@@ -99,7 +99,7 @@ def _(tension, force):
     return max(force, 0.0)
 
 
-@term
+@by_slot
 def unless_slack(tension, c, force):
     """The force of contact c, or 0 where it is slack. Absent: none is."""
     return force
@@ -110,7 +110,7 @@ def _(tension, c, force):
     return 0.0 if tension.slack[c] != 0 else force
 
 
-@term
+@by_slot
 def lost_in(tension, slots, y, end):
     """Energy that slack contacts lose from y to `end`: their elastic energy, no quadrature. Absent: none is slack."""
     return 0.0

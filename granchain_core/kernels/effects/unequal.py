@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import term
-from ..simd import load
+from ..jit import by_slot
+from ..simd.vector import load
 
 
 class Unequal(NamedTuple):
@@ -22,7 +22,7 @@ class Unequal(NamedTuple):
     stiffness: np.ndarray
 
 
-@term
+@by_slot
 def over_mass(unequal, i, force):
     """A force on bead i over its mass. Absent: the force itself."""
     return force
@@ -33,7 +33,7 @@ def _(unequal, i, force):
     return load(unequal.inverse_mass, i) * force
 
 
-@term
+@by_slot
 def times_stiffness(unequal, wall, i, last, elastic):
     """The elastic force of contact i from d^{3/2}; `wall` is the last one's stiffness. Absent: it alone differs."""
     return wall * elastic if i == last else elastic

@@ -11,10 +11,10 @@ import numpy as np
 from granchain_core import Scene, scene
 from granchain_core.errors import NumbersFailed
 from granchain_core.integrate import Engine, Setting
-from granchain_core.integrate.engine import new_stop
-from granchain_core.integrate.lane_block import NEVER, LaneBlock
-from granchain_core.kernels.lanes import LANES
+from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.kernels.batch.run import LANES
 from granchain_core.lower import lower
+from granchain_core.stop import Stop
 
 from .. import problem
 from ..case import Case, Peaks, rungs
@@ -82,13 +82,13 @@ def _returns(strobes: np.ndarray, near: float = 1e-6) -> bool:
     return bool(min(changes) <= near * np.abs(last).max())
 
 
-def lane_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
+def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
     """Exactly 100 + 20 periods of every point in lanes on this thread: longest first, places filled as they end."""
     lowered = [lower(_scene(f)) for f in sorted(frequencies)]
     total = problem.PASSED + problem.WATCHED
     values, rest = np.zeros(len(lowered)), np.zeros(2 * lowered[0].row)
     began = time.perf_counter()
-    block = LaneBlock(lowered[0].scene, new_stop())
+    block = Batch(lowered[0].scene, Stop())
     waiting, place = iter(range(len(lowered))), {}
 
     def fill(lane: int) -> None:
@@ -118,5 +118,5 @@ def cases() -> list[Case]:
              for m in FIXED]
     found.append(Case("granchain dop853", "w", rungs(1e-4, 1e-13, 4),
                       lambda t: _recording(Setting("dop853", tolerance=t))))
-    found.append(Case("granchain lanes", "w", peaks=lane_peaks, curve_ladder=(0.5, 0.6, 0.7, 0.85, 1, 1.25, 1.5, 2, 3, 4, 5, 6), unit="refine"))
+    found.append(Case("granchain lanes", "w", peaks=batch_peaks, curve_ladder=(0.5, 0.6, 0.7, 0.85, 1, 1.25, 1.5, 2, 3, 4, 5, 6), unit="refine"))
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .step import OPEN, PUSH, SLACK, gap_and_rate, gap_and_rate_of, jit
+from .step import NET_FORCE, OPEN, SLACK, gap_and_rate, gap_and_rate_of, jit
 
 #: Places in a step at which contacts are looked at; turning points between them are looked for besides.
 _LOOKS = 8
@@ -174,8 +174,8 @@ def missing(law, mode, t, y, h, f, end, c, what):
 def after(law, mode, c, what):
     """What acts in contact c behind its event."""
     if what == FORCE:
-        return PUSH if mode[c] == SLACK else SLACK
-    return PUSH if mode[c] == OPEN else OPEN
+        return NET_FORCE if mode[c] == SLACK else SLACK
+    return NET_FORCE if mode[c] == OPEN else OPEN
 
 
 @jit
@@ -187,4 +187,4 @@ def begin(law, mode, t, y):
         if gap < -least or (gap <= least and rate < 0.0):
             mode[c] = OPEN
         else:
-            mode[c] = SLACK if law.cut and _power_force(law, c, gap, rate) < 0.0 else PUSH
+            mode[c] = SLACK if law.cut and _power_force(law, c, gap, rate) < 0.0 else NET_FORCE

@@ -24,7 +24,7 @@ from granchain_core.integrate import State
 from .events import OVERLAP, after, begin, first_event, missing
 from .step import (
     FORCES,
-    PUSH,
+    NET_FORCE,
     Law,
     between,
     fill,
@@ -102,7 +102,7 @@ def _pass(law, mode, y, c, what, time, t, counts, closings):
     counts[_EVENTS] += 1
     mode[c] = after(law, mode, c, what)
     counts[_NEXT] = counts[_USUAL]
-    if what == OVERLAP and mode[c] == PUSH:
+    if what == OVERLAP and mode[c] == NET_FORCE:
         counts[_NEXT] = min(counts[_USUAL], _AGAIN * counts[_BEHIND])
         _keep_closing(law, y, c, time, t, counts, closings)
 
@@ -191,7 +191,7 @@ def _motion(law, step, mode, y, periods, record, tolerance, most_steps, most, co
             tops[:], counts[_CLOSINGS] = -np.inf, 0.0
             for c in range(mode.size if periods == 0 else 0):
                 gap, rate = gap_and_rate_of(law, 0.0, y, c)
-                if mode[c] == PUSH and gap <= 0.0 and rate > 0.0:
+                if mode[c] == NET_FORCE and gap <= 0.0 and rate > 0.0:
                     _keep_closing(law, y, c, 0.0, 0.0, counts, closings)
         seen = rows[number - periods] if number >= periods else spare
         seen[0] = y[: y.size // 2]

@@ -16,7 +16,7 @@ from scipy.integrate._ivp import dop853_coefficients as table
 #: imports it by one name and the tests by another, keeps what is compiled.
 jit = njit(cache=__name__.startswith("tests."))
 #: What acts in a contact: nothing, the law, or nothing though it touches (tension cut).
-OPEN, PUSH, SLACK = 0, 1, 2
+OPEN, NET_FORCE, SLACK = 0, 1, 2
 #: The forces followed: of contact 0, of contact N, of the spring of contact N.
 INPUT, OUTPUT, ELASTIC = 0, 1, 2
 FORCES = 3
@@ -86,7 +86,7 @@ def slope(law, mode, t, y, dy):
     pushed = 0.0
     for c in range(n + 1):
         right_u, right_v = (y[c], y[n + c]) if c < n else (0.0, 0.0)
-        force = law_force(law, c, u - right_u + law.static[c], v - right_v) if mode[c] == PUSH else 0.0
+        force = law_force(law, c, u - right_u + law.static[c], v - right_v) if mode[c] == NET_FORCE else 0.0
         if c > 0:
             dy[n + c - 1] = law.inverse_mass[c - 1] * (pushed - force - law.foundation * u)
         if c < n:
@@ -196,7 +196,7 @@ def _force(law, mode, which, gap, rate):
     if which == ELASTIC:
         d = max(gap, 0.0)
         return law.stiffness[c] * d * np.sqrt(d)
-    return law_force(law, c, gap, rate) if mode[c] == PUSH else 0.0
+    return law_force(law, c, gap, rate) if mode[c] == NET_FORCE else 0.0
 
 
 @jit

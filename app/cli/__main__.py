@@ -1,0 +1,7 @@
+"""`python -m app.cli` is `granchain`."""
+
+import sys
+
+from . import main
+
+sys.exit(main())

@@ -1,0 +1,48 @@
+"""`granchain check`: the hard cases with figure, bar and verdict."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import time
+
+from app.cli.commands import say
+
+
+def add_parser(parser: argparse.ArgumentParser) -> None:
+    """The command's own words."""
+    parser.add_argument("--quick", action="store_true", help="smaller counts: seconds instead of a minute")
+    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+
+
+def check(arguments: argparse.Namespace) -> int:
+    """Run all hard cases; the exit status is 3 where a row is above its bar, and stderr names it."""
+    from granchain_core.hard.runner import in_order, run_cases
+    from granchain_core.hard.table import CASES
+
+    began, found = time.perf_counter(), {}
+    for name, rows in run_cases(arguments.quick):
+        found[name] = rows
+        verdict = "passed" if all(row.passed for row in rows) else "FAILED"
+        say(f"{len(found):2}/{len(CASES)}  {name}: {verdict}, {rows[0].seconds:.1f} s")
+        for row in rows:
+            if not row.passed:
+                say(f"       {row.figure:.2e} is above {row.bar:.1e}: {row.case.removeprefix(name + ': ')} {row.note}")
+    every = in_order(found)
+    if arguments.json:
+        print(json.dumps({"rows": [{"case": row.case, "figure": row.figure if math.isfinite(row.figure) else None,
+                                    "bar": row.bar, "passed": row.passed, "seconds": row.seconds} for row in every]},
+                         allow_nan=False))
+    else:
+        for case in CASES:
+            print(f"\n{case.name}\n  {case.hard}\n  Naive: {case.naive}\n  Oracle: {case.oracle}.")
+            for row in found[case.name]:
+                mark = "ok  " if row.passed else "FAIL"
+                note = f"  ({row.note})" if row.note else ""
+                print(f"  {mark} {row.figure:9.2e} ≤ {row.bar:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
+    say(f"{sum(row.passed for row in every)} of {len(every)} rows passed in {time.perf_counter() - began:.1f} s")
+    missed = [row.case for row in every if not row.passed]
+    if missed:
+        say(f"{len(missed)} of {len(every)} rows are above their bars: {'; '.join(missed)}.")
+    return 3 if missed else 0

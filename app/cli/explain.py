@@ -1,0 +1,38 @@
+"""What --explain prints: the effects compiled into a scene's kernel, those that are absent, the method and why."""
+
+from __future__ import annotations
+
+from granchain_core.integrate.methods import METHODS, method_for, setting_of
+from granchain_core.lower import lower
+from granchain_core.scene import Scene
+from granchain_core.scene.effects import ACCOUNT, ALWAYS, EFFECTS
+from granchain_core.warm import structure
+
+_TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
+
+
+def slots_of(scene: Scene, balance: bool) -> list[tuple[str, str, str | None]]:
+    """Every slot of the scene's kernel: name, title, and the type compiled into it or None where it is absent."""
+    slots = lower(scene, balance=balance).slots
+    found = zip(slots._fields, slots, strict=True)
+    return [(name, _TITLES[name], None if slot is None else type(slot).__name__) for name, slot in found]
+
+
+def explanation(scene: Scene, method: str | None) -> str:
+    """The slots of the kernel that `run` uses, and its method, in a few lines."""
+    lowered = lower(scene)
+    slots = slots_of(scene, balance=True)
+    present = [f"{title} ({kind})" for _, title, kind in slots if kind is not None]
+    absent = [title for _, title, kind in slots if kind is None]
+    setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
+    chosen = METHODS[setting.method]
+    why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"
+    fineness = (f"tolerance per step {setting.tolerance:.1e}" if chosen.adaptive
+                else f"{setting.steps_per_period(lowered, 1)} steps a period")
+    return "\n".join((
+        f"compiled in: {', '.join(present)}",
+        f"absent, with no code and no array: {', '.join(absent) if absent else 'nothing'}",
+        f"structure: {structure(scene)}",
+        f"method: {chosen.title}, {why}; first {fineness}, then finer until two computations agree to that accuracy",
+        f"restrictions: {chosen.restrictions}; reference: {chosen.reference}",
+    ))

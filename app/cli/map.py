@@ -1,0 +1,161 @@
+"""granchain map: regime and largest forces over two knobs, into a file that survives being killed."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.cli.commands import chosen_scene, in_background, say, say_if
+from app.cli.foundation import kept_along
+from granchain_core import BadInput, Cancelled
+from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
+from granchain_core.diagram.blocks import Blocks, folder_of
+from granchain_core.diagram.cells import ERRORS, REGIMES, cell_of
+from granchain_core.diagram.grid import MOST_CELLS
+from granchain_core.quantities import QUANTITIES
+from granchain_core.stop import Stop
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The words of the command."""
+    parser.add_argument("scene", metavar="SCENE")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
+    for name, example in (("--x", "f=30:3000:100"), ("--y", "A0=1e-7:1e-5:100:log")):
+        parser.add_argument(name, required=True, metavar="KNOB=a:b:n",
+                            help=f"n values of a knob from a to b, evenly or, with :log behind them, by their ratio; "
+                                 f"for example {example}")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
+    parser.add_argument("--out", required=True, metavar="FILE", help="write an HDF5 file")
+    parser.add_argument("--resume", action="store_true", help="go on with a map that was cut off")
+    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+
+
+def axis_from(option: str, text: str) -> Axis:
+    """The axis that KNOB=a:b:n or KNOB=a:b:n:log describes."""
+    knob, equals, values = text.partition("=")
+    parts = values.split(":")
+    logarithmic = len(parts) == 4 and parts[3] == "log"
+    if not equals or not (len(parts) == 3 or logarithmic):
+        raise BadInput(f"{option} {text[:60]!r} must have the form KNOB=a:b:n or KNOB=a:b:n:log, for example "
+                       "f=30:3000:100.")
+    ends = Axis.of(knob, sorted({_number(option, part) for part in parts[:2]})).values
+    try:
+        count = int(parts[2])
+    except ValueError:
+        raise BadInput(f"{option}: the number of points {parts[2][:40]!r} must be a whole number from 1 to "
+                       f"{MOST_CELLS}.") from None
+    if not 1 <= count <= MOST_CELLS:
+        raise BadInput(f"{option}: {count} points are outside 1 to {MOST_CELLS}; the nearest valid value is "
+                       f"{min(max(count, 1), MOST_CELLS)}.")
+    if (count == 1) != (len(ends) == 1):
+        raise BadInput(f"{option} {text[:60]!r}: from {parts[0]} to {parts[1]} there are "
+                       f"{'one point' if len(ends) == 1 else 'at least two points'}, not {count}.")
+    if logarithmic and ends[0] <= 0.0:
+        raise BadInput(f"{option} {text[:60]!r}: points by their ratio need both ends above 0; leave :log away.")
+    spaced = np.geomspace if logarithmic else np.linspace
+    return Axis.of(knob, spaced(ends[0], ends[-1], count).tolist())
+
+
+def _number(option: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise BadInput(f"{option}: {text[:40]!r} is not a number.") from None
+
+
+def map_scene(arguments: argparse.Namespace) -> None:
+    """Compute, write and describe a two-parameter diagram."""
+    from granchain_core.store import check_writable
+    from granchain_core.store.diagrams import load_diagram, save_diagram
+
+    grid = Grid(chosen_scene(arguments), axis_from("--x", arguments.x), axis_from("--y", arguments.y))
+    say_if(kept_along(grid.scene, grid.x.knob, grid.y.knob))
+    check_writable(arguments.out)
+    if arguments.resume and Path(arguments.out).exists() and not folder_of(arguments.out).exists():
+        found = load_diagram(arguments.out)
+        if found.grid.digest != grid.digest:
+            raise BadInput(f"{arguments.out} is the finished map of another scene or grid; give another --out.")
+        say(f"{arguments.out} is finished already; nothing was computed.")
+        computed = 0
+    else:
+        client = _client(arguments.scheduler)
+        blocks = Blocks.open(grid, arguments.out, arguments.resume)
+        found, computed = in_background(lambda stop: _filled(blocks, client, stop))
+        save_diagram(found, arguments.out)
+        blocks.remove()
+    _tell(found, computed, arguments)
+
+
+def _client(address: str | None) -> Any:
+    if address is None:
+        return None
+    from granchain_core.diagram.scheduled import connect
+
+    return connect(address)
+
+
+def _filled(blocks: Blocks, client: Any, stop: Stop) -> tuple[Diagram, int]:
+    """The whole diagram, from the blocks that are there and what is computed now; and how many cells that were."""
+    began, grid = time.perf_counter(), blocks.grid
+    cells = blocks.cells()
+    missing = [int(number) for number in grid.coarse_first() if cells["regime"][number] < 0]
+    done = grid.size - len(missing)
+    if done:
+        say(f"{done} of {grid.size} cells are there already.")
+    try:
+        for rows in _rows(grid, missing, client, stop):
+            cells[rows["number"]] = rows
+            done += len(rows)
+            blocks.add(rows)
+            if sys.stderr.isatty():
+                print(f"\r{100 * done / grid.size:3.0f} %", end="", file=sys.stderr, flush=True)
+    finally:
+        blocks.write()
+    if done < grid.size:
+        raise Cancelled
+    return Diagram(grid, cells, time.perf_counter() - began), len(missing)
+
+
+def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[np.ndarray]:
+    """Finished cells, a few at a time."""
+    if client is not None:
+        from granchain_core.diagram.scheduled import iter_blocks
+
+        yield from iter_blocks(client, grid, missing, stop)
+        return
+    for result in iter_diagram(grid, missing, stop):
+        if result.failure:
+            say(f"{grid.y.knob} = {result.scene.knobs[grid.y.knob]:g}: {result.failure}")
+        yield np.atleast_1d(cell_of(result))
+
+
+def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
+    counts = {name: int((found.cells["regime"] == code).sum()) for code, name in enumerate(REGIMES)}
+    inward, worst, elastic = (_largest(found.cells[name]) for name in ERRORS)
+    if arguments.json:
+        grid = found.grid
+        print(json.dumps({
+            "scene": grid.scene.name, "x": grid.x.knob, "y": grid.y.knob, "cells": grid.size, "computed": computed,
+            "regimes": counts, "largest_error_estimate": None if math.isnan(worst) else worst,
+            "wall_s": found.wall_s, "file": str(arguments.out)}, allow_nan=False))
+        return
+    for axis in (found.grid.x, found.grid.y):
+        quantity = QUANTITIES[axis.knob]
+        print(f"{quantity.label} {axis.knob}: {len(axis.values)} values, {axis.values[0]:g} to {axis.values[-1]:g} "
+              f"{quantity.unit}")
+    print(", ".join(f"{count} {name}" for name, count in counts.items() if count))
+    print(f"largest relative errors of a periodic cell: output force {worst:.1e}, input force {inward:.1e}, elastic "
+          f"output force {elastic:.1e}; {computed} cells computed in {found.wall_s:.1f} s; written to {arguments.out}")
+
+
+def _largest(errors: np.ndarray) -> float:
+    """The largest error that is claimed; NaN where none is."""
+    return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.nan

@@ -1,0 +1,84 @@
+"""`granchain observe`: a scene's chain without its driver, pushed by a measured force (model 3 of the paper)."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import asdict
+from typing import Any
+
+from app.cli.commands import chosen_scene, in_background, say
+from granchain_core import BadInput
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What `observe` takes besides the options of every command that computes a scene."""
+    parser.add_argument("--input", required=True, metavar="FILE",
+                        help="CSV with time, force and, if measured, output force; or an HDF5 file of granchain run")
+    parser.add_argument("--time-unit", metavar="UNIT", help="s, ms or us, where a CSV's header names none")
+    parser.add_argument("--force-unit", metavar="UNIT", help="N, mN or kN, where a CSV's header names none")
+    parser.add_argument("--offset", default="0", metavar="N|median",
+                        help="force [N] to subtract, or the median of all samples")
+    parser.add_argument("--gap", default="refuse", metavar="refuse|zero|interpolate",
+                        help="what to do where samples are missing")
+    parser.add_argument("--start", default="rest", metavar="rest|input",
+                        help="start at rest, or in the state an HDF5 input begins with")
+
+
+def observe(arguments: argparse.Namespace) -> None:
+    """Push a scene's chain by a measured force."""
+    from granchain_core import observe as push
+    from granchain_core.observe import first_state, read_force
+    from granchain_core.store import check_writable, save_observation
+
+    chosen = chosen_scene(arguments)
+    if arguments.start not in ("rest", "input"):
+        raise BadInput(f"--start {arguments.start!r} is not one of rest, input.")
+    record = read_force(arguments.input, arguments.time_unit, arguments.force_unit)
+    begin = first_state(arguments.input, chosen.N) if arguments.start == "input" else None
+    if arguments.out:
+        check_writable(arguments.out)
+    say(f"{record.understood}.")
+    seen = in_background(lambda stop: push(chosen, record, start=begin, offset=arguments.offset, gap=arguments.gap,
+                                           stop=stop))
+    for note in seen.record.notes:
+        say(f"{note[0].upper()}{note[1:]}.")
+    if seen.status != "done":
+        say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: successive computations differ by "
+            f"{seen.integration_error:.1e}; an unstable observer amplifies every error.")
+    elif seen.interpolation_error > chosen.accuracy:
+        say(f"The samples limit this observer to an error of about {seen.interpolation_error:.1e}; integration itself "
+            f"is good to {seen.integration_error:.1e}.")
+    if arguments.out:
+        save_observation(seen, arguments.out)
+    if arguments.json:
+        json.dump(described(seen), sys.stdout, allow_nan=False)
+        print()
+        return
+    print(f"{chosen.name}: {len(seen.time)} samples, {seen.time[-1] - seen.time[0]:.6g} s; {seen.status}")
+    print(f"largest output force {seen.max_output_force:.6g} N (elastic {seen.max_output_force_elastic:.6g} N), "
+          f"input force {seen.input_force.max():.6g} N")
+    if seen.residual is not None:
+        print(f"measured output force: rms difference {seen.residual.rms:.4g} N "
+              f"({100 * seen.residual.relative:.3g} %), largest {seen.residual.largest:.4g} N")
+    print(f"relative error {seen.integration_error:.1e} of integration, "
+          f"{seen.interpolation_error:.1e} between samples; {seen.cost.method}, {seen.cost.steps} steps, "
+          f"{seen.cost.events} contact events, {1e3 * seen.cost.wall_s:.1f} ms")
+
+
+def described(seen: Any) -> dict[str, Any]:
+    """An observation as one JSON object."""
+    return {
+        "scene": seen.scene.name, "knobs": seen.scene.knobs,
+        "effects": ["given force" if e == "driver" else e for e in seen.scene.effects],
+        "status": seen.status, "input": {
+            "understood": seen.record.understood, "notes": list(seen.record.notes), "samples": len(seen.time),
+            "spacing": seen.record.spacing, "from": float(seen.time[0]), "to": float(seen.time[-1])},
+        "max_output_force": seen.max_output_force, "max_output_force_elastic": seen.max_output_force_elastic,
+        "max_input_force": float(seen.input_force.max()),
+        "residual": None if seen.residual is None else asdict(seen.residual),
+        "residual_elastic": None if seen.residual_elastic is None else asdict(seen.residual_elastic),
+        "error_estimate": seen.error_estimate, "integration_error": seen.integration_error,
+        "interpolation_error": seen.interpolation_error, "cost": asdict(seen.cost),
+    }

@@ -1,0 +1,65 @@
+"""`granchain orbit`: a periodic orbit by Newton's method and its Floquet multipliers."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from app.cli.commands import chosen_scene, in_background, show_json
+from granchain_core import BadInput, Scene
+from granchain_core.integrate import State
+
+STARTS = ("settled", "rest", "random")
+
+
+def orbit(arguments: argparse.Namespace) -> None:
+    """The periodic orbit of a scene and its multipliers."""
+    from granchain_core.orbits import periodic_orbit
+
+    chosen = chosen_scene(arguments)
+    start = _start(chosen, arguments.start, arguments.seed)
+    found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop))
+    if arguments.json:
+        data: dict[str, Any] = {
+            "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
+            "multipliers": _pairs(found.multipliers), "stable": found.stable,
+        }
+        if found.observer_multipliers is not None:
+            data["observer_multipliers"] = _pairs(found.observer_multipliers)
+            data["observer_stable"] = found.observer_stable
+        show_json(data)
+        return
+    print(f"{chosen.name}: orbit of period {found.period}, {'stable' if found.stable else 'unstable'}, "
+          f"residual {found.residual:.1e} after {len(found.newton_residuals) - 1} Newton iterations")
+    _show_multipliers("multipliers", found.multipliers)
+    if found.observer_multipliers is not None:
+        _show_multipliers("observer", found.observer_multipliers)
+
+
+def _pairs(multipliers: Any) -> list[list[float]]:
+    return [[float(mu.real), float(mu.imag)] for mu in multipliers]
+
+
+def _show_multipliers(title: str, multipliers: Any) -> None:
+    shown = ", ".join(f"{mu.real:+.4f}{mu.imag:+.4f}i (|μ| {abs(mu):.4f})" for mu in multipliers[:4])
+    outside = sum(abs(mu) > 1.0 for mu in multipliers)
+    print(f"{title}: {outside} of {len(multipliers)} outside the unit circle; leading {shown}")
+
+
+def _start(chosen: Scene, name: str, seed: int) -> State | None:
+    """Where Newton's method starts; None is the settled motion. A file's last sample is the start."""
+    from granchain_core.integrate.engine import rest
+    from granchain_core.orbits import random_state
+    from granchain_core.store import load
+
+    if name == "settled":
+        return None
+    if name == "rest":
+        return rest(chosen)
+    if name == "random":
+        return random_state(chosen, seed)
+    run = load(name)
+    if run.displacement.shape[1] != chosen.N:
+        raise BadInput(f"--start {name} holds a chain of {run.displacement.shape[1]} beads and the scene has "
+                       f"{chosen.N}; add --set N={run.displacement.shape[1]}.")
+    return State(run.displacement[-1], run.velocity[-1])

@@ -1,0 +1,51 @@
+"""Which method and setting the main page uses now for the accuracy asked for, and its place among measured rows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from granchain_core import Scene, Settled
+from granchain_core.accuracy import Row
+from granchain_core.accuracy.ways import label
+from granchain_core.integrate import METHODS, Setting, live, method_for
+from granchain_core.steady.settle import certified_setting
+
+#: The live picture's steps (granchain_core.run.live).
+_LIVE = live(2)
+
+
+@dataclass(frozen=True)
+class Now:
+    """The setting in words, with the error and seconds measured for it (between its neighbours, where it has none)."""
+
+    method: str
+    label: str
+    error: float
+    wall_s: float
+
+
+def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
+    """The setting of the last computation behind the picture, by the rule of `granchain_core.steady.settle`."""
+    if live:
+        return _LIVE
+    if picture is None:
+        return method_for(scene.accuracy, scene.cuts_tension)
+    if picture.preview or picture.regime.name != "periodic":
+        return Setting(picture.run.cost.method)
+    return certified_setting(scene, scene.accuracy, picture.regime.slowness).finer()
+
+
+def locate(setting: Setting, rows: Sequence[Row]) -> Now | None:
+    """Where `setting` lies on its method's measured line; None until that has two points."""
+    value = setting.tolerance if METHODS[setting.method].adaptive else float(setting.refine)
+    known = sorted((row.value, row.error, row.wall_s) for row in rows
+                   if row.method == setting.method and not row.failure and 0.0 < row.error < np.inf)
+    if len(known) < 2:
+        return None
+    values, errors, seconds = np.log(np.array(known)).T
+    at = np.log(value)
+    return Now(setting.method, label(setting), float(np.exp(np.interp(at, values, errors))),
+               float(np.exp(np.interp(at, values, seconds))))

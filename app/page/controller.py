@@ -1,0 +1,249 @@
+"""What happens on the page: messages from the parts come in, pictures and sentences go out."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from bokeh.document import Document
+
+from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
+
+from ..pages.accuracy.page import AccuracyPage
+from ..pages.branches.page import BranchesPage
+from ..pages.check.page import HardPage
+from ..pages.curve.page import Curves
+from ..pages.effects.page import EffectsPanel
+from ..pages.map.page import MapTab
+from ..pages.observer.page import ObserverPage
+from ..pages.stability.page import StabilityPage
+from ..parts.foundation import beside_kappa, foundation_words
+from ..parts.knobs import knob_state
+from ..serve.websocket import in_its_turn, send_at_once
+from .exchange import Exchange
+from .job_list import Activity, account_activity, picture_activities
+from .layout import Views
+from .live import LiveRun
+from .pictures import Pictures
+from .playback import Transport
+from .session import SPEEDS, Session, presets, slider_range
+from .show import show_regime
+from .theme import Looks
+
+log = logging.getLogger("granchain")
+
+
+class Controller:
+    """One dashboard: its session, its pictures, its pages, and the way of every message to one of them.
+
+    It is the `Host` of its pages. Everything here runs in the document's turn.
+    """
+
+    def __init__(self, document: Document, session: Session) -> None:
+        self._document = document
+        self.session = session
+        self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
+        self.pictures = Pictures(document, self, views, self.note, self._arrived)
+        self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
+        self.looks = Looks(session, views, self.curves)
+        self.observer = ObserverPage(self, views.observer)
+        self.accuracy = AccuracyPage(self, views.accuracy)
+        self.branches = BranchesPage(self, views.branches)
+        self.effects = EffectsPanel(self, views.corner, self._activities)
+        self.hard = HardPage(self, views.hard)
+        self.stability = StabilityPage(self, views.stability)
+        self.map = MapTab(self, views.corner)
+        self.pages = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
+        self._covered = False
+        self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "ping": lambda _: views.chain.tell(type="pong"),
+            "ready": self._ready, "visible": lambda _: self.pictures.restart(),
+            "painted": lambda m: self.pictures.painted(m.get("number")),
+            "set": self._set, "restore": self._restore, "scene": self._scene,
+            "understood": self._understood, "cover": self._cover,
+            **Transport(session, self.pictures, self._compute, self._header, self.say).actions,
+            **Exchange(session, views, self.curves, self.pictures).actions, **self.looks.actions,
+            **{name: action for page in self.pages for name, action in page.actions.items()},
+        }
+
+    # Coming in and going out
+
+    def received(self, message: dict[str, Any]) -> None:
+        """A message from the browser: nothing in it is trusted."""
+        name = message.get("do")
+        action = self._actions.get(name) if isinstance(name, str) else None
+        if action is None:
+            self.say(f"The page sent a request {str(name)[:40]!r} that is not known here; reload the page.")
+            return
+        in_its_turn(self._document, partial(self._guarded, action, message))
+
+    def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
+        try:
+            action(*arguments)
+        except Exception as error:
+            self.failed(error)
+
+    def later(self, action: Callable[..., None], *arguments: Any) -> None:
+        """Do something in the document's turn; callable from any thread."""
+        self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
+
+    def after(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
+        """Do something a little later."""
+        self._document.add_timeout_callback(partial(self._guarded, action, *arguments), round(1e3 * seconds))
+
+    def say(self, sentence: str) -> None:
+        """One sentence for the visitor, until the next valid action; an empty one takes it away."""
+        self.session.sentence = sentence
+        self._show_sentences()
+
+    def note(self, notice: str) -> None:
+        """One sentence that the next picture takes away."""
+        self.session.notice = notice
+        self._show_sentences()
+
+    def _show_sentences(self) -> None:
+        self.views.badge.display(sentence=f"{self.session.sentence} {self.session.notice}".strip())
+
+    def failed(self, error: Exception) -> None:
+        """The last good picture stays, and one sentence says what happened."""
+        if isinstance(error, BadInput):
+            self.say(str(error))
+        elif isinstance(error, NumbersFailed):
+            self.note(error.sentence)
+        else:
+            log.error("unexpected failure", exc_info=error)
+            self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
+                     "stays. Move the knob back or reset, and please report it.")
+
+    def close(self, session_context: object) -> None:
+        """The visitor left."""
+        for one in (self.pictures, self.curves, *self.pages):
+            one.close()
+
+    # What the pages ask for
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture is being computed."""
+        return self.pictures.busy
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether a knob has moved and its steady picture is not there yet."""
+        return self.pictures.unsettled
+
+    @property
+    def curve_computing(self) -> bool:
+        """Whether a resonance curve is being computed."""
+        return self.curves.computing
+
+    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+        """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose."""
+        self.session.set_mode(mode)
+        self.session.scene = scene
+        if mode == "settled":
+            self.pictures.live = None
+        elif state is not None or self.pictures.live is None:
+            self.pictures.live = LiveRun(scene, state)
+        self._header()
+        self._echo()
+        self._turned(state)
+
+    def _activities(self) -> list[Activity]:
+        """Everything that is computed for this visitor, or could be."""
+        return [
+            *picture_activities(self.session, self.busy, self._covered), *self.curves.activities(),
+            account_activity(self.session, self.busy), self.accuracy.activity, self.stability.activity,
+            self.hard.activity, self.effects.activity,
+        ]
+
+    def _arrived(self, picture: Settled) -> None:
+        self.accuracy.describe()
+        self.stability.arrived(picture)
+
+    # What the visitor does
+
+    def _ready(self, message: dict[str, Any]) -> None:
+        send_at_once(self._document)
+        self.views.trains.fit(bool(message.get("narrow")))
+        self.looks.choose({"value": message.get("look")})
+        self._new_scene()
+
+    def _new_scene(self) -> None:
+        scene = self.session.scene
+        self.views.knobs.state = knob_state(scene)
+        self.views.corner.display(look_at=scene.look_at, paper=scene.paper)
+        self._header()
+        self._describe()
+        self.curves.open(scene)
+        if self.session.mode == "live":
+            self.pictures.live = LiveRun(scene)
+        self._compute()
+
+    def _compute(self, start: State | None = None) -> None:
+        self.stability.moved()
+        self.pictures.compute(start)
+
+    def _header(self) -> None:
+        session = self.session
+        self.views.header.display(
+            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, look=session.look,
+            speeds=list(SPEEDS), speed=session.speed, playing=session.playing, query=session.link)
+
+    def _describe(self) -> None:
+        scene = self.session.scene
+        self.observer.changed()
+        self.accuracy.describe()
+        self.branches.describe()
+        self.effects.changed()
+        self.map.moved()
+        self.views.equation.display(latex=scene.equation_latex())
+        self.views.corner.display(validity=list(scene.validity()))
+
+    def _set(self, message: dict[str, Any]) -> None:
+        name = str(message.get("name"))
+        try:
+            self.session.change(name, message.get("value"))
+            self._turned()
+        finally:
+            self._echo(message.get("seq"))
+
+    def _restore(self, message: dict[str, Any]) -> None:
+        self.session.restore(str(message.get("name")))
+        self._echo(message.get("seq"))
+        self._turned()
+
+    def _echo(self, seq: object = None) -> None:
+        scene = self.session.scene
+        self.views.knobs.tell(type="values", seq=seq, values=dict(scene.knobs),
+                              foundation=foundation_words(scene), kept=beside_kappa(scene), query=self.session.link)
+
+    def _turned(self, start: State | None = None) -> None:
+        self._compute(start)
+        if self.session.sentence:
+            self.say("")
+        self._describe()
+        self.curves.moved(self.session.scene)
+
+    def _cover(self, message: dict[str, Any]) -> None:
+        """A page over the pictures was opened or closed."""
+        self._covered = message.get("name") is not None
+        if message.get("name") == "accuracy":
+            self.accuracy.open()
+
+    def _choose_frequency(self, frequency: float) -> None:
+        low, high = slider_range(self.session.scene, "f")
+        self.session.change("f", round(min(max(frequency, low), high), 1))
+        self._echo()
+        self._turned()
+
+    def _scene(self, message: dict[str, Any]) -> None:
+        self.session.choose(message.get("name"))
+        self.say("")
+        self._new_scene()
+
+    def _understood(self, _: dict[str, Any]) -> None:
+        self.session.notice = ""
+        self.say("")

@@ -1,0 +1,44 @@
+"""What a page may ask of the dashboard it stands in; the controller is one, a test may be another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from granchain_core import Scene, State
+
+from .session import Session
+
+
+class Host(Protocol):
+    """One visitor's dashboard, as its pages see it. All of it but `later` belongs to the document's turn."""
+
+    session: Session
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture is being computed."""
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
+
+    @property
+    def curve_computing(self) -> bool:
+        """Whether a resonance curve is being computed."""
+
+    def later(self, action: Callable[..., None], *arguments: object) -> None:
+        """Do something in the document's turn; callable from any thread."""
+
+    def after(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+        """Do something in the document's turn, so many seconds from now."""
+
+    def failed(self, error: Exception) -> None:
+        """Tell the visitor about a failure that has no place on its own page."""
+
+    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+        """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.
+
+        In live mode the run goes on with the new knobs, unless a state is given. Raises `BadInput` for another mode
+        than "settled" and "live".
+        """

@@ -1,0 +1,50 @@
+"""What is being computed for one visitor at this moment, and what is not."""
+
+from __future__ import annotations
+
+from granchain_core import Settled
+
+from .session import Session
+
+#: Name, state and detail of a view or an analysis.
+Activity = tuple[str, str, str]
+
+OFF, IDLE, RUNNING = "off", "there", "computing"
+
+
+def picture_activities(session: Session, busy: bool, covered: bool) -> list[Activity]:
+    """The pictures, where they come from, and what was found out while they settled."""
+    picture, live = session.picture, session.mode == "live"
+    running = RUNNING if busy else IDLE
+    pictures = "covered by another page" if covered else f"from one {'live' if live else 'settled'} run"
+    return [
+        ("chain, map, force trains", OFF if covered else running, pictures),
+        ("live run", (RUNNING if session.playing else IDLE) if live else OFF,
+         ("goes on" if session.playing else "paused") if live else "the page shows the steady state"),
+        ("steady state", OFF if live else running,
+         "live mode looks for none" if live else "not found yet" if picture is None else picture.regime.sentence),
+        ("Lyapunov exponent", *_lyapunov(None if live else picture)),
+    ]
+
+
+def account_activity(session: Session, busy: bool) -> Activity:
+    """The energy account: it is computed after the picture, where it was switched on."""
+    return ("energy account", *_account(session, busy))
+
+
+def _lyapunov(picture: Settled | None) -> tuple[str, str]:
+    """It is computed only where the motion does not become periodic."""
+    if picture is None or picture.regime.lyapunov is None:
+        return OFF, "only for motions that do not become periodic"
+    return IDLE, f"{picture.regime.lyapunov[0]:+.3f} ± {picture.regime.lyapunov[1]:.3f} per period"
+
+
+def _account(session: Session, busy: bool) -> tuple[str, str]:
+    picture = session.picture
+    if not session.account:
+        return OFF, "switched off"
+    if session.mode == "live":
+        return OFF, "the live run keeps none"
+    if picture is None or picture.run.energy_residual is None:
+        return RUNNING if busy else IDLE, "follows the picture"
+    return IDLE, f"closes to {picture.run.energy_residual:.0e}"

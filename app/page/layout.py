@@ -1,0 +1,81 @@
+"""All views of the page together, and the template they stand in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+from bokeh.models import Range1d
+
+from granchain_core import Settled
+
+from ..pages.accuracy.view import Accuracy
+from ..pages.branches.view import Branches
+from ..pages.check.view import Hard, described_cases
+from ..pages.curve.bar import CurveBar
+from ..pages.curve.view import Curve
+from ..pages.observer.view import Observer, first_state
+from ..pages.stability.view import Stability
+from ..parts.badge import Badge
+from ..parts.chain import PALETTE, Chain
+from ..parts.component import text
+from ..parts.energy import EnergyMap
+from ..parts.equation import Equation
+from ..parts.figures import BOTTOM, GAP, TOP, pane
+from ..parts.header import Header
+from ..parts.knobs import Knobs
+from ..parts.regimes import REGIMES
+from ..parts.trains import Trains
+from ..pictures.theme import Theme
+from .corner import Corner
+
+#: Pages over the pictures; each has its place in page.html.
+PAGES = ("accuracy", "stability", "branches", "observer", "hard")
+_HERE = Path(__file__).resolve().parent
+
+
+class Views:
+    """Every part of the page; all their messages go to `received`."""
+
+    def __init__(self, received: Callable[[dict[str, Any]], None], choose: Callable[[float], None]) -> None:
+        self.time = Range1d(start=1.0, end=0.0)
+        self.header = Header(received)
+        self.knobs = Knobs(received, sizing_mode="stretch_width")
+        self.equation = Equation(received)
+        self.chain = Chain(received, state={"palette": PALETTE}, sizing_mode="stretch_both")
+        self.trains = Trains(self.time)
+        self.energy = EnergyMap(self.time)
+        self.curve = Curve(choose)
+        self.curvebar = CurveBar(received)
+        self.corner = Corner(received, sizing_mode="stretch_both", state={"regimes": [
+            {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
+        self.accuracy = Accuracy(received, sizing_mode="stretch_both")
+        self.stability = Stability(received, sizing_mode="stretch_both")
+        self.branches = Branches(received, sizing_mode="stretch_both")
+        self.observer = Observer(received, sizing_mode="stretch_both", state=first_state())
+        self.hard = Hard(received, sizing_mode="stretch_both", state={"cases": described_cases()})
+        self.badge = Badge(received)
+        self.shown: Settled | None = None
+
+    def dress(self, theme: Theme) -> None:
+        """Another look for every picture that is drawn here."""
+        for part in (self.accuracy, self.hard, self.observer, self.stability):
+            part.dress(theme)
+
+    def template(self) -> pn.Template:
+        """The page; its layout is a CSS grid in page.css."""
+        page = pn.Template((_HERE / "page.html").read_text(encoding="utf-8"))
+        page.add_variable("page_css", (_HERE / "page.css").read_text(encoding="utf-8"))
+        page.add_variable("page_js", text("page.js") + text("connection.js"))
+        page.add_variable("frame_top", TOP)
+        page.add_variable("frame_bottom", BOTTOM)
+        page.add_variable("gap", GAP)
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "badge", *PAGES):
+            page.add_panel(name, getattr(self, name))
+        page.add_panel("left", pane(self.trains.left))
+        page.add_panel("map", pane(self.energy.figure))
+        page.add_panel("right", pane(self.trains.right))
+        page.add_panel("curve", pane(self.curve.figure))
+        return page

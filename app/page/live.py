@@ -1,0 +1,96 @@
+"""The live run: it goes on while the knobs move, and each step waits until the browser painted the last."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from dataclasses import dataclass
+
+from granchain_core import LiveChain, Run, Scene, State
+from granchain_core.run.live import joined
+
+from .frames import LIVE_PERIODS, Frames, LiveWindow, samples_for
+
+_LONGEST_STEP = 0.1
+"""Seconds of viewing time one step may catch up: after a hidden tab the run goes on, it does not jump."""
+
+
+@dataclass(frozen=True)
+class LivePicture:
+    """One step of the live run: the last few periods, the run of the newest samples, drive periods since rest."""
+
+    frames: Frames
+    run: Run
+    periods: float
+
+
+class LiveRun:
+    """One chain that keeps running, from rest or from `start`; `step` is for a worker thread, the rest for the page."""
+
+    def __init__(self, scene: Scene, start: State | None = None) -> None:
+        self.samples = samples_for(scene)
+        self._chain = LiveChain(scene, samples=self.samples, start=start)
+        self._window = LiveWindow(self.samples)
+        self._lock = threading.Lock()
+        self._new_scene: Scene | None = None
+        self._reset = False
+        self._last: float | None = None
+        self._owed = 0.0
+        self._shown = 0
+        self._runs: deque[Run] = deque()
+
+    def change(self, scene: Scene) -> None:
+        """New knobs, taken over before the next sample."""
+        with self._lock:
+            self._new_scene = scene
+
+    def reset(self) -> None:
+        """Back to rest before the next sample."""
+        with self._lock:
+            self._reset = True
+
+    def hold(self) -> None:
+        """Time stands still from now until the next step."""
+        self._last = None
+
+    def step(self, periods_per_second: float) -> LivePicture:
+        """As many samples as viewing time has passed since the last step; in slow motion, the next one."""
+        rate = periods_per_second * self.samples
+        now = time.perf_counter()
+        elapsed = 0.03 if self._last is None else min(now - self._last, _LONGEST_STEP)
+        self._owed = min(self._owed, 1.0) + elapsed * rate
+        if self._owed < 1.0:
+            time.sleep((1.0 - self._owed) / rate)
+            self._owed = 1.0
+        self._last = time.perf_counter()
+        return self.advance(int(self._owed))
+
+    def window_run(self) -> Run | None:
+        """The periods on the screen as one run, to be saved."""
+        return joined(list(self._runs)) if self._runs else None
+
+    def advance(self, samples: int) -> LivePicture:
+        """The window after `samples` more samples."""
+        with self._lock:
+            scene, self._new_scene = self._new_scene, None
+            reset, self._reset = self._reset, False
+        if scene is not None:
+            self._chain.change(scene)
+        if reset:
+            self._chain.reset()
+            self._window = LiveWindow(self.samples)
+            self._runs.clear()
+            self._shown = 0
+        self._owed = max(0.0, self._owed - samples)
+        run = self._chain.advance(samples)
+        self._shown += samples
+        self._remember(run)
+        return LivePicture(self._window.add(run), run, self._shown / self.samples)
+
+    def _remember(self, run: Run) -> None:
+        if self._runs and self._runs[-1].displacement.shape[1] != run.displacement.shape[1]:
+            self._runs.clear()
+        self._runs.append(run)
+        while sum(len(piece.time) - 1 for piece in self._runs) > LIVE_PERIODS * self.samples and len(self._runs) > 1:
+            self._runs.popleft()

@@ -1,0 +1,136 @@
+"""The pictures of one dashboard: computed for the knobs as they are, sent at the pace of the browser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from bokeh.document import Document
+
+from granchain_core import Run, Scene, Settled, State, settling
+from granchain_core.warm import CERTIFIED, CURVE, LIVE
+
+from ..serve.compiler import COMPILER, SENTENCE
+from ..serve.pacing import Painter
+from ..serve.queues import LatestWins, Stop
+from ..serve.websocket import in_one_go
+from .energy_residual import with_account
+from .frames import samples_for
+from .host import Host
+from .layout import Views
+from .live import LivePicture, LiveRun
+from .show import show_live, show_settled
+
+
+class Pictures:
+    """Settled pictures and the live run. `note` takes a sentence that the next picture takes away.
+
+    `arrived` is called with every settled picture, before it is sent.
+    """
+
+    def __init__(self, document: Document, host: Host, views: Views, note: Callable[[str], None],
+                 arrived: Callable[[Settled], None]) -> None:
+        self._document = document
+        self._host = host
+        self._session = host.session
+        self._views = views
+        self._note = note
+        self._settled_arrived = arrived
+        self._jobs = LatestWins(partial(host.later, self._arrived), partial(host.later, host.failed))
+        self._painter: Painter[Settled | LivePicture] = Painter(self._send, self.idle)
+        self.live: LiveRun | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture is being computed; what can wait, waits."""
+        return self._jobs.busy
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
+        return self._jobs.busy and self.live is None
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._jobs.close()
+
+    # Computing
+
+    def compute(self, start: State | None = None) -> None:
+        """A new picture for the knobs as they are now, from `start` or from where the visitor chose."""
+        if self._session.mode == "live":
+            if self.live is not None:
+                self.live.change(self._session.scene)
+            self.idle()
+        else:
+            self._jobs.submit(partial(self._settled, self._session.scene, start))
+
+    def advance(self, samples: int | None = None) -> None:
+        """The next step of the live run: so many samples, or as many as viewing time asks for."""
+        self._jobs.submit(partial(self._live_step, samples))
+
+    def run(self) -> Run | None:
+        """What is on the screen, as a run."""
+        if self.live is not None:
+            return self.live.window_run()
+        return None if self._session.picture is None else self._session.picture.run
+
+    # In a worker thread
+
+    def _settled(self, scene: Scene, start: State | None, stop: Stop) -> Iterator[Settled]:
+        """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
+        self._await_live_kernels(scene, stop)
+        self._session.began = start or self._session.previous_state()
+        pictures = settling(scene, start=self._session.began, samples=samples_for(scene), stop=stop)
+        yield next(pictures)
+        if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
+            for picture in pictures:
+                yield picture
+                if picture.final and self._session.account:
+                    yield with_account(picture, stop)
+
+    def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
+        if not COMPILER.has(scene, LIVE):
+            self._host.later(self._note, SENTENCE)
+            for piece in (LIVE, CERTIFIED, CURVE):
+                COMPILER.ask(scene, piece)
+            COMPILER.await_piece(scene, LIVE, stop)
+
+    def _live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
+        live = self.live
+        if live is not None:
+            self._await_live_kernels(self._session.scene, stop)
+            yield live.advance(samples) if samples else live.step(self._session.speed)
+
+    # To the browser
+
+    def _arrived(self, picture: Settled | LivePicture) -> None:
+        live = isinstance(picture, LivePicture)
+        if live != (self._session.mode == "live") or picture.run.scene.name != self._session.scene.name:
+            return
+        if isinstance(picture, Settled):
+            self._session.picture = picture
+            self._settled_arrived(picture)
+        if self._session.notice:
+            self._note("")
+        self._painter.offer(picture)
+
+    def _send(self, number: int, picture: Settled | LivePicture) -> None:
+        with in_one_go(self._document):
+            if isinstance(picture, Settled):
+                show_settled(self._views, number, picture)
+            else:
+                show_live(self._views, number, picture, self._session.playing)
+
+    def painted(self, number: object) -> None:
+        """The browser says that picture `number` is on the screen."""
+        self._painter.painted(number)
+
+    def restart(self) -> None:
+        """The page can be seen again: acknowledgements of before will never come."""
+        self._painter.restart()
+
+    def idle(self) -> None:
+        """The browser has painted everything: in live mode that asks for the next step."""
+        if self._session.mode == "live" and self._session.playing and not self._painter.waits:
+            self.advance()

@@ -1,0 +1,69 @@
+"""How time runs on the page: settled or live, from where, how fast, playing or paused, one period on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from .live import LiveRun
+from .pictures import Pictures
+from .session import Session
+
+
+class Transport:
+    """Actions of the bar on top that deal with time; `compute` asks for a picture, `header` draws the bar anew."""
+
+    def __init__(self, session: Session, pictures: Pictures, compute: Callable[[], None], header: Callable[[], None],
+                 say: Callable[[str], None]) -> None:
+        self._session = session
+        self._pictures = pictures
+        self._compute = compute
+        self._header = header
+        self._say = say
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
+            "reset": self._reset, "step": self._step, "again": self._again,
+        }
+
+    def _mode(self, message: dict[str, Any]) -> None:
+        self._session.set_mode(message.get("value"))
+        self._pictures.live = LiveRun(self._session.scene) if self._session.mode == "live" else None
+        self._header()
+        self._compute()
+
+    def _start(self, message: dict[str, Any]) -> None:
+        self._session.set_start(message.get("value"))
+        self._header()
+        self._compute()
+
+    def _speed(self, message: dict[str, Any]) -> None:
+        self._session.set_speed(message.get("value"))
+        self._header()
+
+    def _playing(self, message: dict[str, Any]) -> None:
+        self._session.playing = bool(message.get("value"))
+        if self._pictures.live is not None:
+            self._pictures.live.hold()
+            if not self._session.playing:
+                self._pictures.advance(1)
+        self._pictures.idle()
+
+    def _again(self, message: dict[str, Any]) -> None:
+        """The page had lost its server and was built again from its knobs."""
+        self._speed({"value": message.get("speed")})
+        if not message.get("playing"):
+            self._playing({"value": False})
+            self._header()
+        self._say("The connection was lost and the page was built again from its knobs; "
+                  "the chain started anew from rest.")
+
+    def _reset(self, _: dict[str, Any]) -> None:
+        if self._pictures.live is not None:
+            self._pictures.live.reset()
+        self._session.picture = None
+        self._compute()
+
+    def _step(self, _: dict[str, Any]) -> None:
+        if self._pictures.live is not None:
+            self._session.playing = False
+            self._pictures.advance(self._pictures.live.samples)

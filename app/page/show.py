@@ -1,0 +1,51 @@
+"""Putting a picture on the screen: one batch of changes to data sources, and one message to the chain."""
+
+from __future__ import annotations
+
+import numpy as np
+from panel.io import unlocked
+
+from granchain_core import Scene, Settled
+
+from ..parts.badge import run_entries, settled_entries
+from ..parts.chain import frames_message
+from .frames import Frames, prefixed, settled_frames
+from .layout import Views
+from .live import LivePicture
+
+
+def show_settled(views: Views, number: int, picture: Settled) -> None:
+    """A settled picture: whole periods, replayed in the browser."""
+    frames = settled_frames(picture.run)
+    factor, letter = prefixed(float(frames.time[-1]))
+    with unlocked():
+        views.trains.left.yaxis.axis_label = f"time ({letter}s)"
+        _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s")
+        views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
+        views.shown = picture
+        views.badge.display(**settled_entries(picture, views.curve.place(picture.run)))
+
+
+def show_regime(views: Views) -> None:
+    """The badge's words once more, after the curve that names the place has come."""
+    if views.shown is not None:
+        views.badge.display(**settled_entries(views.shown, views.curve.place(views.shown.run)))
+
+
+def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
+    """The last periods of the live run; now is at the bottom."""
+    frames, run = picture.frames, picture.run
+    views.shown = None
+    with unlocked():
+        views.trains.left.yaxis.axis_label = "time (drive periods before now)"
+        _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)
+        views.curve.now(run.scene.knobs["f"], frames.largest_output)
+        views.badge.display(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
+
+
+def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
+          live: bool = False, running: bool = False) -> None:
+    views.time.update(start=float(time[-1]), end=float(time[0]))
+    views.trains.update(frames, time)
+    scale = views.energy.update(frames, time, unit, live)
+    views.chain.tell(**frames_message(number, frames, scene, scale, live, running))

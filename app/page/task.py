@@ -1,0 +1,111 @@
+"""Work in the background of a page: how it is started and cancelled, and the one place for what fails in it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
+
+from ..serve.compiler import COMPILER
+from ..serve.queues import Queue, Stop
+from ..serve.waiting import PICTURE_LOOK
+from .host import Host
+
+#: Takes a status and the sentence that goes with it, which is empty but for "failed".
+Say = Callable[[str, str], None]
+
+
+class Job:
+    """One start of a task, as its work sees it from a worker thread."""
+
+    def __init__(self, host: Host, say: Say) -> None:
+        self.stop: Stop = Stop()
+        self._host = host
+        self._say = say
+
+    def later(self, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
+        """Do something in the document's turn, unless the job is cancelled by then."""
+
+        def act() -> None:
+            if not self.stop:
+                action(*arguments, **named)
+
+        self._host.later(act)
+
+    def say(self, status: str) -> None:
+        """Tell how far the work is."""
+        self.later(self._say, status, "")
+
+    def compile(self, scene: Scene, *pieces: str) -> None:
+        """Wait until these kernels are compiled and loaded; "compiling" is told meanwhile. Raises `Cancelled`."""
+        for piece in pieces:
+            if not COMPILER.has(scene, piece):
+                self.say("compiling")
+            if not COMPILER.await_piece(scene, piece, self.stop):
+                raise Cancelled
+            COMPILER.load(scene, piece)
+
+    def give_way(self, to: Callable[[], bool] | None = None) -> None:
+        """Wait as long as a knob's picture is not there yet, or as long as `to` says."""
+        waits = to or (lambda: self._host.unsettled)
+        while waits() and not self.stop:
+            time.sleep(PICTURE_LOOK)
+
+
+class Task:
+    """One thing that a page has computed in the background; a new start takes the place of the last.
+
+    `say` is called in the document's turn with "done", or with "failed" and a sentence; what else it is told, the work
+    says. `title` begins the sentence about a fault. `failed` takes errors whose sentence has no place on the page.
+    """
+
+    def __init__(self, host: Host, queue: Queue, say: Say, title: str = "The computation",
+                 failed: Callable[[Exception], None] | None = None) -> None:
+        self._host = host
+        self._queue = queue
+        self._say = say
+        self._title = title
+        self._failed = failed
+        self._job: Job | None = None
+
+    @property
+    def running(self) -> bool:
+        """Whether the work is under way or waits for its turn."""
+        return self._job is not None
+
+    def start(self, work: Callable[[Job], None]) -> None:
+        """Have `work` done when the queue comes to it, in place of what was started before."""
+        self.cancel()
+        self._job = job = Job(self._host, self._say)
+        self._queue.submit(self._run, work, job)
+
+    def cancel(self) -> bool:
+        """Give up what is under way; nothing of it arrives any more. Says whether there was anything."""
+        job, self._job = self._job, None
+        if job is not None:
+            job.stop.set()
+        return job is not None
+
+    def _run(self, work: Callable[[Job], None], job: Job) -> None:
+        """In a thread of the queue."""
+        if job.stop:
+            return
+        try:
+            work(job)
+        except Cancelled:
+            return
+        except (NumbersFailed, BadInput) as problem:
+            job.later(self._end, "failed", str(problem), problem)
+        except Exception as error:
+            job.later(self._end, "failed", f"{self._title} stopped by a fault inside granchain.")
+            self._host.later(self._host.failed, error)
+        else:
+            job.later(self._end, "done")
+
+    def _end(self, status: str, sentence: str = "", problem: Exception | None = None) -> None:
+        self._job = None
+        self._say(status, sentence)
+        if problem is not None and self._failed is not None:
+            self._failed(problem)

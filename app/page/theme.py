@@ -1,0 +1,41 @@
+"""How the pictures look: light, dark or projector, a kept colour scale, which curves are drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ..pages.curve.page import Curves
+from ..pictures.theme import THEMES
+from .layout import Views
+from .session import LOOKS, Session
+
+_WIDTHS = {"light": 1.0, "dark": 1.0, "projector": 1.5}
+
+
+class Looks:
+    """The visitor's choices that compute nothing but, perhaps, another curve."""
+
+    def __init__(self, session: Session, views: Views, curves: Curves) -> None:
+        self._session = session
+        self._views = views
+        self._curves = curves
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "look": self.choose, "lock": self._lock, "curve": self._curve, "curve-stop": lambda _: curves.stop(),
+            "curve-visible": lambda m: curves.visible(bool(m.get("value")), session.scene),
+        }
+
+    def choose(self, message: dict[str, Any]) -> None:
+        """Ink and line width of a look."""
+        look = message.get("value")
+        if look in LOOKS:
+            theme, thick = THEMES[str(look)], _WIDTHS[str(look)]
+            self._views.curve.ink(theme.ink, thick)
+            self._views.trains.thicken(thick)
+            self._views.dress(theme)
+
+    def _lock(self, message: dict[str, Any]) -> None:
+        self._views.energy.locked = bool(message.get("value"))
+
+    def _curve(self, message: dict[str, Any]) -> None:
+        self._curves.choose(str(message.get("name")), bool(message.get("value")), self._session.scene)

@@ -1,0 +1,133 @@
+"""The Accuracy page of one visitor: when it measures, what of it is still true, and what it says."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from panel.io import unlocked
+
+from granchain_core import Scene
+from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
+from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
+
+from ...page.active_setting import locate, page_setting
+from ...page.format import duration, short_error
+from ...page.host import Host
+from ...page.job_list import IDLE, OFF, RUNNING, Activity
+from ...page.task import Job, Task
+from ...pictures.accuracy import Asked
+from ...serve.queues import MEASUREMENTS
+from .view import Accuracy, described_reference, described_ways
+
+
+def measured_for(scene: Scene) -> str:
+    """What a measurement belongs to: the scene without the accuracy asked for, which measures nothing anew."""
+    return scene.evolve(accuracy=1e-6).digest
+
+
+class AccuracyPage:
+    """One measurement at a time; it goes on in the background until it is done, cancelled or the visitor leaves."""
+
+    def __init__(self, host: Host, view: Accuracy) -> None:
+        self._host = host
+        self._view = view
+        self._task = Task(host, MEASUREMENTS, self._say, "The measurement")
+        self._measured = ""
+        self._lesson: Lesson | None = None
+        self._agreement: float | None = None
+        self.rows: list[Row] = []
+        self.status = "none"
+        self.done = 0.0
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "accuracy-open": lambda _: self.open(), "accuracy-measure": lambda _: self._measure(),
+            "accuracy-cancel": lambda _: self.cancel(),
+        }
+
+    @property
+    def running(self) -> bool:
+        """Whether a measurement is under way or waits for its turn."""
+        return self._task.running
+
+    @property
+    def activity(self) -> Activity:
+        """Name, state and detail for the list of what is computed now."""
+        words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page was not opened yet"
+        return "accuracy of all methods", RUNNING if self.running else IDLE if self.rows else OFF, words
+
+    def describe(self) -> None:
+        """Tell what follows from the knobs and the picture: asked, cheapest, now, and whether the rows still hold."""
+        scene, session = self._host.session.scene, self._host.session
+        now = locate(page_setting(scene, session.picture, session.mode == "live"), self.rows)
+        best = cheapest(self.rows, scene.accuracy)
+        stale = bool(self._measured) and self._measured != measured_for(scene)
+        self._view.mark(self.rows, Asked(
+            scene.accuracy, self._agreement, None if best is None else (best.wall_s, best.error),
+            None if now is None else (now.wall_s, now.error)), stale=stale, sentence=self._sentence(best))
+
+    def cancel(self) -> None:
+        """Stop; the rows that are there stay."""
+        if self._task.cancel():
+            self._say("cancelled")
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+
+    def open(self) -> None:
+        """The page or its small version came on the screen: what was never measured is measured now."""
+        self._view.display(ways=described_ways())
+        if self.status == "none":
+            self._measure()
+        self.describe()
+
+    def _measure(self) -> None:
+        self._task.cancel()
+        scene = self._host.session.scene
+        self._measured, self.rows, self._lesson, self.done = measured_for(scene), [], None, 0.0
+        self._agreement = None
+        self._view.forget()
+        self._say("waiting")
+        self.describe()
+        self._task.start(partial(self._work, scene))
+
+    def _work(self, scene: Scene, job: Job) -> None:
+        """In the measuring thread: the kernels first, then one row after the other."""
+
+        def report(found: WorkPrecision) -> None:
+            job.later(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
+
+        job.compile(scene, LIVE, CERTIFIED, ACCURACY)
+        job.say("measuring")
+        work_precision(scene, job.stop, report=report, pause=job.give_way,
+                       progress=lambda done: job.later(self._progress, done))
+
+    def _show(self, rows: list[Row], lesson: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
+        self.rows = rows
+        self._agreement = agreement if math.isfinite(agreement) else None
+        with unlocked():
+            self._view.measured(rows, reference)
+            if lesson is not None and self._lesson is None:
+                self._lesson = lesson
+                self._view.teach(lesson)
+            self.describe()
+
+    def _progress(self, done: float) -> None:
+        self.done = done
+        self._view.display(done=done)
+
+    def _say(self, status: str, sentence: str = "") -> None:
+        self.status = status
+        self._view.display(status=status, failure=sentence, done=self.done)
+
+    def _sentence(self, best: Row | None) -> str:
+        asked = short_error(self._host.session.scene.accuracy)
+        if best is not None:
+            return (f"The cheapest way to {asked} is {best.method}, {best.setting}: {duration(best.wall_s)}, "
+                    f"error {short_error(best.error)}.")
+        if not self.rows:
+            return ""
+        nearest = min(self.rows, key=lambda row: row.error)
+        return f"Nothing measured here reaches {asked}; the nearest is {nearest.method}, {nearest.setting}."

@@ -1,0 +1,119 @@
+"""The Accuracy page: error against time for every method, the table of methods, what naive steps would have drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+from bokeh.embed import json_item
+
+from granchain_core.accuracy import Lesson, Row, WorkPrecision, ways
+
+from ...page.format import short_error
+from ...page.frames import prefixed
+from ...parts.component import text
+from ...parts.drawn import Drawn
+from ...pictures.accuracy import Asked, accuracy, marks, points
+from ...pictures.lesson import lesson
+from ...pictures.theme import Theme
+from ...scripts import module
+
+_LOST = 1e-4
+"""References that differ by more than this belong to a motion that nobody can follow for ten periods."""
+
+
+class Accuracy(Drawn):
+    """The page over the pictures. `state` has the text and the figures; what is drawn into them comes as messages."""
+
+    _esm = module("accuracy.js")
+    _stylesheets = [text("controls.css"), text("accuracy.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, **params)
+        self._lesson: Lesson | None = None
+
+    def empty_figures(self, theme: Theme) -> dict[str, Any]:
+        """Error against time without points, for the page and, small, for the corner."""
+        return empty_figures(theme)
+
+    def dress(self, theme: Theme) -> None:
+        """Another look, for the forces too."""
+        super().dress(theme)
+        if self._lesson is not None:
+            self.teach(self._lesson)
+
+    def measured(self, rows: list[Row], reference: dict[str, Any]) -> None:
+        """The rows measured so far and what is known of the reference."""
+        self.need_figures()
+        self.display(rows=described_rows(rows), drawn=points(rows), **reference)
+
+    def mark(self, rows: list[Row], asked: Asked, stale: bool, sentence: str) -> None:
+        """What is asked, cheapest and used now; `stale` where the rows belong to another chain."""
+        self.tell(type="asked", marks=marks(asked, rows), stale=stale, sentence=sentence)
+
+    def teach(self, shown: Lesson) -> None:
+        """The forces that naive steps would have drawn."""
+        self._lesson = shown
+        self.tell(**lesson_message(shown, self.theme))
+
+    def forget(self) -> None:
+        """Nothing is measured any more."""
+        self._lesson = None
+        self.display(rows=[], drawn={}, agreement_words="", reference="", second="")
+        self.tell(type="no-lesson")
+
+
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """Error against time without points, for the page and, small, for the corner."""
+    return {name: json_item(accuracy([], Asked(1e-6), theme, compact))
+            for name, compact in (("page", False), ("small", True))}
+
+
+def described_ways() -> list[dict[str, Any]]:
+    """The table of methods."""
+    return [{"name": way.name, "title": way.title, "order": f"{way.order:g}", "restrictions": way.restrictions,
+             "reference": way.reference} for way in ways().values()]
+
+
+def described_rows(rows: list[Row]) -> list[dict[str, Any]]:
+    """What the table says of the rows that have no finite error: which setting, and the sentence that says why."""
+    failed = [(row, row.failure or "Its numbers are not finite.") for row in rows
+              if row.failure or not math.isfinite(row.error)]
+    return [{"way": row.method, "setting": row.setting, "failure": failure} for row, failure in failed]
+
+
+def described_reference(found: WorkPrecision) -> dict[str, Any]:
+    """The reference, the second one, and how far they are apart."""
+    known = math.isfinite(found.agreement)
+    if found.disagreement:
+        words = f"The second reference failed: {found.disagreement}"
+    elif found.agreement > _LOST:
+        words = (f"Two references differ by {short_error(found.agreement)}: this motion amplifies every error, "
+                 "so smaller ones mean nothing here.")
+    elif known:
+        words = f"Two independent references agree to {short_error(found.agreement)}."
+    else:
+        words = "The second reference comes last."
+    return {"reference": found.reference, "second": found.second, "agreement_words": words}
+
+
+def lesson_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
+    """The certified and the naive output forces, in one array of rows; a naive one that failed has no row."""
+    largest = float(np.abs(shown.force).max())
+    factor, letter = prefixed(largest)
+    seconds, unit = prefixed(float(shown.time[-1]))
+    drawn = [one for one in shown.drawn if not one.failure]
+    rows = np.array([shown.time / seconds, shown.force / factor, *(one.force / factor for one in drawn)],
+                    dtype=np.float32)
+    return {
+        "type": "lesson", "columns": len(shown.time),
+        "figure": json_item(lesson(rows[0], rows[1], None, f"{unit}s", f"{letter}N", theme)),
+        "drawn": [{"method": one.method, "steps": one.steps, "failure": one.failure,
+                   "error": None if one.failure else one.error,
+                   "row": -1 if one.failure else 2 + drawn.index(one)} for one in shown.drawn],
+        "values": rows.ravel(),
+    }

@@ -1,0 +1,179 @@
+"""The Branches page of one visitor: follow the orbit on the screen in the frequency, and load any orbit found."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from panel.io import unlocked
+
+from granchain_core import BadInput, Scene
+from granchain_core.orbits import Arm, Branch, BranchPoint, Continuation, begin_branch, switch_to_doubled
+from granchain_core.warm import BRANCH, CERTIFIED, LIVE
+
+from ...page.host import Host
+from ...page.session import slider_range, without_frequency
+from ...page.task import Job, Task
+from ...serve.queues import LONG, Stop
+from ...serve.waiting import BRANCH_EVERY
+from .view import Branches, described_orbit, described_special, drawn_orbits
+
+#: Drive periods of an orbit that can be asked for here.
+_LONGEST_PERIOD = 8
+
+
+@dataclass
+class _Drawn:
+    """An arm on the page and how much of it the page has."""
+
+    branch: Branch
+    arm: Arm
+    points: int = 0
+    special: int = 0
+    orbits: list[BranchPoint] = field(default_factory=list)
+
+
+class BranchesPage:
+    """Branches of one chain: the first from the orbit on the screen, others from its period doublings."""
+
+    def __init__(self, host: Host, view: Branches) -> None:
+        self._host = host
+        self._view = view
+        self._task = Task(host, LONG, self._say, "Following the branch")
+        self._followed: list[Continuation] = []
+        self._drawn: list[_Drawn] = []
+        self._special: list[tuple[Branch, Any]] = []
+        self._sent = 0.0
+        self.status = "none"
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "branches-start": self._start, "branches-cancel": lambda _: self.cancel(),
+            "branches-continue": lambda _: self._continue(), "branches-orbit": self._load_orbit,
+            "branches-double": self._double,
+        }
+
+    def describe(self) -> None:
+        """Tell whether the branches still belong to the chain on the screen."""
+        now = self._host.session.scene
+        stale = bool(self._followed) and \
+            without_frequency(self._followed[0].branch.axis.scene) != without_frequency(now)
+        self._view.display(now=now.f, stale=stale)
+
+    def cancel(self) -> None:
+        """Stop; what there is stays and can be gone on with."""
+        if self._task.cancel():
+            self._say("cancelled")
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+
+    # What the visitor does
+
+    def _start(self, message: dict[str, Any]) -> None:
+        period = message.get("period")
+        if period is not None and period not in range(1, _LONGEST_PERIOD + 1):
+            raise BadInput(f"The period of a branch must be from 1 to {_LONGEST_PERIOD} drive periods here; "
+                           "the nearest valid value is 1.")
+        scene, picture = self._host.session.scene, self._host.session.picture
+        low, high = slider_range(scene, "f")
+        axis = min(low, scene.f), max(high, scene.f)
+        seed = None
+        if picture is not None and picture.final and picture.run.scene == scene and picture.regime.period \
+                and period in (None, picture.regime.period):
+            seed, period = picture.state, picture.regime.period
+        self._clear()
+        self._submit(lambda stop: [begin_branch(scene, "f", *axis, period, seed, both=True, stop=stop)], scene)
+
+    def _continue(self) -> None:
+        if self._followed and not self._task.running:
+            scene = self._followed[0].branch.axis.scene
+            left = [one.branch for one in self._followed]
+            self._clear()
+            self._submit(lambda stop: left, scene)
+
+    def _double(self, message: dict[str, Any]) -> None:
+        place = message.get("place")
+        if self._task.running or not isinstance(place, int) or not 0 <= place < len(self._special):
+            return
+        branch, special = self._special[place]
+        self._submit(lambda stop: [switch_to_doubled(branch, special, stop)], branch.axis.scene)
+
+    def _load_orbit(self, message: dict[str, Any]) -> None:
+        """An orbit goes to the main page: a stable one settled, an unstable one live, so that one sees it leave."""
+        arm, place = message.get("arm"), message.get("place")
+        if not isinstance(arm, int) or not 0 <= arm < len(self._drawn):
+            return
+        drawn = self._drawn[arm]
+        if not isinstance(place, int) or not 0 <= place < len(drawn.orbits):
+            return
+        point = drawn.orbits[place]
+        self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
+                        "settled" if point.stable else "live")
+
+    # Following, in a thread of its own
+
+    def _clear(self) -> None:
+        self._task.cancel()
+        self._followed, self._drawn, self._special = [], [], []
+        self._view.tell(type="clear")
+
+    def _submit(self, begin: Callable[[Stop], list[Branch]], scene: Scene) -> None:
+        self._task.cancel()
+        self._say("waiting")
+        self._task.start(lambda job: self._follow(begin, scene, job))
+
+    def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
+        job.compile(scene, LIVE, CERTIFIED, BRANCH)
+        job.say("settling")
+        for branch in begin(job.stop):
+            continuation = Continuation(branch, job.stop)
+            job.later(self._add, continuation)
+            for _ in continuation:
+                self._grown(job)
+        job.later(self._draw)
+
+    def _grown(self, job: Job) -> None:
+        """An orbit more: the page is told now and then; the picture in front comes first."""
+        if time.monotonic() - self._sent > BRANCH_EVERY:
+            self._sent = time.monotonic()
+            job.later(self._draw)
+        job.give_way()
+
+    # In the document's turn
+
+    def _add(self, continuation: Continuation) -> None:
+        self._followed.append(continuation)
+        self._drawn.extend(_Drawn(continuation.branch, arm) for arm in continuation.branch.arms)
+        self.describe()
+        self._draw()
+
+    def _draw(self) -> None:
+        """Send what has grown since; special points are in their arm before the orbit behind them is."""
+        with unlocked():
+            for number, drawn in enumerate(self._drawn):
+                points = drawn.arm.points[drawn.points :]
+                special = drawn.arm.special[drawn.special :]
+                if not points:
+                    continue
+                marks = [described_special(s, len(self._special) + i) for i, s in enumerate(special)]
+                orbits = drawn_orbits(points, special)
+                self._special.extend((drawn.branch, s) for s in special)
+                drawn.orbits.extend(orbits)
+                drawn.points += len(points)
+                drawn.special += len(special)
+                self._view.tell(type="orbits", arm=number, period=drawn.branch.period,
+                                orbits=[described_orbit(point) for point in orbits], special=marks)
+            self._say(self.status if self.status in ("cancelled", "done") else "following")
+
+    def _say(self, status: str, sentence: str = "") -> None:
+        self.status = status
+        arms = [drawn.arm for drawn in self._drawn]
+        orbits, special = sum(len(arm.points) for arm in arms), sum(len(arm.special) for arm in arms)
+        words = f"{orbits} orbits, {special} special points" if arms else ""
+        if status == "following":
+            words += "; now at " + " and ".join(f"{arm.points[-1].knob:.1f} Hz" for arm in arms if not arm.ended)
+        self._view.display(status=status, failure=sentence, words=words,
+                           ended=[arm.reason for arm in arms if arm.ended],
+                           unfinished=any(not arm.ended for arm in arms))

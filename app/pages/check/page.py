@@ -1,0 +1,129 @@
+"""The page "Hard cases" of one visitor: what is asked to be measured, what is measured, and what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from granchain_core import BadInput, NumbersFailed
+from granchain_core.hard import CASES, Case, Check, Picture
+
+from ...page.host import Host
+from ...page.job_list import IDLE, OFF, RUNNING, Activity
+from ...page.task import Job, Task
+from ...serve.queues import MEASUREMENTS
+from .view import Hard, described, summary
+from .work import CaseProcess, Ended, case_of
+
+_FAULT = "The process that measures it ended by a fault inside granchain; run it again, and please report it."
+
+
+class HardPage:
+    """Cases wait for their turn and are measured one after the other; results stay until a case is run again."""
+
+    def __init__(self, host: Host, view: Hard) -> None:
+        self._view = view
+        self._process = CaseProcess()
+        self._task = Task(host, MEASUREMENTS, self._end, "The case")
+        self._shown: dict[str, dict[str, Any]] = {}
+        self._asked = 0
+        self.rows: dict[str, list[Check]] = {}
+        self.waiting: list[str] = []
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "hard-run": self._run_one, "hard-all": lambda _: self._run(CASES),
+            "hard-cancel": lambda _: self.cancel(),
+        }
+
+    @property
+    def activity(self) -> Activity:
+        """Name, state and detail for the list of what is computed now."""
+        if self.waiting:
+            return "hard cases", RUNNING, self.waiting[0]
+        return "hard cases", IDLE if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
+
+    def cancel(self) -> None:
+        """Stop the case under way and forget those that wait; what was found stays."""
+        self._give_up()
+        for name in self.waiting:
+            self._put(name, status="cancelled")
+        self.waiting = []
+        self._show()
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._give_up()
+
+    def _give_up(self) -> None:
+        self._task.cancel()
+        self._process.close()
+        self._process = CaseProcess()
+
+    # What the visitor does
+
+    def _run_one(self, message: dict[str, Any]) -> None:
+        case = case_of(message.get("case"))
+        if case is None:
+            raise BadInput(f"There is no hard case {str(message.get('case'))[:40]!r}; reload the page.")
+        self._run((case,))
+
+    def _run(self, cases: tuple[Case, ...]) -> None:
+        idle = not self.waiting
+        if idle:
+            self._asked = 0
+        for case in cases:
+            if case.name not in self.waiting:
+                self.waiting.append(case.name)
+                self._asked += 1
+                self._put(case.name, status="waiting", failure="")
+        if idle:
+            self._begin_next()
+        self._show()
+
+    def _begin_next(self) -> None:
+        case = case_of(self.waiting[0])
+        if case is None:
+            raise LookupError(self.waiting[0])
+        self._task.start(partial(self._work, case, self._process))
+
+    # In the measuring thread
+
+    def _work(self, case: Case, process: CaseProcess, job: Job) -> None:
+        job.later(self._change, case.name, status="running")
+        try:
+            answers = process.measure(case, job.stop)
+            job.later(self._measured, case.name, next(answers))
+            job.later(self._draw, case.name, next(answers))
+        except Ended:
+            raise NumbersFailed(_FAULT, "failed") from None
+
+    # In the document's turn
+
+    def _measured(self, name: str, rows: list[Check]) -> None:
+        self.rows[name] = rows
+        self._change(name, status="drawing", **described(name, rows))
+
+    def _draw(self, name: str, picture: Picture | None) -> None:
+        if picture is not None:
+            self._view.draw(name, picture)
+
+    def _end(self, status: str, sentence: str) -> None:
+        """The case in front is measured, or failed; the next one's turn comes."""
+        name = self.waiting.pop(0)
+        if self.waiting:
+            self._begin_next()
+        else:
+            self._process.close()
+            self._process = CaseProcess()
+        self._change(name, status=status, failure=sentence)
+
+    def _put(self, name: str, **changes: Any) -> None:
+        self._shown = {**self._shown, name: {**self._shown.get(name, {}), **changes}}
+
+    def _change(self, name: str, **changes: Any) -> None:
+        self._put(name, **changes)
+        self._show()
+
+    def _show(self) -> None:
+        self._view.display(results=self._shown, summary=summary(self.rows), running=bool(self.waiting),
+                           done=1.0 - len(self.waiting) / max(1, self._asked))

@@ -1,0 +1,94 @@
+"""The page "Hard cases": a card for each, with its rows of figures against bars and a picture of ours beside naive."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from bokeh.embed import json_item
+
+from granchain_core.hard import CASES, Check, Picture
+
+from ...page.format import duration
+from ...parts.component import Component, text
+from ...pictures.check import check
+from ...pictures.theme import THEMES, Theme
+from ...scripts import module
+
+
+class Hard(Component):
+    """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
+
+    _esm = module("hard.js")
+    _stylesheets = [text("controls.css"), text("hard.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, **params)
+        self._theme = THEMES["light"]
+        self._drawn: dict[str, Picture] = {}
+
+    def draw(self, name: str, picture: Picture) -> None:
+        """Show the picture of a case in place of what there is of it."""
+        self._drawn[name] = picture
+        self.tell(**picture_message(name, picture, self._theme))
+
+    def dress(self, theme: Theme) -> None:
+        """All pictures in another look."""
+        if theme != self._theme:
+            self._theme = theme
+            for name, picture in self._drawn.items():
+                self.tell(**picture_message(name, picture, theme))
+
+
+def described_cases() -> list[dict[str, Any]]:
+    """The cases as they stand before anything was measured."""
+    return [{"name": case.name, "hard": case.hard, "naive": case.naive, "oracle": case.oracle,
+             "drawn": case.picture is not None} for case in CASES]
+
+
+def figures(value: float, digits: int) -> str:
+    """A number to so many significant digits, "7.1e-13"; exponents without leading zeros."""
+    mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
+    return f"{mantissa}e{int(exponent)}" if exponent else mantissa
+
+
+def figure_beside(value: float, bar: float) -> str:
+    """A figure to two digits, or to as many as it takes to see on which side of its bar it is."""
+    if not math.isfinite(value):
+        return "no number" if math.isnan(value) else "infinite"
+    for digits in range(2, 17):
+        told = figures(value, digits)
+        if (float(told) <= bar) == (value <= bar):
+            return told
+    return repr(value)
+
+
+def described(name: str, rows: list[Check]) -> dict[str, Any]:
+    """The rows of one case as the browser shows them, and its time; a figure that could not be computed has its
+    sentence as note."""
+    return {"time": duration(rows[0].seconds), "rows": [
+        {"what": row.case.removeprefix(f"{name}: "), "figure": figure_beside(row.figure, row.bar),
+         "bar": figures(row.bar, 3), "passed": row.passed, "note": row.note} for row in rows]}
+
+
+def summary(found: dict[str, list[Check]]) -> str:
+    """One sentence about everything that was run; a failed row is named with its figure."""
+    every = [row for case in CASES for row in found.get(case.name, ())]
+    if not every:
+        return ""
+    missed = [row for row in every if not row.passed]
+    run = f"{len(found)} of {len(CASES)} cases run"
+    if not missed:
+        return f"{run}: no figure of {len(every)} is above its bar."
+    first = missed[0]
+    more = f", and {len(missed) - 1} more" if len(missed) > 1 else ""
+    return (f"{run}: {len(missed)} of {len(every)} figures FAILED: "
+            f"{first.case}, {figure_beside(first.figure, first.bar)} against {figures(first.bar, 3)}{more}.")
+
+
+def picture_message(name: str, picture: Picture, theme: Theme) -> dict[str, Any]:
+    """A picture that nothing will change: the figure itself, and the words for who cannot see it."""
+    labels = "; ".join(trace.label for trace in picture.traces)
+    return {"type": "picture", "case": name, "figure": json_item(check(picture, theme)),
+            "words": f"{picture.y_label} over {picture.x_label}: {labels}"}

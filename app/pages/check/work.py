@@ -1,0 +1,93 @@
+"""Hard cases in a process of their own: their oracles are Python, which would hold the page and cannot be stopped."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from multiprocessing import get_context, parent_process
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+
+from granchain_core import Cancelled
+from granchain_core.hard import CASES, Case, Check, Picture, run_case
+
+from ...serve.queues import Stop
+from ...serve.waiting import STOP_LOOK
+
+#: The pictures of the page come first where there are fewer cores than work.
+_NICE = 5
+
+
+class Ended(Exception):
+    """The process ended without an answer, by a fault in it or from outside."""
+
+
+def case_of(name: object) -> Case | None:
+    """The case of this name."""
+    return next((case for case in CASES if case.name == name), None)
+
+
+def _follow_parent() -> None:
+    """End with the dashboard, however that ended."""
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+    os._exit(1)
+
+
+def serve_cases(asked: Connection) -> None:
+    """What the process does: for every name that is asked, the rows of the quick form, then the picture or None."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the dashboard's, not ours
+    threading.Thread(target=_follow_parent, daemon=True).start()
+    if hasattr(os, "nice"):
+        os.nice(_NICE)
+    while True:
+        name = asked.recv()
+        case = case_of(name)
+        if case is None:
+            raise LookupError(name)
+        asked.send(run_case(case, quick=True))
+        asked.send(None if case.picture is None else case.picture())
+
+
+class CaseProcess:
+    """One process, begun with the first case that needs one; `close` may be called at any time, from any thread."""
+
+    def __init__(self) -> None:
+        self._process: BaseProcess | None = None
+        self._asked: Connection | None = None
+
+    def measure(self, case: Case, stop: Stop) -> Iterator[list[Check] | Picture | None]:
+        """The rows, then the picture or None. Raises `Cancelled` for the flag, `Ended` where the process is no more."""
+        if stop:
+            raise Cancelled
+        asked = self._asked or self._begin()
+        try:
+            asked.send(case.name)
+            for _ in range(2):
+                while not asked.poll(STOP_LOOK):
+                    if stop:
+                        raise Cancelled
+                yield asked.recv()
+        except (EOFError, OSError) as gone:
+            self.close()
+            self._asked = None
+            raise (Cancelled() if stop else Ended()) from gone
+        finally:
+            if stop:
+                self.close()
+
+    def close(self) -> None:
+        """End the process, whatever it does."""
+        if self._process is not None:
+            self._process.kill()
+
+    def _begin(self) -> Connection:
+        context = get_context("spawn")
+        self._asked, theirs = context.Pipe()
+        self._process = context.Process(target=serve_cases, args=(theirs,), name="hard cases", daemon=True)
+        self._process.start()
+        theirs.close()  # ours is the only other end: it reads the end of the process
+        return self._asked

@@ -1,0 +1,212 @@
+"""The resonance curves of the page: which are wanted, when they are computed, and their way to the figure."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from functools import partial
+
+from panel.io import unlocked
+
+from granchain_core import CurvePoint, Scene
+from granchain_core.experiment import Measured, stated_features
+from granchain_core.steady.curve import draft_curve
+from granchain_core.warm import CERTIFIED, CURVE, LIVE
+
+from ...page.host import Host
+from ...page.job_list import IDLE, OFF, RUNNING, Activity
+from ...page.session import rig_beads, slider_range, without_frequency
+from ...page.task import Task
+from ...serve.compiler import COMPILER
+from ...serve.queues import CURVES, LatestWins, Stop
+from ...serve.waiting import CURVE_QUIET
+from .bar import CurveBar
+from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
+from .view import Curve
+
+_SETTINGS = (*DIRECTIONS, "features")
+
+
+class Curves:
+    """A curve on the screen is computed; one that is scrolled away, switched off or unchanged is not.
+
+    `placed` is called when a curve from rest is whole: it says where on it the picture in front lies.
+    """
+
+    def __init__(self, host: Host, figure: Curve, bar: CurveBar, placed: Callable[[], None]) -> None:
+        self._host = host
+        self._figure = figure
+        self._bar = bar
+        self._placed = placed
+        self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
+        self._drafts = LatestWins(partial(host.later, self._draw_draft), partial(host.later, host.failed))
+        self._asked: Scene | None = None
+        self._begun = 0
+        self._wanted = {name: name == "rest" for name in _SETTINGS}
+        self._visible = True
+        self._computed: dict[str, Scene] = {}
+        self._due = 0
+        self._lock = threading.Lock()
+        self._buffer: list[Progress] = []
+        self._key: Scene | None = None
+        self._remaining: list[str] = []
+        self._done = -1.0
+
+    def open(self, scene: Scene) -> None:
+        """Another scene: an empty figure over its frequencies."""
+        self._computed.clear()
+        self._figure.clear()
+        self._figure.range(*slider_range(scene, "f"))
+        self._wanted["features"] = scene.pattern == rig_beads()
+        self._show_features(scene)
+        self.changed(scene)
+
+    def moved(self, scene: Scene) -> None:
+        """Knobs were turned; another than f makes another curve: a draft at once, the curve when the knobs rest."""
+        if without_frequency(scene) == self._asked:
+            return
+        self.changed(scene)
+        if self._visible and self._wanted["rest"] and COMPILER.has(scene, CURVE):
+            self._drafts.submit(partial(self._draft, scene, self._begun))
+
+    @staticmethod
+    def _draft(scene: Scene, begun: int, stop: Stop) -> Iterator[tuple[int, list[CurvePoint]]]:
+        yield begun, draft_curve(scene, grid(scene, COARSE), stop)
+
+    def _draw_draft(self, drafted: tuple[int, list[CurvePoint]]) -> None:
+        begun, points = drafted
+        if points and begun == self._begun:  # else the curve itself is on its way
+            with unlocked():
+                self._figure.redraw("rest", points)
+
+    def changed(self, scene: Scene) -> None:
+        """What is shown has changed."""
+        self._task.cancel()
+        self._asked = without_frequency(scene)
+        self._due += 1
+        self._host.after(CURVE_QUIET, self._begin_if_last, scene, self._due)
+
+    def _begin_if_last(self, scene: Scene, due: int) -> None:
+        if due != self._due:
+            return
+        if COMPILER.has(scene, LIVE, CERTIFIED, CURVE):
+            self._begin(scene)
+        else:
+            self._host.after(CURVE_QUIET, self._begin_if_last, scene, due)
+
+    def visible(self, visible: bool, scene: Scene) -> None:
+        """The figure came on the screen or left it."""
+        self._visible = visible
+        if visible:
+            self.changed(scene)
+        else:
+            self.stop()
+
+    def choose(self, name: str, wanted: bool, scene: Scene) -> None:
+        """Switch a direction or the stated features on or off."""
+        if name not in self._wanted:
+            return
+        self._wanted[name] = wanted
+        self._bar.display(**self._wanted)
+        if name == "features":
+            self._show_features(scene)
+        else:
+            self.changed(scene)
+
+    def stop(self) -> None:
+        """Give up what is being computed; what there is stays."""
+        self._task.cancel()
+        self._done = -1.0
+        self._bar.display(done=-1.0)
+
+    @property
+    def computing(self) -> bool:
+        """Whether a curve is under way."""
+        return 0.0 <= self._done < 1.0
+
+    def activities(self) -> list[Activity]:
+        """Name, state and detail of every direction, as it is at this moment."""
+        found = []
+        for name in DIRECTIONS:
+            title = "resonance curve " + ("from rest" if name == "rest" else f"sweeping {name}")
+            if not self._wanted[name]:
+                found.append((title, OFF, "not asked for"))
+            elif self._computed.get(name) is not None and self._computed.get(name) == self._key:
+                found.append((title, IDLE, "complete"))
+            elif not self._visible:
+                found.append((title, OFF, "not on the screen"))
+            elif name in self._remaining and self.computing:
+                found.append((title, RUNNING, f"{100 * self._done:.0f} % of what is asked for"))
+            else:
+                found.append((title, OFF, "waits until the knobs rest, or was stopped"))
+        return found
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+        self._drafts.close()
+
+    def measured(self, measured: Measured | None) -> None:
+        """The visitor's own data."""
+        self._figure.measured(measured)
+
+    def _begin(self, scene: Scene) -> None:
+        """Compute what is wanted and not there yet; moving f alone makes nothing new."""
+        key = without_frequency(scene)
+        missing = [name for name in DIRECTIONS
+                   if self._visible and self._wanted[name] and self._computed.get(name) != key]
+        for name in missing:
+            self._computed.pop(name, None)
+        self._key = key
+        shown = [name for name in DIRECTIONS if self._wanted[name]]
+        with unlocked():
+            self._figure.show_directions(shown)
+            self._figure.begin(missing)
+            self._bar.display(**self._wanted, done=0.0 if missing else -1.0)
+        self._begun += bool(missing)
+        self._remaining, self._done = list(missing), 0.0 if missing else -1.0
+        if missing:
+            self._task.start(Sweep(scene, missing, self._report, lambda: self._host.busy))
+        else:
+            self._task.cancel()
+
+    def _show_features(self, scene: Scene) -> None:
+        self._bar.display(**self._wanted)
+        self._figure.features(stated_features() if self._wanted["features"] else [])
+
+    def _report(self, progress: Progress) -> None:
+        """From the worker thread: points are collected and drawn a few at a time."""
+        with self._lock:
+            self._buffer.append(progress)
+            first = len(self._buffer) == 1
+        if first:
+            self._host.later(self._draw)
+
+    def _draw(self) -> None:
+        with self._lock:
+            buffer, self._buffer = self._buffer, []
+        points: dict[str, list[CurvePoint]] = {}
+        for progress in buffer:
+            points.setdefault(progress.direction, []).extend(progress.points)
+        covers = {progress.direction for progress in buffer if progress.covers}
+        with unlocked():
+            for direction, new in points.items():
+                self._figure.add(direction, new, direction in covers)
+            for progress in buffer:
+                if progress.complete and self._key is not None:
+                    self._computed[progress.direction] = self._key
+                    self._figure.finished(progress.direction)
+                    self._placed()
+            self._done = self._overall(buffer[-1])
+            self._bar.display(done=self._done)
+
+    def _overall(self, progress: Progress) -> float:
+        """Progress over all directions of this request."""
+        if progress.direction not in self._remaining:
+            return -1.0
+        place = self._remaining.index(progress.direction)
+        return (place + progress.done) / len(self._remaining)
+
+    def _ended(self, status: str, _: str) -> None:
+        if status == "failed":
+            self.stop()

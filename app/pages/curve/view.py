@@ -1,0 +1,233 @@
+"""The resonance curve: largest output force over drive frequency, by regime and by direction of the sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from bokeh.events import Tap
+from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Range1d, Span
+from bokeh.plotting import figure
+
+from granchain_core import CurvePoint, Run
+from granchain_core.experiment import Feature, Measured
+from granchain_core.steady.resonance import Place, place_of
+
+from ...page.format import short_error
+from ...page.frames import prefixed, round_up
+from ...parts.figures import OUTPUT, quiet_axis, quiet_figure
+from ...parts.regimes import REGIMES, regime_key
+
+_DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
+_MARK = "#8a8f98"
+_COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "error")
+
+
+class Curve:
+    """The figure with, for every direction, the curve being computed and the one before it in grey."""
+
+    def __init__(self, choose: Callable[[float], None]) -> None:
+        self._points: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
+        self._before: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
+        self._scale = (1.0, "")
+        self._whole = False
+        self._shown: tuple[float, float | None] = (0.0, None)
+        self._place: tuple[object, ...] = ()
+        self._now = ColumnDataSource({"frequency": [], "force": []})
+        self._measured = ColumnDataSource({"frequency": [], "force": [], "low": [], "high": []})
+        self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
+        self._measurement: Measured | None = None
+        self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in _DASHES}
+        self.figure = self._frame(choose)
+        self._old = {name: self._line(name, grey=True) for name in _DASHES}
+        self._new = {name: self._line(name, grey=False) for name in _DASHES}
+        # In the overlay, so that moving f repaints a line and a dot and not the whole curve.
+        self._current = Span(dimension="height", line_color=_MARK, line_width=1, level="overlay")
+        self.figure.add_layout(self._current)
+        self._marks()
+
+    def _frame(self, choose: Callable[[float], None]) -> figure:
+        plot = quiet_figure(58, 16, x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        plot.min_border_top = 10
+        plot.xaxis.axis_label = "drive frequency f (Hz)"
+        quiet_axis(plot.yaxis[0], OUTPUT)
+        plot.on_event(Tap, lambda event: choose(event.x))
+        for axis in (plot.xaxis[0], plot.yaxis[0]):
+            axis.ticker.desired_num_ticks = 5
+            axis.ticker.num_minor_ticks = 0
+        return plot
+
+    def _line(self, direction: str, grey: bool) -> ColumnDataSource:
+        source = ColumnDataSource({name: [] for name in _COLUMNS})
+        line = self.figure.line(
+            "frequency", "force", source=source, line_dash=_DASHES[direction] or "solid",
+            line_color=_MARK if grey else OUTPUT, line_width=1.5, line_alpha=0.45 if grey else 0.9)
+        self._renderers[direction].append(line)
+        if not grey:
+            marks = self.figure.scatter(
+                "frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
+                line_color="colour", line_width=1.5)
+            self._renderers[direction].append(marks)
+            self.figure.add_tools(HoverTool(renderers=[marks], tooltips=[
+                ("f", "@frequency{0.0} Hz"), ("largest output force", "@force{0.000}"),
+                ("its relative error", "@error"), ("regime", "@regime"),
+                ("start", {"rest": "from rest", "up": "sweep up", "down": "sweep down"}[direction])]))
+        return source
+
+    def _marks(self) -> None:
+        """Stated features, the visitor's data and the current point, in front of the curves."""
+        plot = self.figure
+        feature = plot.segment("frequency", 0, "frequency", "top", source=self._features, line_color=_MARK,
+                               line_width=3, line_dash=[1, 5], line_cap="round")
+        self._labels = plot.text("frequency", "top", "label", source=self._features, angle=np.pi / 2,
+                                 text_align="right", text_baseline="bottom", text_font_size="12px",
+                                 text_color=_MARK, x_offset=-3)
+        plot.add_tools(HoverTool(renderers=[feature], line_policy="interp",
+                                 tooltips=[("stated", "@label"), ("source", "@source")]))
+        self._bars = plot.segment("frequency", "low", "frequency", "high", source=self._measured,
+                                  line_width=2)
+        self._dots = plot.scatter("frequency", "force", source=self._measured, marker="square", size=7,
+                                  line_width=2)
+        plot.add_tools(HoverTool(renderers=[self._dots], tooltips=[
+            ("measured at", "@frequency{0.0} Hz"), ("force", "@force{0.000}")]))
+        self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=OUTPUT,
+                                 line_width=3, level="overlay")
+
+    def ink(self, colour: str, thick: float) -> None:
+        """The colour of measured data and of the current point's ring: dark on light, light on dark."""
+        for renderer in (self._bars, self._dots, self._dot):
+            renderer.glyph.line_color = colour
+        self._dots.glyph.fill_color = colour
+        self._labels.glyph.text_color = colour
+        self._dot.glyph.size = 15 * thick
+
+    def range(self, low: float, high: float) -> None:
+        """The frequencies shown."""
+        self.figure.x_range.update(start=low, end=high)
+
+    def show_directions(self, directions: list[str]) -> None:
+        """Only these directions are visible."""
+        for name, renderers in self._renderers.items():
+            for renderer in renderers:
+                renderer.visible = name in directions
+
+    def begin(self, directions: list[str]) -> None:
+        """New curves will come: the present ones become the grey ones."""
+        self._whole = self._whole and "rest" not in directions
+        for name in _DASHES:
+            if name in directions:
+                self._before[name] = self._points[name] or self._before[name]
+                self._points[name] = []
+                self._draw_before(name)
+                self._draw(name)
+
+    def add(self, direction: str, points: list[CurvePoint], covers: bool) -> None:
+        """More points; once they cover the range the grey curve goes."""
+        self._points[direction] += [point for point in points if np.isfinite(point.max_output_force)]
+        if covers:
+            self._before[direction] = []
+            self._draw_before(direction)
+        self._rescale()
+        self._draw(direction)
+
+    def redraw(self, direction: str, points: list[CurvePoint]) -> None:
+        """A whole curve in place of what there is of it, drawn while a knob moves."""
+        self._whole = self._whole and direction != "rest"
+        self._points[direction] = []
+        self.add(direction, points, covers=True)
+
+    def place(self, run: Run) -> Place | None:
+        """Where a run lies on the whole curve from rest; None while there is none."""
+        if not self._whole:
+            return None
+        points = sorted(self._points["rest"], key=lambda point: point.frequency)
+        transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
+        return place_of([p.frequency for p in points], [p.max_output_force for p in points],
+                        [p.regime.period for p in points], run.scene.f, run.max_output_force, transmission)
+
+    def finished(self, direction: str) -> None:
+        """All points of a direction are there."""
+        self._whole = self._whole or direction == "rest"
+
+    def clear(self) -> None:
+        """No curve: another scene was opened."""
+        self._whole = False
+        for name in _DASHES:
+            self._points[name], self._before[name] = [], []
+            self._draw(name)
+            self._draw_before(name)
+
+    def now(self, frequency: float, force: float | None) -> None:
+        """The current point; without a force only its frequency."""
+        shown = frequency, None if force is None else float(f"{force:.3g}")
+        if (shown, self._scale) == self._place:
+            return
+        self._shown, self._place = shown, (shown, self._scale)
+        self._current.location = frequency
+        factor = self._scale[0]
+        self._now.data = {"frequency": [frequency] if force is not None else [],
+                          "force": [force / factor] if force is not None else []}
+
+    def features(self, features: Sequence[Feature]) -> None:
+        """Vertical marks at what the paper states; they carry no force."""
+        self._features.data = {
+            "frequency": [f.frequency for f in features],
+            "top": [self.figure.y_range.end] * len(features),
+            "label": [f"{f.kind}, {f.repeats} repeats" for f in features],
+            "source": [f.source for f in features],
+        }
+
+    def measured(self, measured: Measured | None) -> None:
+        """The visitor's own data with error bars, or none."""
+        self._measurement = measured
+        self._rescale()
+        if measured is None:
+            self._measured.data = {name: [] for name in ("frequency", "force", "low", "high")}
+            return
+        factor = self._scale[0]
+        error = np.zeros(len(measured.force)) if measured.error is None else np.asarray(measured.error)
+        force = np.asarray(measured.force)
+        self._measured.data = {"frequency": measured.frequency, "force": force / factor,
+                               "low": (force - error) / factor, "high": (force + error) / factor}
+
+    def _rescale(self) -> None:
+        curves = (*self._points.values(), *self._before.values())
+        forces = [point.max_output_force for points in curves for point in points]
+        if self._measurement is not None:
+            forces.append(float(np.max(self._measurement.force)))
+        high = round_up(max(forces, default=1.0))
+        scale = prefixed(high)
+        if scale != self._scale:
+            self._scale = scale
+            for name in _DASHES:
+                self._draw(name)
+                self._draw_before(name)
+            self.now(*self._shown)
+            if self._measurement is not None:
+                self.measured(self._measurement)
+        self.figure.y_range.end = 1.05 * high / scale[0]
+        self.figure.yaxis[0].axis_label = f"largest output force ({scale[1]}N)"
+        top = [self.figure.y_range.end] * len(self._features.data["top"])
+        if list(self._features.data["top"]) != top:
+            self._features.data = {**self._features.data, "top": top}
+
+    def _draw(self, direction: str) -> None:
+        self._new[direction].data = self._columns(self._points[direction])
+
+    def _draw_before(self, direction: str) -> None:
+        self._old[direction].data = self._columns(self._before[direction])
+
+    def _columns(self, points: list[CurvePoint]) -> dict[str, Any]:
+        points = sorted(points, key=lambda point: point.frequency)
+        looks = [REGIMES[regime_key(point)] for point in points]
+        return {
+            "frequency": [point.frequency for point in points],
+            "force": [point.max_output_force / self._scale[0] for point in points],
+            "marker": [look[0] for look in looks],
+            "colour": [look[1] for look in looks],
+            "size": [look[2] for look in looks],
+            "regime": [point.regime.sentence for point in points],
+            "error": ["no claim" if point.error_estimate is None else short_error(point.error_estimate)
+                      for point in points],
+        }

@@ -1,0 +1,94 @@
+// The effects panel: a switch for every effect, its slot in the compiled kernel, what it costs, and what is being computed.
+
+import { part } from "../../parts/dom.js";
+
+const signed = (value) =>
+  `${value < 0 ? "−" : "+"}${Math.abs(value) < 9.95 ? Math.abs(value).toFixed(1) : Math.abs(value).toFixed(0)}`;
+
+// Nanoseconds, how far they varied between the turns, and per cent.
+const cost = (measured) => {
+  if (!measured) return null;
+  const { difference, percent, spread } = measured;
+  const cell = part(
+    "span",
+    { className: "cost" },
+    `${signed(difference)} ns`,
+    part("small", { textContent: ` ± ${spread.toFixed(0)} · ${signed(percent)} %` }),
+  );
+  cell.title = `with it ${measured.with.toFixed(1)} ns a step, without ${measured.without.toFixed(1)} ns; medians of runs by turns, spread ± ${spread.toFixed(1)} ns`;
+  return cell;
+};
+
+function effectRow(model, effect, slot) {
+  const box = part("input", {
+    type: "checkbox",
+    role: "switch",
+    checked: effect.on,
+    disabled: Boolean(effect.refused),
+  });
+  box.dataset.name = effect.name;
+  box.setAttribute("aria-label", effect.title);
+  box.addEventListener("change", () => model.send_msg({ do: "switch", name: effect.name, value: box.checked }));
+  const kind = part("code", { textContent: slot?.type ?? "absent", className: slot?.type ? "" : "absent" });
+  const name = part("td", { title: effect.meaning }, part("label", {}, box, effect.title), kind);
+  const row = part("tr", {}, name);
+  row.dataset.effect = effect.name;
+  if (effect.code) row.append(part("td", {}, cost(effect.code)), part("td", {}, cost(effect.motion) ?? "…"));
+  else row.append(part("td", { colSpan: 2, className: "soft", textContent: effect.state }));
+  return row;
+}
+
+export function effectsTab(model) {
+  const { panel, validity } = model.state;
+  if (!panel) return [];
+  const { step } = panel;
+  const slotOf = { dashpot: "dissipation", account: "balance" };
+  const slots = new Map(panel.slots.map((one) => [one.slot, one]));
+  const ns = (value) => (value ? `${value.toFixed(0)} ns` : "–");
+  const head = part(
+    "tr",
+    {},
+    part("th", { textContent: "effect and its slot in the kernel" }),
+    part("th", {
+      textContent: "its code",
+      title: "What its code adds to a plain RK4 step, whose every step does the same arithmetic.",
+    }),
+    part("th", {
+      textContent: "in this motion",
+      title: "What it changes of a step of the live method, which also splits steps where contacts open or close.",
+    }),
+  );
+  const whole = part(
+    "tr",
+    { className: "whole" },
+    part("td", { textContent: "one whole step" }),
+    part("td", { textContent: ns(step.rk4) }),
+    part("td", { textContent: ns(step["rk4-split"]) }),
+  );
+  const rows = panel.effects.map((effect) => effectRow(model, effect, slots.get(slotOf[effect.name] ?? effect.name)));
+  const table = part("table", { className: "costs" }, part("thead", {}, head), part("tbody", {}, ...rows, whole));
+  const always = panel.slots
+    .filter((one) => ["chain", "driver"].includes(one.slot))
+    .map((one) => `${one.title} (${one.type})`)
+    .join(", ");
+  const doing = part("table", { className: "doing" });
+  for (const { name, state, detail } of panel.activities) {
+    const row = part(
+      "tr",
+      { className: state },
+      part("td", { textContent: name }),
+      part("td", {}, part("b", { textContent: state })),
+      part("td", { className: "soft", textContent: detail }),
+    );
+    row.dataset.activity = name;
+    doing.append(row);
+  }
+  const paragraph = (text, className) => part("p", { textContent: text, className });
+  return [
+    table,
+    paragraph(`Always compiled in: ${always}. Kernel: ${panel.structure}.`, "soft"),
+    part("h3", { textContent: "computed now" }),
+    doing,
+    ...(validity ?? []).map((sentence) => paragraph(sentence, "soft")),
+  ];
+}

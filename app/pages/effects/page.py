@@ -1,0 +1,192 @@
+"""The Effects panel of one visitor: switches, the kernel's slots, what each effect costs, what is being computed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from granchain_core import BadInput, Scene
+from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
+from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
+
+from ...cli.explain import slots_of
+from ...page.host import Host
+from ...page.job_list import IDLE, RUNNING, Activity
+from ...page.task import Job, Task
+from ...parts.component import Component
+from ...serve.compiler import COMPILER
+from ...serve.queues import MEASUREMENTS
+from ...serve.waiting import ACTIVITIES_EVERY, COST_QUIET
+from .switches import EFFECTS, present, refusal, variants
+
+
+class EffectsPanel:
+    """While it is on the screen it looks at the jobs, and has the cost of one effect after the other measured.
+
+    `activities` lists everything that is computed for this visitor.
+    """
+
+    def __init__(self, host: Host, view: Component, activities: Callable[[], list[Activity]]) -> None:
+        self._host = host
+        self._view = view
+        self._activities = activities
+        self._task = Task(host, MEASUREMENTS, self._ended, "Timing it")
+        self._open = False
+        self._turn = 0
+        self._moved = 0.0
+        self._key: tuple[object, ...] = ()
+        self._costs: dict[str, dict[str, EffectCost]] = {}
+        self._failed: dict[str, str] = {}
+        self._compiling = ""
+        self.measuring = ""
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "effects-visible": self._visible, "switch": self._switch,
+        }
+
+    @property
+    def activity(self) -> Activity:
+        """Name, state and detail for the list of what is computed now."""
+        return "cost of effects", RUNNING if self.measuring else IDLE, self._progress_words
+
+    @property
+    def _progress_words(self) -> str:
+        if self._compiling:
+            return f"compiling a kernel for {EFFECTS[self._compiling].title}"
+        if self.measuring:
+            return f"timing {EFFECTS[self.measuring].title}"
+        possible = sum(variants(name, self._host.session.scene) is not None for name in EFFECTS)
+        return f"{len(self._costs)} of {possible} effects measured"
+
+    def changed(self) -> None:
+        """A knob has moved: nothing is measured for a while, and what belongs to another kernel is forgotten."""
+        self._moved = time.monotonic()
+        scene = self._host.session.scene
+        key = (structure(scene), scene.knobs["N"])
+        if key != self._key:
+            self._key = key
+            self._task.cancel()
+            self._costs, self._failed, self._compiling, self.measuring = {}, {}, "", ""
+        if self._open:
+            self._show()
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._open = False
+        self._task.cancel()
+
+    def _visible(self, message: dict[str, Any]) -> None:
+        self._open = bool(message.get("value"))
+        self._turn += 1
+        if self._open:
+            self._look(self._turn)
+
+    def _switch(self, message: dict[str, Any]) -> None:
+        name, on = message.get("name"), message.get("value")
+        if not isinstance(name, str) or name not in EFFECTS or not isinstance(on, bool):
+            raise BadInput(f"There is no effect {str(name)[:40]!r} to switch.")
+        try:
+            session = self._host.session
+            session.switch(name, on)
+            self._host.show(session.scene, mode=session.mode)
+        finally:
+            self._show()
+
+    def _look(self, turn: int) -> None:
+        """Again and again while the panel is open."""
+        if not self._open or turn != self._turn:
+            return
+        self._next()
+        self._show()
+        self._host.after(ACTIVITIES_EVERY, self._look, turn)
+
+    def _next(self) -> None:
+        """Begin what is to be done next: compile for one effect, or time it."""
+        scene = self._host.session.scene
+        busy = self.measuring or self._host.unsettled or self._host.curve_computing
+        if busy or time.monotonic() - self._moved < COST_QUIET:
+            return
+        if not COMPILER.has(scene, LIVE, CERTIFIED, CURVE):  # the picture's own kernels come first
+            return
+        self._compiling = ""
+        for name in EFFECTS:
+            pair = variants(name, scene)
+            if name in self._costs or name in self._failed or pair is None:
+                continue
+            if self._compiled(name, pair):
+                self._measure(name, pair)
+            return
+
+    def _compiled(self, name: str, pair: tuple[Variant, Variant]) -> bool:
+        """Whether both kernels only need to be loaded; one that is not there is compiled in another process."""
+        for variant in pair:
+            piece = COST_ACCOUNT if variant.balance else COST
+            if COMPILER.has(variant.scene, piece):
+                continue
+            self._compiling = name
+            compilation = COMPILER.ask(variant.scene, piece)
+            if compilation.done() and compilation.exception() is not None:
+                self._failed[name] = "its kernel could not be compiled"
+            return False
+        return True
+
+    def _measure(self, name: str, pair: tuple[Variant, Variant]) -> None:
+        self.measuring = name
+        self._task.start(partial(self._work, name, pair))
+
+    def _work(self, name: str, pair: tuple[Variant, Variant], job: Job) -> None:
+        """In the measuring thread; a moving knob holds it up."""
+        for method in (CODE, MOTION):
+            cost = effect_cost(*pair, method, job.stop, job.give_way)
+            job.later(self._measured, name, method, cost)
+
+    def _measured(self, name: str, method: str, cost: EffectCost) -> None:
+        self._costs.setdefault(name, {})[method] = cost
+        self._show()
+
+    def _ended(self, status: str, sentence: str) -> None:
+        if status == "failed":
+            self._failed[self.measuring] = sentence[:120]
+        self.measuring = ""
+        self._show()
+
+    def _show(self) -> None:
+        session = self._host.session
+        self._view.display(panel={
+            "effects": [self._effect(name, session.scene) for name in EFFECTS],
+            "slots": [{"slot": name, "title": title, "type": kind}
+                      for name, title, kind in slots_of(session.scene, session.account)],
+            "structure": structure(session.scene),
+            "step": self._step(session.scene),
+            "activities": [{"name": n, "state": s, "detail": d} for n, s, d in self._activities()],
+        })
+
+    def _effect(self, name: str, scene: Scene) -> dict[str, Any]:
+        effect, costs = EFFECTS[name], self._costs.get(name, {})
+        refused = refusal(name, scene)
+        return {
+            "name": name, "title": effect.title, "meaning": effect.meaning, "refused": refused,
+            "on": present(name, scene, self._host.session.account),
+            "code": _words(costs.get(CODE)), "motion": _words(costs.get(MOTION)),
+            "state": refused or self._failed.get(name) or (
+                "compiling its kernel …" if name == self._compiling else
+                "being timed …" if name == self.measuring else
+                "not measured yet, waits for the curve" if self._host.curve_computing else "not measured yet"),
+        }
+
+    def _step(self, scene: Scene) -> dict[str, float]:
+        """Nanoseconds a step of this very kernel, by method, from the last effect that was timed."""
+        found: dict[str, float] = {}
+        for name, costs in self._costs.items():
+            on = present(name, scene, account=False)
+            found.update({method: cost.with_it if on else cost.without for method, cost in costs.items()})
+        return found
+
+
+def _words(cost: EffectCost | None) -> dict[str, Any] | None:
+    """A measured cost for the page; None where there is none."""
+    if cost is None:
+        return None
+    return {"with": cost.with_it, "without": cost.without, "difference": cost.difference, "percent": cost.percent,
+            "spread": cost.spread}

@@ -1,0 +1,216 @@
+"""The Map tab of one visitor: the diagram over f and A0 while it is looked at, and all attractors of the setting."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import Any
+
+import numpy as np
+from panel.io import unlocked
+
+from granchain_core import BadInput, Scene
+from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
+from granchain_core.diagram.cells import cell_of, empty_cells
+from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
+
+from ...page.host import Host
+from ...page.session import slider_range
+from ...page.task import Job, Task
+from ...parts.component import Component
+from ...serve.queues import LONG, Stop
+from ...serve.waiting import CELLS_EVERY, MAP_QUIET
+from .view import cells_message, described, head_message
+
+#: Cells over f and over A0: coarse enough to be there in some ten seconds on one core.
+COLUMNS, ROWS = 60, 40
+#: Random states from which attractors are looked for.
+_RANDOM_STATES = 64
+#: The same for a scene that has to be settled without lanes.
+_FEW_RANDOM_STATES = 12
+
+
+def page_grid(scene: Scene) -> Grid:
+    """The diagram of a scene over the ranges of its sliders; it is the same wherever f and A0 stand."""
+    (f0, f1), (a0, a1) = slider_range(scene, "f"), slider_range(scene, "A0")
+    low = scene.evolve(f=f0, A0=a0)
+    return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
+
+
+class MapTab:
+    """While the tab is on the screen its diagram is computed; nothing is while it is not."""
+
+    def __init__(self, host: Host, view: Component) -> None:
+        self._host = host
+        self._view = view
+        self._visible = False
+        self._diagram = Task(host, LONG, self._say, "The diagram")
+        self._search = Task(host, LONG, self._say_search, "The search")
+        self._grid: Grid | None = None
+        self._cells: np.ndarray[Any, Any] = np.zeros(0)
+        self._shown: list[dict[str, Any]] = []
+        self._due = 0
+        self._found: list[Attractor] = []
+        self._found_at = ""
+        self.status = "none"
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "map-visible": self._look, "map-stop": lambda _: self._cancel(), "map-compute": lambda _: self._begin(),
+            "map-choose": self._choose, "map-attractors": lambda _: self._find(), "map-load": self._load,
+        }
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._visible = False
+        self._diagram.cancel()
+        self._search.cancel()
+
+    def moved(self) -> None:
+        """A knob has moved: another knob than f and A0 makes another diagram, any makes other attractors."""
+        if not self._visible:
+            return
+        self._tell_now()
+        if self._found and self._found_at != self._host.session.scene.digest:
+            self._forget_attractors()
+        if self._stale():
+            self._give_up()
+            self._tell(type="map-stale")
+            self._due += 1
+            self._host.after(MAP_QUIET, self._begin_if_last, self._due)
+
+    def _stale(self) -> bool:
+        return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
+
+    def _look(self, message: dict[str, Any]) -> None:
+        self._visible = bool(message.get("value"))
+        if not self._visible:
+            self._cancel()
+            return
+        if self._grid is not None and not self._stale():
+            self._send_all()
+            if self.status == "cancelled":
+                self._begin()
+        else:
+            self._begin()
+        self._tell_now()
+        self._show_attractors("" if self._found else "none")
+
+    def _begin_if_last(self, due: int) -> None:
+        if due == self._due and self._visible:
+            self._begin()
+
+    def _begin(self) -> None:
+        """Compute what is missing of the present diagram, or a new one."""
+        self._diagram.cancel()
+        if self._grid is None or self._stale():
+            self._grid = page_grid(self._host.session.scene)
+            self._cells = empty_cells(self._grid)
+        self._send_all()
+        self._say("waiting")
+        self._diagram.start(partial(self._work, self._grid, self._missing()))
+
+    def _missing(self) -> list[int]:
+        return [int(number) for number in np.flatnonzero(self._cells["regime"] < 0)]
+
+    def _give_up(self) -> bool:
+        """Nothing more of this diagram is computed; says whether something was."""
+        if not self._diagram.cancel():
+            return False
+        self.status = "cancelled"
+        return True
+
+    def _cancel(self) -> None:
+        if self._give_up():
+            self._say("cancelled")
+
+    def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
+        """In a thread of its own; a moving knob holds it up."""
+        job.compile(grid.scene, LIVE, CERTIFIED, CURVE)
+        job.say("computing")
+        for rows in _batches(grid, missing, job.stop, partial(job.give_way, self._in_front)):
+            job.later(self._show, rows)
+
+    def _in_front(self) -> bool:
+        """Whether the picture or the curve is being computed, which come first."""
+        return self._host.unsettled or self._host.curve_computing
+
+    # To the browser
+
+    def _tell(self, **message: Any) -> None:
+        self._view.tell(**message)
+
+    def _tell_now(self) -> None:
+        scene = self._host.session.scene
+        self._tell(type="map-now", x=scene.f, y=scene.A0)
+
+    def _say(self, status: str, sentence: str = "") -> None:
+        self.status = status
+        self._tell(type="map-status", status=status, sentence=sentence)
+
+    def _send_all(self) -> None:
+        assert self._grid is not None
+        self._tell(**head_message(self._grid))
+        self._show(self._cells[self._cells["regime"] >= 0])
+
+    def _show(self, rows: np.ndarray) -> None:
+        assert self._grid is not None
+        self._cells[rows["number"]] = rows
+        done = float((self._cells["regime"] >= 0).mean())
+        with unlocked():
+            self._tell(**cells_message(self._grid, rows, done))
+
+    def _choose(self, message: dict[str, Any]) -> None:
+        """A place of the diagram was clicked: f and A0 go there."""
+        session = self._host.session
+        self._host.show(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
+
+    # Attractors
+
+    def _find(self) -> None:
+        self._search.cancel()
+        self._found = []
+        self._show_attractors("searching")
+        self._search.start(partial(self._search_work, self._host.session.scene))
+
+    def _search_work(self, scene: Scene, job: Job) -> None:
+        job.compile(scene, LIVE, CERTIFIED, CURVE, *(() if scene.cuts_tension else (ORBIT,)))
+        job.say("searching")
+        starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
+        found = attractors(scene, starts, stop=job.stop)
+        job.later(self._arrived, scene, found, [described(one) for one in found])
+
+    def _say_search(self, status: str, sentence: str) -> None:
+        self._show_attractors("" if status == "done" else status, sentence)
+
+    def _arrived(self, scene: Scene, found: list[Attractor], shown: list[dict[str, Any]]) -> None:
+        self._found, self._found_at, self._shown = found, scene.digest, shown
+
+    def _show_attractors(self, status: str, sentence: str = "") -> None:
+        shown = self._shown if self._found else []
+        self._tell(type="map-attractors", status=status, sentence=sentence, attractors=shown)
+
+    def _forget_attractors(self) -> None:
+        self._search.cancel()
+        self._found = []
+        self._show_attractors("none")
+
+    def _load(self, message: dict[str, Any]) -> None:
+        """Put the chain on one of the attractors; from there knobs move it along."""
+        number = message.get("number")
+        if not isinstance(number, int) or isinstance(number, bool) or not 0 <= number < len(self._found):
+            raise BadInput("That attractor is not in the list any more; look for them again.")
+        self._host.session.set_start("previous")
+        self._host.show(self._found[number].scene, self._found[number].state)
+
+
+def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:
+    """Cells as they come, a lot at a time."""
+    rows: list[np.ndarray] = []
+    last = time.monotonic()
+    for result in iter_diagram(grid, missing, stop, 1, pause):
+        rows.append(cell_of(result))
+        if time.monotonic() - last > CELLS_EVERY:
+            yield np.array(rows)
+            rows, last = [], time.monotonic()
+    if rows:
+        yield np.array(rows)

@@ -1,0 +1,1 @@
+"""An observer fed by a measured force."""

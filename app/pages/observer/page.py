@@ -1,0 +1,103 @@
+"""The Observer page of one visitor: computes while it is looked at, one drive period for each the browser has shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from granchain_core import Scene, Settled
+from granchain_core.warm import CERTIFIED, OBSERVER
+
+from ...page.host import Host
+from ...page.task import Job, Task
+from ...serve.queues import PICTURES
+from .view import Observer
+from .work import ObserverRun, Step
+
+_COMPILING = "Compiling the observer's kernels: some 10 s, only the first time on this computer."
+
+
+@dataclass(frozen=True)
+class _Moved:
+    """A step of a run, and whether the run began with it."""
+
+    run: ObserverRun
+    step: Step
+    began: bool
+
+
+class ObserverPage:
+    """Each message "observer-more" asks for one period; without them nothing is computed."""
+
+    def __init__(self, host: Host, view: Observer) -> None:
+        self._host = host
+        self._view = view
+        self._task = Task(host, PICTURES, self._said, "The observer", host.failed)
+        self._run: ObserverRun | None = None
+        self._asked = False
+        self._wishes: list[str] = []
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "observer-more": lambda _: self._more(),
+            "observer-nudge": lambda _: self._wish("nudge"), "observer-rest": lambda _: self._wish("rest"),
+            "observer-again": lambda _: self._wish("again"),
+        }
+
+    def changed(self) -> None:
+        """A knob moved: the control on the page follows, and the next period is the new chain's."""
+        scene = self._host.session.scene
+        self._view.display(kappa=scene.kappa)
+        if self._run is not None and self._run.scene.digest != scene.digest:
+            self._view.display(sentence="", predicted=None, measured=None)
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+
+    def _wish(self, name: str) -> None:
+        self._wishes.append(name)
+        self._more()
+
+    def _more(self) -> None:
+        if self._task.running:
+            self._asked = True
+            return
+        self._asked = False
+        session = self._host.session
+        self._task.start(partial(self._work, session.scene, session.picture))
+
+    def _said(self, status: str, _: str) -> None:
+        if status == "compiling":
+            self._view.display(status=_COMPILING)
+        elif self._asked:
+            self._more()
+
+    def _work(self, scene: Scene, picture: Settled | None, job: Job) -> None:
+        """In a worker thread: one period more of this scene's run."""
+        job.compile(scene, CERTIFIED, OBSERVER)
+        mine = picture if picture is not None and picture.run.scene.digest == scene.digest else None
+        run, began = self._run, False
+        wishes, self._wishes = self._wishes, []
+        if run is None or run.scene.digest != scene.digest or "again" in wishes:
+            run, began = ObserverRun(scene, mine, job.stop, None if "again" in wishes else run), True
+        run.pair.engine.stop = job.stop
+        if run.orbit is None and not run.failure and mine is not None and mine.final \
+                and mine.regime.period is not None:
+            run.predict(mine)
+        for wish in wishes:
+            if wish != "again":
+                began = True
+                (run.nudge if wish == "nudge" else run.from_rest)()
+        self._run = run
+        if not run.in_step or began:
+            job.later(self._show, _Moved(run, run.step(), began))
+
+    def _show(self, moved: _Moved) -> None:
+        run = moved.run
+        mu = run.leading
+        self._view.display(
+            status="", sentence=run.sentence, predicted=run.predicted, measured=run.measured, since=run.since,
+            mu=None if mu is None else [mu.real, mu.imag], period=None if run.orbit is None else run.orbit.period,
+            broken=run.broken, in_step=run.in_step)
+        self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

@@ -1,0 +1,76 @@
+"""The Observer page: a chain, its observer under it, the force between them, and their distance over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+from bokeh.embed import json_item
+
+from granchain_core import Scene
+
+from ...page.frames import prefixed
+from ...parts.chain import PALETTE
+from ...parts.component import text
+from ...parts.drawn import Drawn
+from ...pictures.observer import observer, prediction
+from ...pictures.theme import Theme
+from ...scripts import module
+from .work import Step
+
+_TRANSIENT = 2
+"""Drive periods after a start that no multiplier describes."""
+
+
+class Observer(Drawn):
+    """The page over the pictures; every period comes as one message."""
+
+    _esm = module("observer.js")
+    _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, **params)
+        self._anchor: tuple[float, float] | None = None
+
+    def empty_figures(self, theme: Theme) -> dict[str, Any]:
+        """The distance over time without its points, for the page and, small, for the corner."""
+        return empty_figures(theme)
+
+    def step(self, step: Step, scene: Scene, began: bool, since: int, factor: float | None) -> None:
+        """Send one period, and what is predicted from where the transient is over, two periods after the start."""
+        self.need_figures()
+        if began:
+            self._anchor = None
+        if self._anchor is None and step.number >= since + _TRANSIENT:
+            self._anchor = float(step.number), float(step.distance[0])
+        line = prediction(*self._anchor, factor) if self._anchor else []
+        self.tell(**step_message(step, scene, began), prediction=line)
+
+
+def first_state() -> dict[str, Any]:
+    """What the page knows before anything was computed."""
+    return {"palette": PALETTE, "kappa": 0.0, "status": "", "sentence": ""}
+
+
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """The distance over time without its points, for the page and, small, for the corner."""
+    return {name: json_item(observer([], [], [], theme, compact))
+            for name, compact in (("page", False), ("small", True))}
+
+
+def step_message(step: Step, scene: Scene, began: bool) -> dict[str, Any]:
+    """One drive period for the browser, all series in one array: rows of the chain's, then of the observer's."""
+    push = float(np.abs(step.chain_force[:, 0]).max())
+    factor, letter = prefixed(push)
+    series = (step.chain, step.chain_force, step.chain_energy, step.drive, step.observer, step.observer_force,
+              step.observer_energy, step.drive, step.distance)
+    return {
+        "type": "step", "number": step.number, "began": began, "rows": len(step.distance), "beads": scene.N,
+        "samples": step.samples, "radii": [bead.radius for bead in scene.beads], "foundation": scene.k > 0.0,
+        "energy_high": max(float(step.chain_energy.max()), 1e-300), "push": f"{push / factor:.3g} {letter}N",
+        "frequency": scene.f,
+        "values": np.concatenate([one.ravel() for one in series], dtype=np.float32),
+    }

@@ -1,0 +1,173 @@
+"""A chain and its observer as the Observer page shows them: period after period, with what the multiplier predicts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
+from granchain_core.observe.pair import Pair
+from granchain_core.observe.twin import (
+    IN_STEP,
+    LINEAR,
+    TRANSLATION,
+    linear_window,
+    observer_start,
+    rates,
+    share_of_translation,
+)
+from granchain_core.orbits import Orbit, periodic_orbit
+from granchain_core.state import rest
+from granchain_core.stop import Stop
+
+from ...page.frames import samples_for
+
+#: What a nudge moves the observer's beads by, root mean square, as a part of A0.
+NUDGE = 1e-3
+_MOST_ROWS = 192
+_REMEMBERED = 400
+
+
+@dataclass(frozen=True)
+class Step:
+    """One drive period: T rows of chain and observer in SI, of their distance, and the period's number at its start."""
+
+    number: int
+    samples: int
+    drive: np.ndarray
+    chain: np.ndarray
+    observer: np.ndarray
+    chain_force: np.ndarray
+    observer_force: np.ndarray
+    chain_energy: np.ndarray
+    observer_energy: np.ndarray
+    distance: np.ndarray
+
+
+class ObserverRun:
+    """One chain with one observer; `went_on` begins with the states of another run, as when a knob was turned."""
+
+    def __init__(self, scene: Scene, picture: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
+        self.scene = scene
+        self.orbit: Orbit | None = None
+        self.failure = ""
+        self.samples = min(_MOST_ROWS, samples_for(scene))
+        self.pair = Pair(scene, self.samples, stop)
+        self.number, self.since = 0, 0
+        if went_on is not None and went_on.scene.N == scene.N:
+            self.number = went_on.number
+            self._begin(*went_on.pair.states)
+        else:
+            start = picture.state if picture is not None else rest(scene)
+            self._begin(start, observer_start(scene, start, NUDGE))
+
+    def _begin(self, chain: State, observer: State) -> None:
+        """Both go on from these states; what was measured before belongs to another start."""
+        self.pair.start(State(chain.displacement, chain.velocity), State(observer.displacement, observer.velocity))
+        self.since = self.number
+        self.strobes: list[np.ndarray] = []
+        self.in_step = False
+
+    def nudge(self) -> None:
+        """Move the observer's beads by a little, always in the same way."""
+        chain, observer = self.pair.states
+        moved = observer_start(self.scene, chain, NUDGE)
+        self._begin(chain, State(observer.displacement + moved.displacement - chain.displacement, observer.velocity))
+
+    def from_rest(self) -> None:
+        """Let the observer begin at rest, knowing nothing of the chain."""
+        self._begin(self.pair.states[0], rest(self.scene))
+
+    def predict(self, picture: Settled) -> None:
+        """Find the orbit of a settled picture of this very chain, and the observer's multipliers on it."""
+        try:
+            self.orbit = periodic_orbit(self.scene, picture.regime.period, picture.state, observer=True,
+                                        stop=self.pair.engine.stop)
+        except (NumbersFailed, BadInput) as problem:  # the latter where tension is cut
+            self.failure = str(problem)
+
+    @property
+    def leading(self) -> complex | None:
+        """The observer's leading multiplier, over `orbit.period` drive periods."""
+        if self.orbit is None or self.orbit.observer_multipliers is None:
+            return None
+        return complex(self.orbit.observer_multipliers[0])
+
+    @property
+    def predicted(self) -> float | None:
+        """What the distance is multiplied by in one drive period as long as it is small."""
+        if self.orbit is None or self.leading is None:
+            return None
+        return float(abs(self.leading) ** (1.0 / self.orbit.period))
+
+    @property
+    def measured(self) -> float | None:
+        """The same as it was since the last nudge, where enough periods were linear."""
+        if len(self.strobes) < 8 * self._every:
+            return None
+        _, found = rates(self._linear)
+        return max((abs(z) ** (1.0 / self._every) for z in found), default=None)
+
+    @property
+    def _every(self) -> int:
+        """Drive periods after which the linear map repeats."""
+        return 1 if self.orbit is None else self.orbit.period
+
+    @property
+    def _linear(self) -> np.ndarray:
+        """The strobes, one an orbit, that are neither transient nor too large nor rounding."""
+        strobes = np.array(self.strobes).reshape(len(self.strobes), -1)[:: self._every]
+        first, end = linear_window(np.sqrt((strobes**2).sum(axis=1)))
+        return strobes[first:end]
+
+    @property
+    def drifts(self) -> bool:
+        """Whether what grows is an offset of the whole observer, and there is no foundation to pull it back."""
+        linear = self._linear
+        if self.scene.k > 0.0 or len(linear) < 3:
+            return False
+        return share_of_translation(linear[-1, : self.scene.N]) >= TRANSLATION
+
+    def step(self) -> Step:
+        """One period on."""
+        engine, n = self.pair.engine, self.scene.N
+        rows = engine.record(self.samples)
+        difference = self.pair.difference(rows)
+        if not self.strobes:
+            self.strobes.append(difference[0])
+        self.strobes = [*self.strobes[1 - _REMEMBERED :], difference[-1]]
+        self.in_step = bool(np.abs(difference).max() < IN_STEP)
+        scales, number = engine.lowered.scales, self.number
+        self.number += 1
+        u, v = rows.displacement * scales.length, rows.velocity * scales.velocity
+        force, half_mass = rows.force * scales.force, 0.5 * self.scene.masses()
+        return Step(
+            number=number, samples=self.samples,
+            drive=self.scene.A0 * np.sin(2 * np.pi * np.arange(self.samples + 1) / self.samples),
+            chain=u[:, :n], observer=u[:, n + 1 :], chain_force=force[:, : n + 1],
+            observer_force=np.hstack([force[:, :1], force[:, n + 2 :]]), chain_energy=half_mass * v[:, :n] ** 2,
+            observer_energy=half_mass * v[:, n + 1 :] ** 2, distance=np.sqrt((difference**2).sum(axis=1)),
+        )
+
+    @property
+    def sentence(self) -> str:
+        """What the multiplier predicts, in words."""
+        mu, factor = self.leading, self.predicted
+        if self.in_step:
+            return "The observer is in step with its chain, to the last digits; nudge it to see it again."
+        if mu is None or factor is None:
+            return self.failure or "What the multiplier predicts comes with the settled, periodic picture."
+        told = f"Observer |μ| = {abs(mu):.4g}:"
+        if factor < 1.0:
+            tenfold = np.log(0.1) / np.log(factor)
+            return f"{told} it synchronises with its chain, ten times nearer every {tenfold:.3g} drive periods."
+        side = ", to the other side each time" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
+        if self.drifts:
+            return f"{told} it drifts; an offset of its beads, which nothing pulls back, grows{side}."
+        return f"{told} it leaves its chain{side}."
+
+    @property
+    def broken(self) -> bool:
+        """Whether the observer is too far from its chain for its multiplier to mean anything."""
+        return bool(self.strobes) and float(np.sqrt((self.strobes[-1] ** 2).sum())) > LINEAR

@@ -1,0 +1,1 @@
+"""What a disturbance does: multipliers, modes, Poincaré section."""

@@ -1,0 +1,145 @@
+// One Floquet mode as a motion of the chain: where a small disturbance of the orbit moves every bead.
+
+import { ChainDrawing } from "../../parts/chaindrawing.js";
+import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
+
+class DisturbedChain extends ChainDrawing {
+  // A mode has no size of its own: the largest displacement is drawn as this part of the beads' distance.
+  load(frames) {
+    this.largest = Math.max(...frames.radii);
+    this.exaggeration = 0.42;
+    this.beads = frames.beads;
+    this.force = 1;
+  }
+
+  contact() {}
+
+  bead(x, y, radius, part) {
+    const { context: g, ink } = this;
+    g.beginPath();
+    g.arc(x, y, radius, 0, 2 * Math.PI);
+    g.fillStyle = ink.steel;
+    g.globalAlpha = 0.35 + 0.65 * Math.min(1, part);
+    g.fill();
+    g.globalAlpha = 1;
+    g.lineWidth = 1.5 * ink.bold;
+    g.strokeStyle = ink.text;
+    g.stroke();
+  }
+
+  // Where the bead would be on the orbit, behind everything.
+  ground(frames, pitch, radius, y) {
+    const { context: g, ink } = this;
+    g.strokeStyle = ink.text;
+    g.lineWidth = 1;
+    g.setLineDash([2, 3]);
+    for (let i = 1; i <= frames.beads; i++) {
+      g.beginPath();
+      g.arc(this.left + (i - 0.5) * pitch, y, radius * (frames.radii[i - 1] / this.largest), 0, 2 * Math.PI);
+      g.stroke();
+    }
+    g.setLineDash([]);
+  }
+
+  words() {}
+}
+
+export class ModeView {
+  constructor(canvas, host) {
+    this.drawing = new DisturbedChain(canvas);
+    this.canvas = canvas;
+    this.host = host;
+    this.mode = null;
+  }
+
+  load(message) {
+    const half = message.values.length / 2,
+      all = new Float32Array(message.values.buffer, message.values.byteOffset, message.values.length);
+    this.mode = { ...message, rows: half / message.beads, re: all.subarray(0, half), im: all.subarray(half) };
+    this.frames = {
+      ...message,
+      rows: 1,
+      displacement: new Float32Array(message.beads),
+      force: new Float32Array(message.beads + 1),
+      energy: new Float32Array(message.beads),
+      energy_high: 1,
+      drive: new Float32Array(1),
+    };
+    this.drawing.load(this.frames);
+    this.last = null;
+    this.measure();
+  }
+
+  forget() {
+    this.mode = null;
+    this.canvas.getContext("2d").clearRect(0, 0, this.canvas.width, this.canvas.height);
+    this.host.replaceChildren();
+  }
+
+  measure() {
+    if (!this.mode || !this.canvas.clientWidth) return;
+    const box = this.canvas.getBoundingClientRect();
+    this.drawing.measure({ left: box.left + 52, width: box.width - 80 }, 0);
+    this.seismogram();
+    this.last = null;
+  }
+
+  // Row `a` of the mode, turned as often as its multiplier has turned it.
+  at(row, i, c, s) {
+    const { re, im, beads } = this.mode;
+    return c * re[row * beads + i] - s * im[row * beads + i];
+  }
+
+  // At `phase` drive periods: the disturbance begins afresh with every period of the orbit, turned but not grown.
+  draw(phase) {
+    if (!this.mode || phase === this.last) return;
+    this.last = phase;
+    const { period, rows, beads, turn_re, turn_im } = this.mode;
+    const orbits = Math.floor(phase / period),
+      angle = orbits * Math.atan2(turn_im, turn_re);
+    const row = (phase / period - orbits) * (rows - 1),
+      a = Math.min(rows - 2, Math.floor(row)),
+      part = row - a;
+    const c = Math.cos(angle),
+      s = Math.sin(angle);
+    for (let i = 0; i < beads; i++) {
+      this.frames.displacement[i] = (1 - part) * this.at(a, i, c, s) + part * this.at(a + 1, i, c, s);
+      this.frames.energy[i] = Math.abs(this.frames.displacement[i]);
+    }
+    this.drawing.draw(this.frames, 0);
+    if (this.now) this.now.setAttribute("transform", `translate(0 ${this.Y(row / (rows - 1)).toFixed(1)})`);
+  }
+
+  // Every bead's disturbance over one period of the orbit, time downwards as on the main page.
+  seismogram() {
+    const { mode, drawing } = this;
+    const f = frame(
+      this.host,
+      { left: 52, right: 28, top: 6, bottom: 6 },
+      "the disturbance of every bead over one period of the orbit",
+    );
+    const { svg } = f,
+      pitch = drawing.span / mode.beads;
+    this.Y = (fraction) => f.y1 + fraction * (f.y0 - f.y1);
+    for (const t of ticks(0, mode.time, 4)) {
+      svg.append(
+        draw("line", { x1: f.x0, x2: f.x1, y1: this.Y(t / mode.time), y2: this.Y(t / mode.time), class: "grid" }),
+      );
+      words(svg, f.x0 - 6, this.Y(t / mode.time) + 5, round3(t), "end", "number");
+    }
+    words(svg, 0, 0, `time (${mode.time_unit})`, "middle", "title", {
+      transform: `translate(12 ${(f.y0 + f.y1) / 2}) rotate(-90)`,
+    });
+    for (let i = 0; i < mode.beads; i++) {
+      const x = f.x0 + (i + 0.5) * pitch,
+        line = [];
+      for (let row = 0; row < mode.rows; row++)
+        line.push(
+          `${(x + 0.42 * pitch * this.at(row, i, 1, 0)).toFixed(1)} ${this.Y(row / (mode.rows - 1)).toFixed(1)}`,
+        );
+      svg.append(draw("path", { d: `M${x} ${f.y1}L${line.join("L")}L${x} ${f.y0}Z`, class: "swing" }));
+    }
+    this.now = draw("line", { x1: f.x0, x2: f.x1, y1: 0, y2: 0, class: "moment" });
+    svg.append(this.now);
+  }
+}

@@ -1,0 +1,259 @@
+"""The Stability view of one visitor: when it computes, what of it is still true, and what it says."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from panel.io import unlocked
+
+from granchain_core import BadInput, Scene, Settled, State
+from granchain_core.orbits.flow import refuse_cut
+from granchain_core.steady.poincare import Section
+from granchain_core.steady.regime import LONGEST_PERIOD
+from granchain_core.warm import ORBIT
+
+from ...page.host import Host
+from ...page.job_list import IDLE, OFF, RUNNING, Activity
+from ...page.task import Job, Task
+from ...serve.queues import ANALYSES
+from ...serve.waiting import ANALYSIS_QUIET
+from .view import (
+    Stability,
+    described_multipliers,
+    evidence,
+    mode_message,
+    no_multipliers,
+    section_points,
+    verdict,
+)
+from .work import PHASES, Analysis, Target, analyse, search, section_of, transient
+
+_LIVE = "A live run is on its way, and only a motion that repeats has multipliers: choose “settled” above."
+
+
+class StabilityPage:
+    """While it is on the screen, every picture that stays is analysed; a knob that moves gives up what is under way."""
+
+    def __init__(self, host: Host, view: Stability) -> None:
+        self._host = host
+        self._view = view
+        self._orbits = Task(host, ANALYSES, self._ended, "The analysis")
+        self._sections = Task(host, ANALYSES, self._ended, "The section")
+        self._due = 0
+        self._open = False
+        self._observer = False
+        self._rank, self._bead, self._phase = 0, 1, 0
+        self._picture: Settled | None = None
+        self._start: State | None = None
+        self._analysed: State | None = None
+        self._target: Target | None = None
+        self._analysis: Analysis | None = None
+        self._section: Section | None = None
+        self.status = "none"
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "stability-visible": self._visible, "stability-observer": self._choose_observer,
+            "stability-mode": self._choose_mode, "stability-section": self._choose_section,
+            "stability-search": self._search, "stability-back": self._back,
+        }
+
+    @property
+    def activity(self) -> Activity:
+        """Name, state and detail for the list of what is computed now."""
+        if not self._open:
+            return "stability", OFF, "not on the screen"
+        words = {"compiling": "compiling the tangent flow", "computing": "multipliers, mode and section",
+                 "searching": "Newton's method for an unstable orbit"}
+        if self.status in words:
+            return "stability", RUNNING, words[self.status]
+        return "stability", IDLE if self._analysed is not None else OFF, "follows the settled picture"
+
+    # The picture in front
+
+    def moved(self) -> None:
+        """Another picture is asked for: what is under way here is given up, what is shown is greyed."""
+        self._give_up()
+        self._picture = None
+        if self._open and self._host.session.mode == "live":
+            self._clear(_LIVE)
+        elif self._open:
+            self._view.display(stale=True)
+
+    def arrived(self, picture: Settled) -> None:
+        """The best picture for these knobs is there; it is analysed if it stays."""
+        if not picture.final:
+            return
+        again = self._picture is not None and picture.state is self._picture.state  # with its energy account
+        self._picture = picture
+        if not again:
+            self._start, self._rank = self._host.session.began, 0
+            self._due += 1
+            self._host.after(ANALYSIS_QUIET, self._begin, self._due)
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._open = False
+        self._give_up()
+
+    def _give_up(self) -> None:
+        self._orbits.cancel()
+        self._sections.cancel()
+        self._due += 1
+        self._analysed = None
+        self.status = "none"
+
+    def _visible(self, message: dict[str, Any]) -> None:
+        self._open = bool(message.get("value"))
+        if not self._open:
+            self._give_up()
+        elif self._host.session.mode == "live":
+            self._clear(_LIVE)
+        else:
+            self._begin(self._due)
+
+    def _begin(self, due: int) -> None:
+        """Analyse the picture, unless it was, or is not the last one, or nobody looks."""
+        picture = self._picture
+        if due != self._due or not self._open or picture is None or self._analysed is picture.state:
+            return
+        self._analysed, self._analysis, self._section = picture.state, None, None
+        self._bead = min(self._bead, picture.run.scene.N)
+        self._view.display(stale=True, regime=picture.regime.name, regime_period=picture.regime.period or 1,
+                           beads=picture.run.scene.N)
+        if picture.regime.name == "periodic" and picture.regime.period is not None:
+            self._follow(Target(picture.run.scene, picture.regime.period, picture.state, followed=True))
+        else:
+            self._target = None
+            self._clear(no_multipliers(picture))
+        self._sections.start(partial(self._make_section, picture, self._start))
+
+    def _follow(self, target: Target) -> None:
+        self._target = target
+        self._say("computing")
+        self._orbits.start(partial(self._analyse, target, self._observer, self._rank))
+
+    # In a worker thread
+
+    def _analyse(self, target: Target, observer: bool, rank: int, job: Job) -> None:
+        self._compile(target.scene, job)
+        job.later(self._arrived, analyse(target, observer, rank, job.stop))
+
+    def _make_section(self, picture: Settled, start: State | None, job: Job) -> None:
+        for section in section_of(picture, start, job.stop):
+            job.later(self._arrived, section)
+
+    def _find(self, picture: Settled, section: Section | None, period: int, job: Job) -> None:
+        self._compile(picture.run.scene, job)
+        job.later(self._arrived, search(picture, section, period, job.stop))
+
+    @staticmethod
+    def _compile(scene: Scene, job: Job) -> None:
+        refuse_cut(scene)  # before anything is compiled for it
+        job.compile(scene, ORBIT)
+
+    # What comes back
+
+    def _arrived(self, found: Analysis | Target | Section) -> None:
+        if self._picture is None:
+            return
+        with unlocked():
+            if isinstance(found, Analysis):
+                self._show(found)
+            elif isinstance(found, Target):
+                self._rank = 0
+                self._follow(found)
+            else:
+                self._section = found
+                self._show_section()
+            self._show_evidence()
+
+    def _ended(self, status: str, sentence: str) -> None:
+        """What was found has arrived by then; only what failed, or is being compiled, is left to be told."""
+        if status != "done":
+            with unlocked():
+                self._say(status, sentence)
+                self._show_evidence()
+
+    def _show(self, analysis: Analysis) -> None:
+        self._analysis, self.status = analysis, "done"
+        orbit = analysis.orbit
+        self._view.display(
+            status="done", failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
+            searched=not analysis.target.followed, marks=described_multipliers(orbit), rank=self._rank,
+            observer_marks=described_multipliers(orbit, observer=True), period=orbit.period,
+            scene=orbit.scene.name)
+        self._view.tell(**mode_message(analysis.mode, orbit))
+        self._show_section()
+
+    def _show_section(self) -> None:
+        if self._section is None or self._picture is None:
+            return
+        own = None if self._analysis is None else self._analysis.points
+        regime = self._picture.regime
+        self._view.section(section_points(
+            self._section, transient(self._picture, self._section), own, self._bead, self._phase,
+            regime.period or 1 if regime.name == "periodic" else 0,
+            unstable=self._analysis is not None and not self._analysis.target.followed))
+
+    def _show_evidence(self) -> None:
+        if self._picture is not None:
+            self._view.display(evidence=evidence(self._picture, self._analysis, self._section))
+
+    def _clear(self, sentence: str) -> None:
+        """There are no multipliers to show; why is told."""
+        self._analysis, self.status = None, "none"
+        self._view.display(status="none", failure="", stale=False, sentence=sentence, marks=[], observer_marks=[],
+                           searched=False, evidence=[], scene=self._host.session.scene.name, observer=self._observer)
+        self._view.tell(type="no-mode")
+        if self._host.session.mode == "live":
+            self._view.tell(type="no-section")
+        self._show_evidence()
+
+    def _say(self, status: str, sentence: str = "") -> None:
+        self.status = status
+        self._view.display(status=status, failure=sentence)
+        if status == "failed" and self._analysis is None and self._target is not None:
+            self._view.display(sentence=sentence, failure="", marks=[], observer_marks=[], stale=False)
+            self._view.tell(type="no-mode")
+
+    # What the visitor does
+
+    def _choose_observer(self, message: dict[str, Any]) -> None:
+        self._observer = bool(message.get("value"))
+        self._view.display(observer=self._observer)
+        self._again()
+
+    def _choose_mode(self, message: dict[str, Any]) -> None:
+        self._rank = _whole("mode", message.get("value"), 0, 2 * self._host.session.scene.N - 1)
+        self._again()
+
+    def _again(self) -> None:
+        """The same orbit with what was chosen."""
+        if self._open and self._target is not None and self._picture is not None:
+            self._follow(self._target)
+
+    def _choose_section(self, message: dict[str, Any]) -> None:
+        self._bead = _whole("bead", message.get("bead"), 1, self._host.session.scene.N)
+        self._phase = _whole("phase", message.get("phase"), 0, PHASES - 1)
+        self._show_section()
+
+    def _search(self, message: dict[str, Any]) -> None:
+        period = _whole("period", message.get("value"), 1, LONGEST_PERIOD)
+        picture, section = self._picture, self._section
+        if not self._open or picture is None:
+            raise BadInput("There is no settled picture to search from yet; wait for it.")
+        self._say("searching")
+        self._orbits.start(partial(self._find, picture, section, period))
+
+    def _back(self, _: dict[str, Any]) -> None:
+        """From an orbit that was found, or a search, back to what the chain does."""
+        self._give_up()
+        self._begin(self._due)
+
+
+def _whole(what: str, value: object, low: int, high: int) -> int:
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not number or not low <= value <= high or value != int(value):  # type: ignore[operator,call-overload]
+        raise BadInput(f"The {what} {str(value)[:40]!r} is not a whole number from {low} to {high}.")
+    return int(value)  # type: ignore[call-overload]

@@ -1,0 +1,77 @@
+// The section on the page: its picture, and which bead at which phase it is of.
+
+import { part } from "../../parts/dom.js";
+import { Embedded } from "../../parts/embedded.js";
+
+// Which bead, at which phase of the drive.
+export class SectionView {
+  constructor(send) {
+    this.beads = part("select", { title: "the bead whose section is shown" });
+    this.beads.setAttribute("aria-label", "bead of the section");
+    this.phase = part("input", { type: "range", min: 0, max: 47, value: 0, step: 1 });
+    this.phase.setAttribute("aria-label", "drive phase of the section");
+    this.said = part("output");
+    this.close = part("input", { type: "checkbox" });
+    this.close.addEventListener("change", () => this.look());
+    this.told = part("span", { className: "soft" });
+    this.host = part("div", { className: "picture" });
+    this.figure = new Embedded(this.host, () => this.fill());
+    const tell = () => {
+      this.say();
+      send({ do: "stability-section", bead: Number(this.beads.value), phase: Number(this.phase.value) });
+    };
+    this.beads.addEventListener("change", tell);
+    this.phase.addEventListener("input", tell);
+    this.root = part(
+      "section",
+      { className: "poincare" },
+      part("div", { className: "row" }, part("h3", { textContent: "Poincaré section" }), this.beads),
+      part(
+        "div",
+        { className: "row" },
+        part("label", {}, "drive phase ", this.phase),
+        this.said,
+        part("label", { title: "the second half of the points only" }, this.close, "close up"),
+      ),
+      part("div", { className: "draw" }, this.host),
+      this.told,
+    );
+    this.say();
+  }
+
+  choose(count) {
+    if (this.beads.length === count) return;
+    const kept = Math.min(Number(this.beads.value) || 1, count);
+    this.beads.replaceChildren(...Array.from({ length: count }, (_, i) => new Option(`bead ${i + 1}`, i + 1)));
+    this.beads.value = String(kept);
+  }
+
+  say() {
+    this.said.textContent = `${(Number(this.phase.value) / 48).toFixed(2)} T`;
+  }
+
+  load(message) {
+    this.data = message;
+    if (message) this.fill();
+    else this.figure.remove();
+  }
+
+  // Which part of the plane: all of it, or that of the second half of the points.
+  look() {
+    const ranges = this.close.checked ? this.data?.near : this.data?.drawn;
+    if (ranges) for (const name of ["displacements", "velocities"]) this.figure.set(name, ranges[name]);
+  }
+
+  fill() {
+    for (const [name, properties] of Object.entries(this.data?.drawn ?? {})) this.figure.set(name, properties);
+    this.look();
+  }
+
+  draw(state, item) {
+    this.told.textContent = !this.data
+      ? ""
+      : `${this.data.count} drive periods, one point each` +
+        (this.data.own ? `; ${state.searched ? "diamonds: the unstable orbit" : "rings: the orbit"}` : "");
+    if (this.data) this.figure.load(item, "Poincaré section");
+  }
+}

@@ -1,0 +1,201 @@
+"""The Stability page: multipliers, a mode, the section and the evidence, in words and as the browser draws them."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+from bokeh.embed import json_item
+
+from granchain_core import Settled
+from granchain_core.integrate.methods import LIVE
+from granchain_core.orbits import Orbit
+from granchain_core.orbits.modes import Mode
+from granchain_core.steady.poincare import Section
+from granchain_core.steady.regime import modulus_words
+
+from ...page.format import duration, short_error
+from ...page.frames import prefixed
+from ...parts.component import text
+from ...parts.drawn import Drawn
+from ...pictures.section import SectionPoints, close_up, section, section_state
+from ...pictures.theme import Theme
+from ...scripts import module
+from .work import Analysis
+
+
+class Stability(Drawn):
+    """The page over the pictures and, through what it shares in the browser, the small version in the corner."""
+
+    _esm = module("stability.js")
+    _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "multipliers", "stability")]  # noqa: RUF012
+
+    def empty_figures(self, theme: Theme) -> dict[str, Any]:
+        """The section without its points."""
+        return empty_figures(theme)
+
+    def section(self, shown: SectionPoints) -> None:
+        """Show a section in place of what there is of one."""
+        self.need_figures()
+        self.tell(**section_message(shown))
+
+
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """The section without its points."""
+    nothing = SectionPoints(np.zeros((1, 2)), np.zeros((0, 2)), 1, 0, False, 1, ("m", "m/s"))
+    return {"section": json_item(section(nothing, theme))}
+
+
+def period_words(orbit: Orbit) -> str:
+    """One period of the orbit in drive periods and seconds."""
+    n = orbit.period
+    return f"{n} drive period{'s' if n > 1 else ''}, {duration(n * orbit.scene.period)}"
+
+
+def verdict(orbit: Orbit) -> str:
+    """Whether a disturbance of the orbit dies out, and which way it leaves if not."""
+    leading = complex(orbit.multipliers[0])
+    size = abs(leading)
+    if size < 1.0:
+        return (f"Stable: a disturbance shrinks to {modulus_words(size)} of itself in one period of the orbit "
+                f"({period_words(orbit)}).{_observed(orbit)}")
+    outside = int((np.abs(orbit.multipliers) >= 1.0).sum())
+    rest = "" if outside <= 1 + (leading.imag != 0.0) else f" {outside} multipliers are outside the circle."
+    return (f"Unstable: a disturbance grows {modulus_words(size)}-fold in one period of the orbit "
+            f"({period_words(orbit)}) and {_leaves(leading)}.{rest}{_observed(orbit)}")
+
+
+def _observed(orbit: Orbit) -> str:
+    """The observer's stability, where it was asked for."""
+    if orbit.observer_multipliers is None:
+        return ""
+    size = float(np.abs(orbit.observer_multipliers).max())
+    return f" Its observer is {'stable' if orbit.observer_stable else 'unstable'}, |μ| {modulus_words(size)}."
+
+
+def _leaves(leading: complex) -> str:
+    if leading.imag != 0.0:
+        return "turns while it grows: a pair outside the circle, as behind a Neimark–Sacker bifurcation"
+    if leading.real > 0.0:
+        return "leaves to one side: a multiplier above +1, as behind a fold"
+    return "changes sides each time: a multiplier below −1, as behind a period doubling"
+
+
+def no_multipliers(picture: Settled) -> str:
+    """What is said of a motion that does not repeat."""
+    regime = picture.regime
+    if regime.lyapunov is None or regime.name == "unsettled":
+        return (f"No multipliers: the chain has not settled after {regime.periods_run} periods, and only a motion that "
+                "repeats has them.")
+    mean, error = regime.lyapunov
+    parts = (f"Neighbouring motions part {math.exp(mean):.2f}-fold per drive period" if regime.name == "chaotic" else
+             "Neighbouring motions neither part nor meet")
+    return (f"No multipliers: the motion is {regime.name} and never repeats. {parts} (Lyapunov exponent "
+            f"{mean:+.3f} ± {error:.3f}).")
+
+
+def described_multipliers(orbit: Orbit, observer: bool = False) -> list[dict[str, Any]]:
+    """Marks in the plane, each with its words; `observer` for those of the observer."""
+    found = orbit.observer_multipliers if observer else orbit.multipliers
+    return [] if found is None else [
+        {"re": float(mu.real), "im": float(mu.imag), "size": float(abs(mu)), "observer": observer, "rank": rank,
+         "told": multiplier_words(complex(mu), orbit, observer)} for rank, mu in enumerate(found)]
+
+
+def multiplier_words(mu: complex, orbit: Orbit, observer: bool = False) -> list[str]:
+    """One multiplier in lines: itself, its angle as a frequency, its decay time."""
+    size, n = abs(mu), orbit.period
+    turn = abs(cmath.phase(mu)) / (2.0 * math.pi)
+    value = f"{mu.real:+.4f}" + (f" {'+' if mu.imag > 0 else '−'} {abs(mu.imag):.4f} i" if mu.imag else "")
+    lines = [f"{'observer ' if observer else ''}μ = {value}", f"|μ| = {modulus_words(size)}",
+             f"angle/2π = {turn:.3f} per orbit: {turn / n:.3g} of the drive frequency, "
+             f"{turn * orbit.scene.f / n:.3g} Hz"]
+    if size > 0.0 and size != 1.0:
+        periods = n / abs(math.log(size))
+        lines.append(f"{'dies out' if size < 1.0 else 'grows'} by e in {periods:.3g} drive periods "
+                     f"({duration(periods * orbit.scene.period)})")
+    return lines
+
+
+def evidence(picture: Settled, analysis: Analysis | None, section: Section | None) -> list[dict[str, str]]:
+    """Name, value and meaning of everything the verdict rests on; what was not computed has no row."""
+    regime, rows = picture.regime, []
+
+    def row(name: str, value: str, meaning: str) -> None:
+        rows.append({"name": name, "value": value, "meaning": meaning})
+
+    kind = regime.name + (f", period {regime.period}" if regime.period else "")
+    row("regime", f"{kind}, {regime.periods_run} periods run from {picture.start}",
+        "What the chain did, and after how many drive periods that was decided.")
+    if regime.distance is not None:
+        row("distance to the orbit", f"≤ {short_error(regime.distance)}",
+            "Bound on the relative distance of the settled picture: its change over one orbit times |μ|/(1 − |μ|).")
+    if regime.lyapunov is not None:
+        row("Lyapunov exponent", f"{regime.lyapunov[0]:+.4f} ± {regime.lyapunov[1]:.4f} per drive period",
+            "Mean rate at which neighbouring motions part, with its standard error over blocks of periods.")
+    if analysis is not None:
+        _orbit_rows(row, picture, analysis)
+    cost = picture.run.cost
+    row("settled by", f"{cost.method}, {cost.steps} steps, {duration(cost.wall_s)}", "What the settled picture took.")
+    if section is not None:
+        row("section", f"{section.periods} periods at {section.samples} phases, {LIVE}",
+            "Computed once more from the same start by the live method.")
+    return rows
+
+
+def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
+    orbit = analysis.orbit
+    size = abs(orbit.multipliers[0])
+    seen = picture.regime.decay
+    decay = f"; decay {modulus_words(seen)} per orbit" if analysis.target.followed and seen else ""
+    row("|μ| largest", modulus_words(size) + decay,
+        "The largest multiplier, and how fast the changes from period to period died out while settling.")
+    residuals = analysis.target.residuals or orbit.newton_residuals
+    row("Newton's residual", " → ".join(short_error(r) for r in residuals),
+        "Change over one orbit, relative to the largest displacement and w, before each Newton step and at the end.")
+    if analysis.target.followed:
+        row("settled state", f"{short_error(analysis.distance)} away",
+            "Relative distance of the orbit from the settled picture, in which Newton's method was started.")
+    why = ("the smallest multipliers are below rounding" if len(orbit.multipliers) == 2 * orbit.scene.N
+           else f"only the {len(orbit.multipliers)} leading multipliers are computed")
+    row("Liouville", why if orbit.liouville is None else short_error(orbit.liouville),
+        "Relative difference of log |product of multipliers| and the integral of the equations' trace.")
+    row("disturbance carried", f"{short_error(max(analysis.mode.closure, 1e-16))} off",
+        "A small disturbance along the eigenvector was run for one orbit: how far it ended from μ times itself.")
+    row("multipliers by", f"tangent flow on dop853, {duration(analysis.wall_s)}",
+        "What orbit, multipliers and mode took.")
+
+
+def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:
+    """One mode for the chain: real and imaginary part, rows by beads, and where its multiplier points."""
+    turn = mode.multiplier / abs(mode.multiplier) if mode.multiplier else 1.0
+    factor, letter = prefixed(orbit.period * orbit.scene.period)
+    return {
+        "type": "mode", "beads": orbit.scene.N, "samples": mode.samples, "period": mode.period,
+        "radii": [bead.radius for bead in orbit.scene.beads], "foundation": orbit.scene.k > 0.0,
+        "turn_re": float(turn.real), "turn_im": float(turn.imag), "size": abs(mode.multiplier),
+        "time": orbit.period * orbit.scene.period / factor, "time_unit": f"{letter}s",
+        "values": np.concatenate([np.real(mode.displacement).ravel(), np.imag(mode.displacement).ravel()],
+                                 dtype=np.float32),
+    }
+
+
+def section_points(section: Section, on_the_way: int, orbit: Section | None, bead: int, phase: int, period: int = 0,
+                   unstable: bool = False) -> SectionPoints:
+    """Points of one bead at one phase, and the orbit's own; all were computed at this very phase."""
+    points = section.points(bead, phase)
+    own = np.zeros((0, 2)) if orbit is None else orbit.points(bead, phase)
+    factors, units = zip(*(prefixed(float(np.abs(np.concatenate([points, own])[:, i]).max())) for i in (0, 1)),
+                         strict=True)
+    return SectionPoints(points / np.array(factors), own / np.array(factors), on_the_way, period, unstable, bead,
+                         (f"{units[0]}m", f"{units[1]}m/s"))
+
+
+def section_message(shown: SectionPoints) -> dict[str, Any]:
+    """What the browser puts into its figure, and the ranges of the close view."""
+    return {"type": "section", "drawn": section_state(shown), "near": close_up(shown), "count": len(shown.points),
+            "own": len(shown.own)}

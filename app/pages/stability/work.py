@@ -1,0 +1,111 @@
+"""What the Stability view computes in the background: an orbit with its mode, a section, a search. No page in here."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from granchain_core import NumbersFailed, Scene, Settled, State
+from granchain_core.orbits import Orbit, periodic_orbit
+from granchain_core.orbits.modes import Mode, mode, orbit_section
+from granchain_core.orbits.search import search_orbit
+from granchain_core.steady.decide import MOST_PERIODS
+from granchain_core.steady.poincare import Section, iter_section
+
+from ...serve.queues import Stop
+
+PHASES = 48
+"""Phases of the drive period at which the section is kept."""
+_FEWEST, _CLOUD = 24, 1200
+"""Periods of a section at least, and of one of a motion that is not periodic."""
+_MODE_VALUES = 60_000
+"""Values of one mode; beyond it its samples lie farther apart."""
+_TRUSTED = 1e-4
+"""A mode that comes back farther than this from its multiplier contradicts it; right ones are at some 1e-8."""
+_SAME_ORBIT = 1e-3
+"""Newton's method that ends farther than this from a settled motion has found another orbit."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """The orbit asked for, near `start`: the one that is followed, or one that a search found with these residuals."""
+
+    scene: Scene
+    period: int
+    start: State
+    followed: bool
+    residuals: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """An orbit, one of its modes, its own points, how far it is from where one started, and what that took [s]."""
+
+    target: Target
+    orbit: Orbit
+    mode: Mode
+    points: Section
+    distance: float
+    wall_s: float
+
+
+def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
+    """Multipliers, the mode at place `rank` and the points of one orbit.
+
+    Raises `BadInput` for a scene without multipliers, `NumbersFailed` where Newton's method ends elsewhere, or where a
+    disturbance that is carried along contradicts its multiplier; `Cancelled`.
+    """
+    began = time.perf_counter()
+    scene = target.scene
+    orbit = periodic_orbit(scene, target.period, target.start, observer=observer, stop=stop)
+    distance = _apart(orbit.state, target.start)
+    if target.followed and distance > _SAME_ORBIT:
+        raise NumbersFailed(f"Newton's method ended {distance:.0e} away from the settled motion, on another orbit; its "
+                            "multipliers are not those of what the chain does.", "another-orbit")
+    samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MODE_VALUES), 8)
+    found = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
+    if not found.closure <= _TRUSTED * max(1.0, abs(found.multiplier)):
+        raise NumbersFailed(f"No multipliers are shown: a small disturbance comes back {found.closure:.1g} of itself "
+                            f"away from what they say.", "contradicted")
+    return Analysis(target, orbit, found, orbit_section(orbit, PHASES, stop), distance, time.perf_counter() - began)
+
+
+def _apart(one: State, other: State) -> float:
+    """Largest difference of two states over the largest displacement and velocity."""
+    return max(float(np.abs(a - b).max() / max(1e-300, np.abs(b).max()))
+               for a, b in ((one.displacement, other.displacement), (one.velocity, other.velocity)))
+
+
+def section_of(picture: Settled, start: State | None, stop: Stop) -> Iterator[Section]:
+    """The section from where the picture's chain was started: its transient, and a cloud of what is not periodic."""
+    regime = picture.regime
+    periods = max(regime.periods_run, _FEWEST) if regime.name == "periodic" else max(_CLOUD, regime.periods_run)
+    yield from iter_section(picture.run.scene, start, periods, PHASES, stop=stop)
+
+
+def transient(picture: Settled, section: Section) -> int:
+    """How many of its first periods are on the way: all of them where a periodic orbit ends it."""
+    if picture.regime.name in ("periodic", "unsettled"):
+        return section.periods
+    return min(MOST_PERIODS, section.periods)
+
+
+def search(picture: Settled, section: Section | None, period: int, stop: Stop) -> Target:
+    """An orbit near the motion shown, which it does not follow.
+
+    Raises what `search_orbit` raises, and `NumbersFailed` where the search ends on the orbit that is followed.
+    """
+    scene = picture.run.scene
+    strobes = np.zeros((0, 2, scene.N))
+    if section is not None:
+        strobes = section.strobes()[min(transient(picture, section), section.periods // 2) :]
+    found = search_orbit(scene, period, picture.state, strobes, stop)
+    run = picture.run
+    here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
+    if picture.regime.name == "periodic" and min(_apart(found.state, state) for state in here) < _SAME_ORBIT:
+        raise NumbersFailed(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
+                            f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
+    return Target(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)

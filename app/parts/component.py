@@ -1,0 +1,49 @@
+"""The base of every part of the page that is drawn by our own JavaScript."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import param
+from panel.custom import JSComponent
+
+from ..serve.websocket import PromptEvents
+
+_FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
+
+
+def text(name: str) -> str:
+    """The content of a style file of the app, or of a script that stands in the page; names are unique."""
+    return _FILES[name].read_text(encoding="utf-8")
+
+
+class Component(PromptEvents, JSComponent):
+    """A part of the page: `state` goes down and is kept, messages go both ways and are not.
+
+    Messages are used for what the visitor does because Panel holds property changes for 50 ms before it acts
+    on them, and messages not at all.
+    """
+
+    state = param.Dict(default={})
+
+    __abstract = True
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(margin=0, **params)
+        self._received = received
+
+    def tell(self, **message: Any) -> None:
+        """Send a message to this part in the browser."""
+        self._send_msg(message)
+
+    def display(self, **changes: Any) -> None:
+        """Change some entries of `state`."""
+        merged = {**self.state, **changes}
+        if merged != self.state:
+            self.state = merged
+
+    def _handle_msg(self, data: Any) -> None:
+        if self._received is not None and isinstance(data, dict):
+            self._received(data)

@@ -1,0 +1,166 @@
+// The connection. While the server does not answer, no knob says what the pictures show: they are greyed, the knobs are
+// off and a sentence says so. When the server is back, the page opens its own share link, as the knobs stand.
+(() => {
+  const page = window.granchain;
+  // Milliseconds: between looks at the clock, from an answer to the next ping, until silence counts as loss (together
+  // below 2 s), between tries to reach a lost server, and how long its socket may stay silent once it can be reached.
+  const TICK = 100,
+    REST = 300,
+    PATIENCE = 1300,
+    TRY = 400,
+    GRACE = 3000;
+  const LOST = "Connection lost – trying again … These are the last pictures.";
+  const BACK = "Connected again – building the page from its knobs …";
+  const AGAIN = "granchain-again";
+  const PARTS = ["bar", "side", "stage", "curves", "cover", "foot"];
+
+  // What the server last called its share link, and what was asked for since without an answer.
+  let link = "v=1";
+  const asked = new Map();
+  const told = (query, answered) => {
+    link = query;
+    for (const name of answered) asked.delete(name);
+  };
+  const asks = (name, value) => {
+    if (name === "scene") asked.clear();
+    asked.delete(name);
+    asked.set(name, value);
+  };
+  const address = () => {
+    const url = new URL(location.href);
+    const query = new URLSearchParams(link);
+    // Another scene has knobs of its own.
+    if (asked.has("scene"))
+      for (const name of [...query.keys()]) if (!["v", "mode", "start"].includes(name)) query.delete(name);
+    for (const [name, value] of asked) {
+      query.set(name, value);
+      if (name === "k") query.delete("kappa");
+      if (name === "kappa") query.delete("k");
+    }
+    if (url.searchParams.has("look")) query.set("look", page.look()); // else the browser remembers it
+    url.search = query;
+    return url;
+  };
+
+  const say = (sentence) => {
+    const place = document.getElementById("lost");
+    place.textContent = sentence;
+    place.hidden = !sentence;
+  };
+  const show = (lost) => {
+    page.lost = lost;
+    document.getElementById("page").classList.toggle("lost", lost);
+    for (const part of PARTS) document.getElementById(part).inert = lost;
+    say(lost ? LOST : "");
+    page.emit("lost", lost);
+  };
+
+  let ping = null,
+    closed = false,
+    leaving = false;
+  let waited = null,
+    rested = 0,
+    tried = TRY,
+    reached = 0;
+
+  // The last pictures as one image: they stay, grey, until the page built again has its own.
+  const canvases = (node) =>
+    [...node.querySelectorAll("*")].flatMap((element) => [
+      ...(element.tagName === "CANVAS" ? [element] : []),
+      ...(element.shadowRoot ? canvases(element.shadowRoot) : []),
+    ]);
+  const photo = () => {
+    const film = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
+    if (!page.covered)
+      for (const one of ["stage", "curve"].flatMap((id) => canvases(document.getElementById(id)))) {
+        const { x, y, width, height } = one.getBoundingClientRect();
+        if (width && height && one.width && one.height) film.getContext("2d").drawImage(one, x, y, width, height);
+      }
+    return film.toDataURL("image/webp", 0.7);
+  };
+  const rebuild = () => {
+    leaving = true;
+    try {
+      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, photo: photo() }));
+    } catch {
+      /* without room for it, its sentence and its pictures are missing for a moment */
+    }
+    location.replace(address());
+  };
+  const reach = async () => {
+    try {
+      const { status } = await fetch(new URL("liveness", location.href), {
+        cache: "no-store",
+        signal: AbortSignal.timeout(2 * PATIENCE),
+      });
+      // Where nobody answers health checks it is "not found", which is an answer; a proxy without its server says 502.
+      return status < 500;
+    } catch {
+      return false;
+    }
+  };
+  const tryAgain = async () => {
+    tried = -Infinity; // not while one is under way
+    const alive = await reach();
+    tried = 0;
+    if (!alive) reached = 0;
+    else if (closed || reached > GRACE) rebuild();
+    else reached += 1;
+  };
+
+  // Time is counted in ticks, none for more than four, so that a computer that slept or a page that was busy is no silent server.
+  let last = performance.now();
+  const tick = () => {
+    const now = performance.now(),
+      passed = Math.min(now - last, 4 * TICK);
+    last = now;
+    if (leaving || !ping || (document.hidden && !closed)) return;
+    const resting = !closed && waited === null;
+    if (resting) rested += passed;
+    if (resting && rested >= REST) {
+      waited = 0;
+      ping();
+    } else if (waited !== null) waited += passed;
+    if (!page.lost && (closed || waited > PATIENCE)) show(true);
+    if (!page.lost) return;
+    if (reached) reached += passed;
+    tried += passed;
+    if (tried >= TRY) tryAgain();
+  };
+  setInterval(tick, TICK);
+
+  // The server has answered: a socket that was only silent goes on, and what was sent meanwhile has been read.
+  const heard = () => {
+    waited = null;
+    rested = reached = 0;
+    if (page.lost && !closed) show(false);
+  };
+  const connect = (send) => {
+    ping = send;
+    for (const one of window.Bokeh.documents)
+      one.on_event("connection_lost", () => {
+        closed = true;
+        tick();
+      });
+  };
+
+  let again = null;
+  try {
+    again = JSON.parse(sessionStorage.getItem(AGAIN));
+    sessionStorage.removeItem(AGAIN);
+  } catch {
+    /* nothing kept */
+  }
+  if (again) {
+    const before = Object.assign(new Image(), { id: "last-pictures", alt: "", src: again.photo ?? "" });
+    document.addEventListener("DOMContentLoaded", () => {
+      say(BACK);
+      document.body.append(before);
+    });
+    page.on("painted", () => {
+      before.remove();
+      if (!page.lost) say("");
+    });
+  }
+  Object.assign(page, { lost: false, kept: {}, again, asks, told, heard, connect, address });
+})();

@@ -1,0 +1,62 @@
+"""The space-time map of kinetic energy: bead to the right, time downwards."""
+
+from __future__ import annotations
+
+import numpy as np
+from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper, Range1d, SingleIntervalTicker
+from bokeh.plotting import figure
+
+from ..page.frames import Frames, prefixed, round_up
+from .chain import PALETTE
+from .figures import GAP, quiet_axis, quiet_figure
+
+
+class EnergyMap:
+    """One image, one mapper; a new picture changes their contents only."""
+
+    def __init__(self, time: Range1d) -> None:
+        self._source = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")})
+        self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
+        self._scale = 0.0
+        self.locked = False
+        self.figure = self._build(time)
+
+    def _build(self, time: Range1d) -> figure:
+        plot = quiet_figure(GAP, GAP, y_range=time, x_range=Range1d(0.5, 11.5), x_axis_location="above")
+        plot.yaxis.visible = False
+        plot.grid.visible = False
+        quiet_axis(plot.xaxis[0])
+        plot.xaxis[0].axis_label = "bead"
+        plot.xaxis[0].ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)
+        image = plot.image("image", "x", "y", "dw", "dh", source=self._source, color_mapper=self._mapper)
+        self._hover = HoverTool(renderers=[image], tooltips=[("bead", "$x{0}"), ("energy", "@image")])
+        plot.add_tools(self._hover)
+        return plot
+
+    def _choose_scale(self, frames: Frames, live: bool) -> None:
+        """The top of the colour scale in joules: the picture's own, steadier when live, kept when locked."""
+        needed = round_up(float(frames.kinetic_energy.max()))
+        too_small = needed > self._scale
+        if self._scale == 0.0 or (not self.locked and (too_small or not live or needed < 0.2 * self._scale)):
+            self._scale = needed
+
+    def update(self, frames: Frames, time: np.ndarray, unit: str, live: bool) -> float:
+        """Show `frames`, whose rows are at `time` (in `unit`); returns the top of the scale in joules."""
+        self._choose_scale(frames, live)
+        factor, letter = prefixed(self._scale)
+        step = float(time[1] - time[0])
+        self._source.data = {
+            "image": [np.asarray(frames.kinetic_energy / factor, dtype=np.float32)],
+            "x": [0.5],
+            "y": [float(time[0]) - step / 2],
+            "dw": [frames.beads],
+            "dh": [step * frames.rows],
+        }
+        self._mapper.high = self._scale / factor
+        self.figure.x_range.end = frames.beads + 0.5
+        self.figure.xaxis[0].ticker.interval = max(1, round(frames.beads / 12))
+        self._hover.tooltips = [
+            ("bead", "$x{0}"), ("time", f"$y{{0.000}} {unit}"),
+            ("kinetic energy", f"@image{{0.000}} {letter}J"),
+        ]
+        return self._scale

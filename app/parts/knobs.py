@@ -1,0 +1,61 @@
+"""The knobs: slider, number and unit for every quantity of the scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from granchain_core import Scene, scene
+from granchain_core.quantities import QUANTITIES
+
+from ..page.session import slider_range
+from ..scripts import module
+from .component import Component, text
+from .foundation import beside_kappa, foundation_words
+
+MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
+MORE = tuple(name for name in QUANTITIES if name not in MAIN)
+
+_SHOWN_IN = {"A0": (1e-6, "µm")}
+"""Quantities that are read in another unit than SI: factor and unit."""
+
+_SHORT = {"D": "damping", "k": "foundation", "kappa": "k / (K√A₀)", "N": "beads", "F0": "preload",
+          "wall": "wall", "dissipation": "law", "tension": "tension"}
+"""Labels that fit beside a number; the whole one is a hover away."""
+
+_CUBIC = ("k", "kappa")
+"""Knobs that start at zero and span decades: the slider's cube, fine near zero, where κ = 0.001 lies."""
+
+
+class Knobs(Component):
+    """The knobs' drawing; every movement comes as a message {"set": name, "value": SI value}."""
+
+    _esm = module("knobs.js")
+    _stylesheets = [text("controls.css"), text("knobs.css")]  # noqa: RUF012
+
+
+def knob_state(current: Scene) -> dict[str, Any]:
+    """Everything the drawing needs for this scene."""
+    preset = scene(current.name).knobs
+    return {
+        "specs": [_spec(name, current) for name in MAIN + MORE],
+        "values": {name: current.knobs[name] for name in MAIN + MORE},
+        "preset": {name: preset[name] for name in MAIN + MORE},
+        "foundation": foundation_words(current), "kept": beside_kappa(current),
+    }
+
+
+def _spec(name: str, current: Scene) -> dict[str, Any]:
+    quantity = QUANTITIES[name]
+    factor, unit = _SHOWN_IN.get(name, (1.0, quantity.unit if quantity.unit != "1" else ""))
+    spec: dict[str, Any] = {
+        "name": name, "symbol": "" if quantity.choices else quantity.symbol, "label": quantity.label,
+        "short": _SHORT.get(name, quantity.label), "meaning": quantity.meaning,
+        "unit": unit, "factor": factor, "choices": list(quantity.choices), "numeric": quantity.numeric,
+        "whole": quantity.whole, "more": name in MORE, "step": quantity.step, "scale": quantity.scale,
+    }
+    spec["low"], spec["high"] = slider_range(current, name)
+    if name in _CUBIC:
+        spec["scale"] = "cubic"
+    if name == "accuracy":
+        spec["step"] = 0.0
+    return spec

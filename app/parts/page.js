@@ -1,0 +1,70 @@
+// What the parts of the page share in the browser: a small bus, the look and the drawer.
+window.granchain = (() => {
+  const listeners = new Map();
+  const on = (name, listener) => {
+    if (!listeners.has(name)) listeners.set(name, new Set());
+    listeners.get(name).add(listener);
+  };
+  const emit = (name, detail) => {
+    for (const listener of listeners.get(name) ?? []) listener(detail);
+  };
+
+  const LOOKS = ["light", "dark", "projector"];
+  const remembered = () => {
+    try {
+      return localStorage.getItem("granchain-look");
+    } catch {
+      return null;
+    }
+  };
+  const system = () => (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+  const setLook = (look, keep) => {
+    if (!LOOKS.includes(look)) return;
+    document.documentElement.dataset.look = look;
+    if (keep)
+      try {
+        localStorage.setItem("granchain-look", look);
+      } catch {
+        /* private browsing keeps nothing */
+      }
+    emit("look", look);
+  };
+  const look = () => document.documentElement.dataset.look;
+  setLook(LOOKS.includes(remembered()) ? remembered() : system(), false);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    if (!remembered()) setLook(system(), false);
+  });
+
+  const drawer = (open) => {
+    document.getElementById("page").classList.toggle("drawer", open);
+  };
+  // A page over the pictures, or null for the pictures themselves; what is covered is not computed.
+  let covered = null;
+  const cover = (name) => {
+    covered = name;
+    document.getElementById("page").classList.toggle("covered", name !== null);
+    for (const one of document.querySelectorAll("[data-cover]")) one.hidden = one.dataset.cover !== name;
+    emit("cover", name);
+  };
+  document.addEventListener("keydown", (event) => {
+    if (event.key === "Escape" && covered) cover(null);
+  });
+  document.addEventListener("pointerdown", (event) => {
+    const side = document.getElementById("side");
+    const page = document.getElementById("page");
+    if (page?.classList.contains("drawer") && !event.composedPath().includes(side)) drawer(false);
+  });
+
+  return {
+    on,
+    emit,
+    cover,
+    get covered() {
+      return covered;
+    },
+    look,
+    setLook,
+    nextLook: () => setLook(LOOKS[(LOOKS.indexOf(look()) + 1) % 3], true),
+    drawer,
+  };
+})();

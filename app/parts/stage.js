@@ -1,0 +1,105 @@
+// The replay clock and the time cursor: one row of the frames is "now" in the chain and in all pictures.
+export class Clock {
+  constructor(onMove) {
+    this.onMove = onMove;
+    this.frames = null;
+    this.row = 0;
+    this.speed = 1;
+    this.playing = true;
+    this.last = performance.now();
+  }
+
+  // New frames keep the phase of the drive, so the chain does not jump when a knob moves.
+  show(frames) {
+    if (this.frames && !this.frames.live && !frames.live) {
+      const phase = (this.row / this.frames.samples) % 1;
+      const period = Math.floor(this.row / this.frames.samples);
+      const periods = Math.round((frames.rows - 1) / frames.samples);
+      this.row = ((period % periods) + phase) * frames.samples;
+    } else {
+      this.row = frames.live ? frames.rows - 1 : 0;
+    }
+    this.frames = frames;
+  }
+
+  tick(now, stopped) {
+    const seconds = Math.min(0.1, (now - this.last) / 1000);
+    this.last = now;
+    const { frames } = this;
+    if (!frames || frames.live || !this.playing || stopped) return;
+    this.row = (this.row + seconds * this.speed * frames.samples) % (frames.rows - 1);
+  }
+
+  moveTo(fraction) {
+    if (!this.frames || this.frames.rows < 2) return;
+    this.row = Math.max(0, Math.min(1, fraction)) * (this.frames.rows - 1);
+    this.onMove();
+  }
+
+  get fraction() {
+    if (!this.frames) return 0;
+    return this.frames.rows > 1 ? this.row / (this.frames.rows - 1) : 1;
+  }
+}
+
+// The line across all time pictures; dragging it, or any of the pictures, stops time.
+export class Cursor {
+  constructor(clock) {
+    this.clock = clock;
+    this.stage = document.getElementById("stage");
+    this.map = document.getElementById("map");
+    this.line = document.getElementById("cursor");
+    const style = getComputedStyle(this.stage);
+    this.top = parseFloat(style.getPropertyValue("--frame-top"));
+    this.bottom = parseFloat(style.getPropertyValue("--frame-bottom"));
+    this.gap = parseFloat(style.getPropertyValue("--gap"));
+    for (const element of [this.line, ...this.stage.querySelectorAll(".picture")])
+      element.addEventListener("pointerdown", (event) => this.grab(event, element));
+    this.line.addEventListener("keydown", (event) => {
+      const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+      if (!step || !clock.frames) return;
+      event.preventDefault();
+      window.granchain.emit("pause");
+      clock.moveTo(clock.fraction + step / (clock.frames.rows - 1));
+    });
+  }
+
+  measure() {
+    const stage = this.stage.getBoundingClientRect();
+    const map = this.map.getBoundingClientRect();
+    const right = document.getElementById("right").getBoundingClientRect();
+    this.area = { y: map.top - stage.top + this.top, height: map.height - this.top - this.bottom };
+    const scale = document.getElementById("scale");
+    scale.style.left = `${map.left - stage.left + this.gap}px`;
+    scale.style.width = `${map.width - 2 * this.gap}px`;
+    scale.style.top = `${map.bottom - stage.top - this.bottom + 8}px`;
+    const key = document.getElementById("key");
+    key.style.left = `${right.left - stage.left + this.gap}px`;
+    key.style.top = `${right.top - stage.top + this.top - 44}px`;
+  }
+
+  grab(event, element) {
+    if (event.button !== 0) return;
+    const move = (e) => {
+      const y = e.clientY - this.stage.getBoundingClientRect().top;
+      this.clock.moveTo((y - this.area.y) / this.area.height);
+    };
+    const done = () => {
+      element.removeEventListener("pointermove", move);
+      element.removeEventListener("pointerup", done);
+      element.removeEventListener("pointercancel", done);
+    };
+    window.granchain.emit("pause");
+    element.setPointerCapture(event.pointerId);
+    element.addEventListener("pointermove", move);
+    element.addEventListener("pointerup", done);
+    element.addEventListener("pointercancel", done);
+    move(event);
+  }
+
+  place() {
+    if (!this.area || !this.clock.frames) return;
+    this.line.style.display = "block";
+    this.line.style.top = `${this.area.y + this.clock.fraction * this.area.height}px`;
+  }
+}

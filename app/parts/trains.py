@@ -1,0 +1,114 @@
+"""The force trains beside the map: drive and input force on the left, output force on the right."""
+
+from __future__ import annotations
+
+import numpy as np
+from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
+from bokeh.plotting import figure
+
+from ..page.frames import Frames, prefixed, round_up, with_jumps
+from .figures import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
+
+_WORDS = ("drive u₀", "input force", "output force")
+_SHORT = ("drive", "in", "out")
+
+
+class Trains:
+    """Two figures and one data source; time runs downwards on the axis they share with the map."""
+
+    def __init__(self, time: Range1d) -> None:
+        self._source = ColumnDataSource({name: np.zeros(0) for name in ("time", "drive", "elastic")})
+        # A force that jumps has points of its own there, between the rows.
+        self._input = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
+        self._output = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
+        self._lines: list[GlyphRenderer] = []
+        self._narrow = False
+        self.left = self._left_figure(time)
+        self.right = self._right_figure(time)
+
+    def _left_figure(self, time: Range1d) -> figure:
+        plot = quiet_figure(LEFT, GAP, y_range=time, x_range=Range1d(-1, 1))
+        plot.extra_x_ranges = {"drive": Range1d(-1, 1)}
+        axis = LinearAxis(x_range_name="drive")
+        quiet_axis(axis, DRIVE)
+        plot.add_layout(axis, "above")
+        quiet_axis(plot.xaxis[1], INPUT)
+        plot.yaxis.axis_label = "time"
+        plot.xgrid.grid_line_color = None
+        self._lines += [
+            plot.line("drive", "time", source=self._source, x_range_name="drive", line_color=DRIVE,
+                      line_width=2.0),
+            plot.line("force", "time", source=self._input, line_color=INPUT, line_width=2.5),
+        ]
+        _few_ticks(plot)
+        return plot
+
+    def _right_figure(self, time: Range1d) -> figure:
+        plot = quiet_figure(GAP, 14, y_range=time, x_range=Range1d(0, 1))
+        plot.yaxis.visible = False
+        plot.xgrid.grid_line_color = None
+        quiet_axis(plot.xaxis[0], OUTPUT)
+        self._lines += [
+            plot.line("elastic", "time", source=self._source, line_color=OUTPUT, line_width=2.0,
+                      line_dash=[5, 4]),
+            plot.line("force", "time", source=self._output, line_color=OUTPUT, line_width=2.5),
+        ]
+        _few_ticks(plot)
+        return plot
+
+    def update(self, frames: Frames, time: np.ndarray) -> None:
+        """Show `frames`, whose rows are at `time` on the shared axis."""
+        scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
+        drive_high = round_up(float(np.abs(frames.drive_displacement).max()))
+        (input_time, input_force), (output_time, output_force) = (
+            with_jumps(time, force, jumps * np.array([scale, 1.0])) for force, jumps in
+            ((frames.input_force, frames.input_jumps), (frames.output_force, frames.output_jumps)))
+        input_range = _span(input_force)
+        output_range = _span(output_force, frames.output_force_elastic)
+        drive, drive_letter = prefixed(drive_high)
+        push, push_letter = prefixed(max(map(abs, input_range)))
+        out, out_letter = prefixed(max(map(abs, output_range)))
+        columns = {
+            "time": time,
+            "drive": frames.drive_displacement / drive,
+            "elastic": frames.output_force_elastic / out,
+        }
+        pushed = {"time": input_time, "force": input_force / push}
+        passed = {"time": output_time, "force": output_force / out}
+        for source, values in ((self._source, columns), (self._input, pushed), (self._output, passed)):
+            source.data = {name: np.asarray(column, dtype=np.float32) for name, column in values.items()}
+        edge = 1.15 * drive_high / drive
+        self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
+        self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)
+        self.right.x_range.update(start=output_range[0] / out, end=output_range[1] / out)
+        words = _SHORT if self._narrow else _WORDS
+        self.left.xaxis[0].axis_label = f"{words[0]} ({drive_letter}m)"
+        self.left.xaxis[1].axis_label = f"{words[1]} ({push_letter}N)"
+        self.right.xaxis[0].axis_label = f"{words[2]} ({out_letter}N)"
+
+    def fit(self, narrow: bool) -> None:
+        """Fewer ticks and shorter words where there is little room."""
+        self._narrow = narrow
+        for axis in (*self.left.xaxis, *self.right.xaxis):
+            axis.ticker.desired_num_ticks = 2 if narrow else 3
+
+    def thicken(self, factor: float) -> None:
+        """Wider lines for the projector."""
+        for line, width in zip(self._lines, (2.0, 2.5, 2.0, 2.5), strict=True):
+            line.glyph.line_width = width * factor
+
+
+def _span(*series: np.ndarray) -> tuple[float, float]:
+    """A range that holds all values, zero included, and keeps still while they change a little."""
+    high = round_up(max(float(s.max()) for s in series))
+    low = min(float(s.min()) for s in series)
+    return (-0.06 * high if low > -0.02 * high else -round_up(-low)), 1.04 * high
+
+
+def _few_ticks(plot: figure) -> None:
+    for axis in plot.xaxis:
+        axis.ticker.desired_num_ticks = 3
+        axis.ticker.num_minor_ticks = 0
+    for axis in plot.yaxis:
+        axis.ticker.desired_num_ticks = 6
+        axis.ticker.num_minor_ticks = 0

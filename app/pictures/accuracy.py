@@ -1,0 +1,153 @@
+"""Error against computing time for every method, both logarithmic, with what is asked and what is cheapest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from bokeh.models import BoxAnnotation, ColumnDataSource, HoverTool, Legend, LegendItem, Span
+from bokeh.plotting import figure
+
+from granchain_core.accuracy import Row, ways
+
+from ..page.format import duration, short_error
+from .theme import Theme, dress, frame, in_theme
+
+_PALETTE = ("#e0900a", "#9b6bf2", "#0fa3b8", "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
+_MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")
+_NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), "#8a8f98"
+_DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
+_HIGHEST = 10.0
+"""Larger errors say nothing more; their points stand here."""
+_COLUMNS = ("ms", "error", "setting", "told")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What belongs to the picture but is no measurement.
+
+    accuracy : asked for, a part of the largest displacement. agreement : of the two references, or None.
+    cheapest : seconds and error of the row that reaches it first; now : those of the page's own setting.
+    """
+
+    accuracy: float
+    agreement: float | None = None
+    cheapest: tuple[float, float] | None = None
+    now: tuple[float, float] | None = None
+
+
+def looks() -> dict[str, dict[str, Any]]:
+    """Marker, colour, dash and fill of every way: by shape and fill told apart without colour, too."""
+    found: dict[str, dict[str, Any]] = {}
+    used = {"naive": 0, "other": 0}
+    for way in ways().values():
+        kind = "naive" if way.family == "naive" else "other"
+        number = used[kind]
+        used[kind] += 1
+        marks = _NAIVE_MARKS if kind == "naive" else _MARKS
+        found[way.name] = {
+            "marker": marks[number % len(marks)], "dash": _DASHES[way.family], "filled": way.family == "granchain",
+            "colour": _NAIVE_COLOUR if kind == "naive" else _PALETTE[number % len(_PALETTE)]}
+    return found
+
+
+def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
+    """The columns of every way's source, by its name: what has no finite error or took no time has no point."""
+    columns: dict[str, dict[str, list[Any]]] = {name: {column: [] for column in _COLUMNS} for name in ways()}
+    for row in rows:
+        if not row.failure and math.isfinite(row.error) and row.error > 0.0 and row.wall_s > 0.0:
+            told = f"error {row.error:.2g}, {duration(row.wall_s)}, {row.rhs} evaluations"
+            for name, value in zip(_COLUMNS, (1e3 * row.wall_s, min(row.error, _HIGHEST), row.setting, told),
+                                   strict=True):
+                columns[row.method][name].append(value)
+    return columns
+
+
+def marks(asked: Asked, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+    """Properties of the models that show what is asked, the references' agreement, the cheapest and the present row."""
+    times = [1e3 * row.wall_s for row in rows if row.wall_s > 0.0] or [1.0]
+
+    def one(place: tuple[float, float] | None) -> dict[str, Any]:
+        return {"data": {"ms": [1e3 * place[0]] if place else [], "error": [place[1]] if place else []}}
+
+    agreement = asked.agreement or None
+    return {
+        "good": {"top": asked.accuracy},
+        "asked": {"data": {"ms": [min(times)], "error": [asked.accuracy],
+                           "words": [f"asked {short_error(asked.accuracy)}"]}},
+        "agreement line": {"location": agreement, "visible": agreement is not None},
+        "agreement": {"data": {"ms": [max(times)] if agreement else [], "error": [agreement] if agreement else []}},
+        "cheapest": one(asked.cheapest), "now": one(asked.now),
+    }
+
+
+def accuracy(rows: Sequence[Row], asked: Asked, theme: Theme, compact: bool = False) -> figure:
+    """Largest error over largest displacement against the computing time of ten drive periods in ms.
+
+    The sources have the names of the methods; `points` and `marks` give what changes while a measurement goes on.
+    """
+    plot = frame(name="accuracy", x_axis_type="log", y_axis_type="log", min_border=4,
+                 toolbar_location=None if compact else "right")
+    state = marks(asked, rows)
+    good = in_theme(BoxAnnotation(name="good", fill_alpha=0.09, level="underlay"), fill_color="accent",
+                    line_color="accent", line_width=2.0)
+    limit = in_theme(Span(name="agreement line", dimension="width", line_dash=[1, 5], line_cap="round",
+                          level="underlay"), line_color="soft", line_width=1.5)
+    for model in (good, limit):
+        model.update(**state[model.name])
+        plot.add_layout(model)
+    shown = _lines(plot, points(rows), compact) + _rings(plot, state, compact)
+    for both in (plot.x_range, plot.y_range):
+        both.update(renderers=shown, range_padding=0.06)
+    if not compact:
+        plot.xaxis.axis_label = "computing time of ten drive periods (ms)"
+        plot.yaxis.axis_label = "largest error / largest displacement"
+    for axis in (plot.xaxis[0], plot.yaxis[0]):
+        axis.ticker.desired_num_ticks = 4 if compact else 6
+    return dress(plot, theme)
+
+
+def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: bool) -> list[Any]:
+    """A line and marks for every way."""
+    shown, items = [], []
+    for name, look in looks().items():
+        source = ColumnDataSource(columns[name], name=name)
+        line = plot.line("ms", "error", source=source, line_color=look["colour"], line_dash=look["dash"],
+                         line_alpha=0.75)
+        dots = plot.scatter("ms", "error", source=source, marker=look["marker"], size=8 if compact else 12,
+                            line_color=look["colour"], line_width=2.0, fill_color=look["colour"],
+                            name=f"{name}, order {ways()[name].order:g}")
+        in_theme(line, line_width=1.8)
+        if not look["filled"]:
+            in_theme(dots, fill_color="card")
+        shown.append(dots)
+        items.append(LegendItem(label=name.replace("scipy ", "SciPy "), renderers=[line, dots]))
+    plot.add_tools(HoverTool(renderers=shown, tooltips=[("", "$name"), ("", "@setting"), ("", "@told")]))
+    if not compact:
+        plot.add_layout(Legend(items=items, click_policy="hide", padding=0, margin=0, spacing=0, label_height=14,
+                               glyph_height=14), "right")
+    return shown
+
+
+def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> list[Any]:
+    """A ring around the cheapest, a cross where the page is now, and, where there is room, words at all marks."""
+    made = {name: ColumnDataSource(state[name]["data"], name=name)
+            for name in ("asked", "agreement", "cheapest", "now")}
+    ring = plot.scatter("ms", "error", source=made["cheapest"], size=18 if compact else 26, fill_color=None)
+    now = plot.scatter("ms", "error", source=made["now"], marker="square_cross", size=14 if compact else 20,
+                       fill_color=None)
+    in_theme(ring, line_color="accent", line_width=3.0)
+    in_theme(now, line_color="ink", line_width=1.8)
+    words: list[tuple[str, Any, str, dict[str, Any]]] = [
+        ("asked", {"field": "words"}, "accent", {"text_baseline": "bottom", "y_offset": -3}),
+        ("agreement", {"value": "the references agree to here"}, "soft",
+         {"text_align": "right", "text_baseline": "bottom", "y_offset": -3}),
+        ("cheapest", {"value": "cheapest"}, "accent", {"x_offset": 17, "y_offset": 5}),
+        ("now", {"value": "this page now"}, "ink", {"x_offset": 13, "y_offset": -8}),
+    ]
+    texts = [in_theme(plot.text("ms", "error", text=text, source=made[name], text_font_style="bold",
+                                text_alpha=0.0 if compact else 1.0, text_font_size="14px", **place), text_color=role)
+             for name, text, role, place in words]
+    return [ring, now, *texts[:2]]

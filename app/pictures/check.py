@@ -1,0 +1,87 @@
+"""The picture of a hard case: what granchain computes and what a naive solver draws, over the same axes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from bokeh.models import ColumnDataSource, HoverTool, Legend, LegendItem
+from bokeh.plotting import figure
+
+from granchain_core.hard import Picture
+
+from .theme import Theme, dress, frame, in_theme
+
+_LOGARITHM = ", log10"
+_DOTTED = 70
+"""Pictures with at most so many points have a dot at each."""
+_HEIGHT, _LINE = 250, 24
+"""Height of the drawing and of a line of the legend in pixels."""
+_LOOKS: dict[str, list[dict[str, Any]]] = {
+    "ours": [{"colour": "ink", "width": 2.6, "dash": []}, {"colour": "ink", "width": 2.6, "dash": [14, 5]}],
+    "naive": [{"colour": "naive", "width": 2.2, "dash": [7, 4]}, {"colour": "second", "width": 2.2, "dash": [2, 4]}],
+}
+_TRUTH = {"colour": "steel", "width": 5.0, "dash": []}
+
+
+def check(picture: Picture, theme: Theme) -> figure:
+    """The traces of a hard case, ours in ink, naive ones dashed and in colour, what is true broad and grey.
+
+    Where a trace is NaN nothing is drawn; one that ends before the picture does has a cross at its end.
+    """
+    labels = [trace.label for trace in picture.traces]
+    x_label, x_log, x = _axis(picture.x_label, picture.x)
+    drawn = [_axis(picture.y_label, trace.values) for trace in picture.traces]
+    y_label, y_log, _ = drawn[0]
+    plot = frame(name="check", sizing_mode="stretch_width", height=_HEIGHT + _LINE * len(labels), title=y_label,
+                 x_axis_type="log" if x_log else "linear", y_axis_type="log" if y_log else "linear")
+    plot.xaxis.axis_label = x_label
+    plot.x_range.range_padding = 0.02
+    source = ColumnDataSource({"x": x, **{str(i): y for i, (_, _, y) in enumerate(drawn)}})
+    items = []
+    for i, (label, look) in enumerate(zip(labels, _looks(labels), strict=True)):
+        line = plot.line("x", str(i), source=source, line_dash=look["dash"], line_cap="round", name=label)
+        items.append(LegendItem(label=label, renderers=[in_theme(line, line_color=look["colour"],
+                                                                 line_width=look["width"])]))
+        plot.add_tools(HoverTool(renderers=[line], tooltips=[
+            ("", label), (x_label, "@x{0.[0000]}" if not x_log else "@x{0.0e}"),
+            (y_label, f"@{{{i}}}{{0.000e}}")]))
+        _points(plot, source, i, look)
+    plot.add_layout(Legend(items=items, click_policy="hide", padding=0, margin=4, glyph_width=44), "below")
+    for axis in (plot.xaxis[0], plot.yaxis[0]):
+        axis.ticker.desired_num_ticks = 5
+    return dress(plot, theme)
+
+
+def _axis(label: str, values: np.ndarray) -> tuple[str, bool, np.ndarray]:
+    """Label, whether the axis is logarithmic, and the numbers themselves where logarithms are given."""
+    if label.endswith(_LOGARITHM):
+        return label.removesuffix(_LOGARITHM), True, 10.0 ** values
+    return label, False, np.asarray(values, dtype=np.float32)
+
+
+def _looks(labels: Sequence[str]) -> list[dict[str, Any]]:
+    """A line's look by whose it is. Pictures in which nobody is named show our runs only."""
+    named = any(label.startswith("granchain") for label in labels)
+    used = {"ours": 0, "naive": 0}
+    looks = []
+    for label in labels:
+        if label == "true":
+            looks.append(_TRUTH)
+            continue
+        group = "ours" if not named or label.startswith("granchain") else "naive"
+        looks.append(_LOOKS[group][used[group] % len(_LOOKS[group])])
+        used[group] += 1
+    return looks
+
+
+def _points(plot: figure, source: ColumnDataSource, number: int, look: dict[str, Any]) -> None:
+    """Dots where there are few points, and the cross at the last point of a trace that breaks off."""
+    x, y = (np.asarray(source.data[name]) for name in ("x", str(number)))
+    if len(x) <= _DOTTED:
+        in_theme(plot.scatter("x", str(number), source=source, size=5, line_color=None), fill_color=look["colour"])
+    known = np.flatnonzero(np.isfinite(y))
+    if len(known) and known[-1] < len(y) - 1:
+        in_theme(plot.scatter([float(x[known[-1]])], [float(y[known[-1]])], marker="x", size=12),
+                 line_color=look["colour"], line_width=look["width"])

@@ -1,0 +1,51 @@
+"""What naive steps would have drawn: the output force dashed over the certified one, and their difference below."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from bokeh.layouts import column
+from bokeh.models import Column, ColumnDataSource, HoverTool
+
+from .theme import Theme, dress, frame, in_theme
+
+
+def lesson(time: np.ndarray, certified: np.ndarray, naive: np.ndarray | None, time_unit: str, unit: str,
+           theme: Theme) -> Column:
+    """Two figures over one time axis: both forces, and their difference, each on an axis of its own.
+
+    The sources are named "certified" and "naive", so that a page can show the force of other steps.
+    """
+    sure = ColumnDataSource({"time": time, "force": certified}, name="certified")
+    drawn = ColumnDataSource(naive_columns(time, certified, naive), name="naive")
+    above = frame(name="lesson", min_border=2, toolbar_location="right")
+    below = frame(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=130,
+                  sizing_mode="stretch_width")
+    lines: list[tuple[Any, str, Any, str, float, dict[str, Any]]] = [
+        (above, "force", sure, "output", 4.0, {"legend_label": "certified"}),
+        (above, "force", drawn, "naive", 2.4, {"legend_label": "naive", "line_dash": [7, 4]}),
+        (below, "difference", drawn, "naive", 1.6, {})]
+    for plot, what, source, role, width, options in lines:
+        line = in_theme(plot.line("time", what, source=source, **options), line_color=role, line_width=width)
+        plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
+            ("time", f"@time{{0.000}} {time_unit}"),
+            (options.get("legend_label", "naive − certified"), f"@{what}{{0.000e}} {unit}")]))
+    above.x_range.update(renderers=[above.renderers[0]], range_padding=0.0)
+    above.xaxis.visible = False
+    above.yaxis.axis_label = f"output force ({unit})"
+    below.xaxis.axis_label = f"time ({time_unit})"
+    below.yaxis.axis_label = f"error ({unit})"
+    above.legend.update(orientation="horizontal", padding=1, margin=2, click_policy="hide")
+    above.add_layout(above.legend[0], "above")
+    for plot in (above, below):
+        plot.yaxis.ticker.desired_num_ticks = 4
+        dress(plot, theme)
+    return column(above, below, sizing_mode="stretch_both", spacing=0)
+
+
+def naive_columns(time: np.ndarray, certified: np.ndarray, naive: np.ndarray | None) -> dict[str, np.ndarray]:
+    """Columns of the naive force and of its difference; none where nothing would have been drawn."""
+    if naive is None:
+        return {"time": time[:0], "force": time[:0], "difference": time[:0]}
+    return {"time": time, "force": naive, "difference": naive - certified}

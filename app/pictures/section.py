@@ -1,0 +1,108 @@
+"""The Poincaré section of one bead: a point per drive period, the transient grey, the orbit's own points ringed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from bokeh.models import ColumnDataSource, HoverTool, Range1d
+from bokeh.plotting import figure
+
+from .theme import Theme, dress, frame, in_theme, span_of
+
+_FEW = 150
+"""So many points of a transient or fewer are drawn larger."""
+_PATH = 60
+"""How many points of the way to an orbit are joined."""
+
+
+@dataclass(frozen=True, eq=False)
+class SectionPoints:
+    """What is drawn of a section.
+
+    points : (T, 2) displacement and velocity in `units`, one row a drive period. own : (n, 2), those of the orbit.
+    transient : how many points come before the motion has settled. period : of the settled motion, 0 where it does not
+    repeat. unstable : whether the orbit was found by search and the chain does not follow it.
+    """
+
+    points: np.ndarray
+    own: np.ndarray
+    transient: int
+    period: int
+    unstable: bool
+    bead: int
+    units: tuple[str, str]
+
+
+def section(shown: SectionPoints, theme: Theme) -> figure:
+    """Velocity over displacement of one bead at one phase of the drive; `section_state` gives what changes later."""
+    state = section_state(shown)
+    plot = frame(name="section", min_border=4, x_range=Range1d(name="displacements"),
+                 y_range=Range1d(name="velocities"))
+    plot.xaxis[0].name, plot.yaxis[0].name = "displacement", "velocity"
+    made = {name: ColumnDataSource(name=name) for name in ("path", "way", "dots", "orbit", "unstable orbit")}
+    for name, model in (*made.items(), ("displacements", plot.x_range), ("velocities", plot.y_range),
+                        ("displacement", plot.xaxis[0]), ("velocity", plot.yaxis[0])):
+        model.update(**state[name])
+    in_theme(plot.multi_line("u", "v", source=made["path"], line_alpha=0.45), line_color="soft", line_width=1.4)
+    way = in_theme(plot.scatter("u", "v", size="size", source=made["way"], line_color=None, fill_alpha=0.75),
+                   fill_color="soft")
+    dots = in_theme(plot.scatter("u", "v", size="size", source=made["dots"], line_color=None), fill_color="accent")
+    ring = in_theme(plot.scatter("u", "v", size=16, source=made["orbit"], fill_color=None),
+                    line_color="accent", line_width=3.0)
+    diamond = in_theme(plot.scatter("u", "v", size=20, marker="diamond", source=made["unstable orbit"],
+                                    fill_color=None), line_color="ink", line_width=3.0)
+    plot.add_tools(HoverTool(renderers=[way, dots], tooltips=[("drive period", "@number"), ("displacement", "@u"),
+                                                              ("velocity", "@v")]),
+                   HoverTool(renderers=[ring, diamond], tooltips=[("point of the orbit", "@number"),
+                                                                  ("displacement", "@u"), ("velocity", "@v")]))
+    for axis in (plot.xaxis[0], plot.yaxis[0]):
+        axis.ticker.desired_num_ticks = 4
+    return dress(plot, theme)
+
+
+def section_state(shown: SectionPoints) -> dict[str, dict[str, Any]]:
+    """Properties of the figure's models by their names: sources, ranges, titles of the axes.
+
+    What is not periodic is shown by what it does in the end; an orbit, with the way to it.
+    """
+    points, own, before = shown.points, shown.own, min(shown.transient, len(shown.points))
+    whole = bool(shown.period) or shown.transient >= len(points)
+    joined = [points[:before][i::shown.period][:_PATH] for i in range(min(shown.period, before))]
+    if shown.unstable:
+        joined = []
+    number = np.arange(len(points))
+    return {
+        "path": {"data": {"u": [_short(one[:, 0]) for one in joined], "v": [_short(one[:, 1]) for one in joined]}},
+        "way": _dots(points[:before], number[:before], 6 if len(points) < _FEW else 3.4),
+        "dots": _dots(points[before:], number[before:], 3.4),
+        "orbit": _dots(own[:0] if shown.unstable else own, np.arange(1, len(own) + 1), 16),
+        "unstable orbit": _dots(own if shown.unstable else own[:0], np.arange(1, len(own) + 1), 20),
+        "displacement": {"axis_label": f"displacement of bead {shown.bead} ({shown.units[0]})"},
+        "velocity": {"axis_label": f"velocity ({shown.units[1]})"},
+        **_ranges(np.concatenate([points if whole else points[shown.transient:], own])),
+    }
+
+
+def close_up(shown: SectionPoints) -> dict[str, dict[str, Any]]:
+    """The ranges that hold the second half of the points and the orbit."""
+    return _ranges(np.concatenate([shown.points[len(shown.points) // 2:], shown.own]))
+
+
+def _dots(points: np.ndarray, number: np.ndarray, size: float) -> dict[str, Any]:
+    return {"data": {"u": _short(points[:, 0]), "v": _short(points[:, 1]), "number": number[: len(points)].tolist(),
+                     "size": [size] * len(points)}}
+
+
+def _short(values: np.ndarray) -> list[float]:
+    """Seven figures: a section is sent anew with every step of the phase's slider."""
+    return [float(f"{value:.7g}") for value in values]
+
+
+def _ranges(points: np.ndarray) -> dict[str, dict[str, Any]]:
+    ranges = {}
+    for name, values in zip(("displacements", "velocities"), points.T, strict=True):
+        span = span_of(float(values.min()), float(values.max()), 0.08)
+        ranges[name] = {"start": span.start, "end": span.end, "reset_start": span.start, "reset_end": span.end}
+    return ranges

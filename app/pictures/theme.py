@@ -1,0 +1,96 @@
+"""Colours and widths of the looks, and how they are put on a figure that is already drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from bokeh.models import Model, Range1d
+from bokeh.plotting import figure
+
+TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
+
+
+@dataclass(frozen=True)
+class Theme:
+    """Colours by role. `line` multiplies all line widths, `small` is the size of numbers and words in pixels.
+
+    The colours are those of page.css.
+    """
+
+    ink: str
+    soft: str
+    faint: str
+    card: str
+    accent: str
+    steel: str
+    line: float = 1.0
+    small: int = 14
+    drive: str = "#e5484d"
+    input: str = "#3b82f6"
+    output: str = "#2f9e6a"
+    naive: str = "#d97706"
+    second: str = "#9b6bf2"
+
+
+THEMES = {
+    "light": Theme("#14181f", "#565f6d", "#dfe3e8", "#ffffff", "#2456c7", "#8b95a3"),
+    "dark": Theme("#eef1f6", "#a4adba", "#2a313b", "#161a21", "#7aa5ff", "#7c8796"),
+    "projector": Theme("#000000", "#222222", "#c4c9d0", "#ffffff", "#003cc0", "#66707d", line=1.8, small=17),
+}
+
+
+def frame(tools: str = TOOLS, **options: Any) -> figure:
+    """An empty figure with the tools that every picture has; `dress` gives it its colours."""
+    plot = figure(tools=tools, output_backend="canvas", outline_line_color=None,
+                  **{"sizing_mode": "stretch_both", "toolbar_location": "right", **options})
+    plot.toolbar.logo = None
+    plot.toolbar.autohide = True
+    plot.title.text_font_style = "normal"
+    plot.title.standoff = 4
+    for axis in (*plot.xaxis, *plot.yaxis):
+        axis.axis_line_color = axis.major_tick_line_color = axis.minor_tick_line_color = None
+        axis.axis_label_text_font_style = "normal"
+        axis.axis_label_standoff = 4
+        axis.major_label_standoff = 3
+    return plot
+
+
+def in_theme(model: Any, **roles: str | float) -> Any:
+    """Say which properties follow the theme: a word is a colour's role, a number a width in pixels. Returns `model`."""
+    model.tags = [*model.tags, {"theme": roles}]
+    return model
+
+
+def dress(plot: figure, theme: Theme) -> figure:
+    """Give a figure, and all in it that `in_theme` has named, the colours and widths of a theme. Returns `plot`."""
+    plot.background_fill_color = plot.border_fill_color = theme.card
+    plot.grid.grid_line_color = theme.faint
+    small = f"{theme.small}px"
+    plot.title.update(text_color=theme.soft, text_font_size=small)
+    for axis in (*plot.xaxis, *plot.yaxis):
+        axis.update(axis_label_text_color=theme.soft, major_label_text_color=theme.ink,
+                    axis_label_text_font_size=small, major_label_text_font_size=small)
+    for legend in plot.legend:
+        legend.update(label_text_color=theme.ink, label_text_font_size=small, background_fill_color=theme.card,
+                      border_line_color=None)
+    for model, roles in _followers(plot):
+        model.update(**{name: getattr(theme, role) if isinstance(role, str) else role * theme.line
+                        for name, role in roles.items()})
+    return plot
+
+
+def _followers(plot: figure) -> Iterator[tuple[Model, dict[str, str | float]]]:
+    for model in (*plot.renderers, *plot.center):
+        for tag in model.tags:
+            if isinstance(tag, dict) and "theme" in tag:
+                yield getattr(model, "glyph", model), tag["theme"]
+
+
+def span_of(low: float, high: float, room: float = 0.07) -> Range1d:
+    """A range with some room on both sides; one that is empty is widened."""
+    if not high > low:
+        wide = 0.1 * abs(high) or 1.0
+        low, high = low - wide, high + wide
+    return Range1d(low - room * (high - low), high + room * (high - low))

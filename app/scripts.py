@@ -1,0 +1,37 @@
+"""The dashboard's JavaScript: modules that import each other, served at addresses that mirror the folders.
+
+Panel takes the module of a component as text, and a text cannot import its neighbours. So that text is one line that
+fetches the real module. Panel's handler for resources of components serves it, under `granchain serve` and under
+`panel serve` alike; it serves the files listed here and no others.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+_HERE = Path(__file__).resolve().parent
+#: Every module by its name; names are unique.
+FILES = {path.name: path for path in sorted(_HERE.rglob("*.js"))}
+
+
+class Scripts:
+    """What Panel's handler looks up to see which files may be served."""
+
+    __javascript_modules__ = tuple(FILES.values())
+
+
+#: The class again, under a name that changes with any file: a browser must not mix new modules with old ones it kept.
+_NAME = "Scripts_" + hashlib.sha256(b"".join(path.read_bytes() for path in FILES.values())).hexdigest()[:12]
+globals()[_NAME] = Scripts
+
+
+def address(name: str) -> str:
+    """Where a module is served, relative to the page."""
+    return f"components/{__name__}/{_NAME}/__javascript_modules__/{FILES[name].relative_to(_HERE).as_posix()}"
+
+
+def module(name: str) -> str:
+    """For a component's `_esm`: the `render` of the module of this name."""
+    return (f'const {{ render }} = await import(new URL("{address(name)}", document.baseURI).href);\n'
+            "export { render };\n")

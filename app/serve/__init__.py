@@ -1,0 +1,1 @@
+"""The server: websocket, frame pacing, task queues, compilation ahead of time."""

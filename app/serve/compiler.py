@@ -1,0 +1,95 @@
+"""Compiling outside the server: a visit never waits for a compiler without being told, and no other visit at all.
+
+Numba holds the interpreter while it compiles, so kernels that are not cached yet are compiled in processes of
+their own; this one then loads them from the cache.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import threading
+from concurrent.futures import Future, wait
+from pathlib import Path
+
+from granchain_core import Scene
+from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, structure
+
+from .queues import COMPILATIONS, CURVES, Stop
+from .waiting import STOP_LOOK
+
+SENTENCE = ("Compiling the kernels for this set of effects: about 10 s, only the first time on this computer; "
+            "the picture follows by itself.")
+
+_ROOT = Path(__file__).resolve().parents[2]
+
+
+def _compile(scene: Scene, piece: str) -> None:
+    """Compile in another process; where none can be started, in this one."""
+    command = [sys.executable, "-m", "granchain_core.warm", piece]
+    try:
+        subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    except (OSError, subprocess.CalledProcessError):
+        compile_piece(scene, piece)
+
+
+class Compiler:
+    """Compilations that were asked for, each once."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._asked: dict[tuple[str, str], Future[None]] = {}
+        self._known: set[tuple[str, str]] = set()
+        self._loaded: set[tuple[str, str]] = set()
+
+    def has(self, scene: Scene, *pieces: str) -> bool:
+        """Whether these kernels of the scene's structure only need to be loaded."""
+        missing = [piece for piece in pieces if (structure(scene), piece) not in self._known]
+        if missing and not is_warm(scene, missing):
+            return False
+        self._known.update((structure(scene), piece) for piece in missing)
+        return True
+
+    def ask(self, scene: Scene, piece: str) -> Future[None]:
+        """Begin to compile in another process, unless that is under way."""
+        key = structure(scene), piece
+        with self._lock:
+            if key not in self._asked:
+                self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
+            return self._asked[key]
+
+    def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
+        """Wait for these kernels; False when the stop flag went up first. Call it from a worker thread."""
+        if self.has(scene, piece):
+            return True
+        compilation = self.ask(scene, piece)
+        while not wait([compilation], timeout=STOP_LOOK).done:
+            if stop:
+                return False
+        compilation.result()
+        return True
+
+    def load(self, scene: Scene, piece: str) -> None:
+        """Have kernels that are compiled in this process, too: the first call of each would load them."""
+        key = structure(scene), piece
+        if key not in self._loaded:
+            compile_piece(scene, piece)
+            self._loaded.add(key)
+
+    def prepare(self, scene: Scene) -> None:
+        """Have this scene's kernels ready in this process before the first visitor asks."""
+        for piece in (LIVE, CERTIFIED, CURVE):
+            if not self.has(scene, piece):
+                self.ask(scene, piece)
+        CURVES.submit(self._load_all, scene)
+
+    def _load_all(self, scene: Scene) -> None:
+        for piece in (LIVE, CERTIFIED, CURVE):
+            if not self.has(scene, piece):
+                self.ask(scene, piece).result()
+            self.load(scene, piece)
+
+
+COMPILER = Compiler()

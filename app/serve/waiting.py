@@ -1,0 +1,22 @@
+"""How long the server waits, all in seconds: between two looks at something, and until a visitor's hand rests."""
+
+#: Between looks whether the picture in front is done; what lasts longer never competes with a moving knob.
+PICTURE_LOOK = 0.01
+#: Between looks at a stop flag while another process works.
+STOP_LOOK = 0.05
+
+#: Between a settled picture and its analysis: nothing is analysed while a knob moves.
+ANALYSIS_QUIET = 0.12
+#: Without a movement before a resonance curve is begun: nobody reads one while dragging.
+CURVE_QUIET = 0.35
+#: Without a movement before a new map is begun.
+MAP_QUIET = 0.7
+#: Without a movement before the cost of an effect is measured.
+COST_QUIET = 0.7
+
+#: Between looks at what is being computed, while the Effects panel is on the screen.
+ACTIVITIES_EVERY = 0.4
+#: Between two messages to a page on which a branch grows.
+BRANCH_EVERY = 0.08
+#: Between two messages to a page on which a map grows.
+CELLS_EVERY = 0.25

@@ -1,1 +1,0 @@
-"""One view a file; a view draws, it decides nothing."""

@@ -1,0 +1,85 @@
+"""Methods with error control, which locate contact events and end their steps there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..kernels.dop853.located import run_certified
+from ..kernels.dop853.step import ALL_STAGES, Dop853, Work
+from ..kernels.equations.motion import place
+from ..kernels.forces.peaks import MEMORY, ROWS, next_period
+from ..kernels.samples import Samples
+from ..kernels.status import DONE
+from ..lower import Lowered
+from .failure import not_finite
+from .stepper import Output, Start, empty_samples
+
+#: At least this many steps are made in a period, so that the driver is never stepped over.
+_LEAST_STEPS = 16
+#: First step to try, in scaled time, in a period that is long enough.
+_FIRST_STEP = 0.01
+#: Least scale of displacements and of w, in which tolerances are measured.
+_LEAST_SCALE = 1e-3
+
+
+class Adaptive:
+    """Dormand–Prince 8 in (u, w) at a relative tolerance per step; `clock` (1,) is the next step to try."""
+
+    def __init__(self, tolerance: float, lowered: Lowered, samples: int) -> None:
+        largest, size = lowered.period / _LEAST_STEPS, lowered.size
+        self.method = Dop853(tolerance, largest)
+        self.lowered = lowered
+        self.grid = samples
+        self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
+                         slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2), forces=lowered.forces())
+        self.clock = np.array([min(_FIRST_STEP, largest)])
+
+    def use(self, lowered: Lowered) -> None:
+        """Go on with other values in the same slots, or with other effects."""
+        self.lowered = lowered
+        self.work = self.work._replace(forces=lowered.forces())
+
+    def prepare(self, y: np.ndarray) -> None:
+        """Begin from a new state: errors are measured on its scale."""
+        for i, values in enumerate(self.lowered.rows(y)):
+            self.work.scale[i] = max(_LEAST_SCALE, float(np.abs(values).max()))
+
+    def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+        """Put the driver and the slope, where every kernel expects it, in step with y."""
+        place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
+
+    def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
+        """Advance from sample `first`, filling the samples; status and number of rows filled."""
+        return self._run(y, first, len(samples.displacement) - 1, 1, samples, out)
+
+    def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
+                out: Output) -> tuple[int, int]:
+        """Advance whole periods, filling strobes and, with `watch`, largest forces; status and periods done."""
+        keep, row = empty_samples(self.lowered, 2), self.lowered.row
+        strobes[0] = y[:row], self.work.k[0, :row]
+        for p in range(len(tops)):
+            next_period(out.log.peaks)
+            status, _ = self._run(y, 0, self.grid, self.grid if watch else 0, keep, out)
+            if status != DONE:
+                return status, p
+            strobes[p + 1] = y[:row], self.work.k[0, :row]
+            if watch:
+                tops[p] = out.log.peaks[:MEMORY:ROWS]
+        return DONE, len(tops)
+
+    def _run(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
+             out: Output) -> tuple[int, int]:
+        lo = self.lowered
+        status, rows = run_certified(self.method, lo.slots, lo.beta, lo.period, y, self.work, self.clock, first, points,
+                                     self.grid, every, samples, *out)
+        return status, rows
+
+    def step_at(self, grid_index: int) -> int | None:
+        """None: steps have no number in their period."""
+        return None
+
+    def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
+        """Bead: stage by stage, each of which spreads to the next beads only."""
+        row = self.lowered.row
+        first = next((bead for bead in (not_finite(slope, row) for slope in self.work.k) if bead), 0)
+        return first or max(1, not_finite(y, row)), None

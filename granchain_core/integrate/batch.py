@@ -1,0 +1,146 @@
+"""A block of eight lanes: scenes are put into lanes, run together, and taken out with their strobes and forces."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..errors import Cancelled
+from ..kernels.batch import run as kernels
+from ..kernels.batch.period_end import FINE, FORCES, FORGET, REMEMBERED
+from ..kernels.batch.run import LANES
+from ..kernels.effects.unequal import Unequal
+from ..kernels.forces.peaks import PEAKS
+from ..kernels.jit import all_in_simd_kernels
+from ..kernels.simd.vector import aligned
+from ..kernels.status import CANCELLED
+from ..kernels.strobes.extrapolation import ORBITS
+from ..kernels.strobes.periodicity import LONGEST_PERIOD
+from ..lower import Lowered, lower
+from ..scene import Scene
+from ..stop import Stop
+
+#: A period that no lane reaches.
+NEVER = int(np.iinfo(np.int64).max)
+#: Periods until the first extrapolation after a vain one, and fewest orbits of a finer run.
+_WAIT, _FEWEST = 16, 2
+
+
+def can_share_batch(scene: Scene) -> bool:
+    """Whether lanes can run this scene, with every effect it has (the tension cut needs velocities before forces)."""
+    return all_in_simd_kernels(lower(scene).slots)
+
+
+def is_uniform(lowered: Lowered) -> bool:
+    """Whether all beads, and all contacts but the wall's, are alike."""
+    chain = lowered.slots.chain
+    return bool((chain.inverse_mass[1:-1] == 1.0).all() and (chain.stiffness[:-1] == 1.0).all())
+
+
+class Batch:
+    """Eight places for scenes of one structure and one N, run by one thread."""
+
+    def __init__(self, example: Scene, stop: Stop) -> None:
+        lowered = lower(example)
+        self.stop = stop
+        n, slots = example.N, lowered.slots
+        dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
+        self.lanes = kernels.Lanes(
+            wall=aligned(1), unequal=None if is_uniform(lowered) else Unequal(aligned(n + 2), aligned(n + 1)),
+            dissipation=None if dissipation is None else type(dissipation)(aligned(1)),
+            foundation=None if foundation is None else type(foundation)(aligned(1)),
+            preload=None if preload is None else type(preload)(aligned(n + 1)),
+            turn=aligned(2), beta=aligned(1), h=aligned(1),
+        )
+        rows = 2 * (n + 2)
+        whole = [np.zeros(LANES, dtype=np.int64) for _ in range(9)]
+        parts = [np.zeros(LANES) for _ in range(2)]
+        self.state = kernels.BatchState(
+            y=aligned(rows), gaps=aligned(n + 1), ends=aligned(4), phase=aligned(2), peaks=aligned(PEAKS),
+            steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
+            wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], jumped=parts[1],
+            before=np.zeros((LANES, 2, n + 2)),
+            fine=np.zeros((LANES, FINE)), strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
+            tops=np.zeros((LANES, REMEMBERED, 5)), seen=np.zeros((LANES, 3)), scale=np.zeros(2),
+            change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
+            triangle=np.zeros((ORBITS, ORBITS)),
+        )
+        for lane in range(LANES):  # an empty lane runs the example at rest and is never checked
+            self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
+
+    def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, look: int, earliest: int = 0) -> None:
+        """Start a scene in a lane from the scaled state y at phase 0, with `refine` times the live method's steps.
+
+        It is checked after `look` periods, or from `earliest` on once it may have settled.
+        """
+        slots, lanes, state = lowered.slots, self.lanes, self.state
+        steps = math.ceil(refine * lowered.steps_per_period())
+        lanes.wall[0, lane] = slots.chain.stiffness[-1]
+        if lanes.unequal is not None:
+            lanes.unequal.inverse_mass[:, lane] = slots.chain.inverse_mass
+            lanes.unequal.stiffness[:, lane] = slots.chain.stiffness
+        for mine, its in ((lanes.dissipation, slots.dissipation), (lanes.foundation, slots.foundation),
+                          (lanes.preload, slots.preload)):
+            if mine is not None:
+                mine[0][:, lane] = its[0]
+        half = np.pi / steps
+        lanes.turn[:, lane] = np.cos(half), np.sin(half)
+        lanes.beta[0, lane], lanes.h[0, lane] = lowered.beta, lowered.period / steps
+        state.phase[:, lane] = 0.0, 1.0
+        state.peaks[:, lane] = 0.0
+        state.steps[lane] = state.left[lane] = steps
+        state.y[:, lane], state.gaps[:, lane] = y, 0.0
+        state.ends[:, lane] = 1.0  # closed: what follows is no closing
+        state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
+        state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
+        state.ready[lane], state.wait[lane], state.slowest[lane], state.jumped[lane] = 0, _WAIT, 0.0, 0.0
+        state.fine[lane], state.testing[lane] = 0.0, 0
+
+    def put_fine(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, period: int, rate: float,
+                 tops: np.ndarray) -> None:
+        """Start a scene on the orbit y of a coarser run, of `period` and decay `rate` per orbit, with its forces.
+
+        It is checked once the difference from that orbit has decayed.
+        """
+        orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(FORGET) / math.log(rate))))
+        self.put(lane, lowered, y, refine, NEVER, orbits * period)
+        self.state.fine[lane] = period, rate, *tops, orbits, 0.0
+
+    def run(self) -> tuple[int, bool]:
+        """Run until a lane is due for a check; its number, and whether it is finite."""
+        status, lane = kernels.run_batch(self.lanes, self.state, self.stop.flag)
+        if status == CANCELLED:
+            raise Cancelled
+        return int(lane), status == 0
+
+    def run_pairs(self, start: float, periods: int) -> np.ndarray:
+        """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (4, periods)."""
+        growth = np.zeros((LANES // 2, periods))
+        status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop.flag)
+        if status == CANCELLED:
+            raise Cancelled
+        return growth if status == 0 else np.full_like(growth, np.nan)
+
+    def strobes(self, lane: int, most: int = REMEMBERED) -> np.ndarray:
+        """The last `most` remembered strobes of a lane in order, (P, 2, N), displacement and w in scaled units."""
+        kept = int(self.state.kept[lane])
+        return self.state.strobes[lane, max(0, kept - most) : kept, :, 1:-1]
+
+    def settled_tops(self, lane: int, period: int) -> np.ndarray:
+        """Largest forces on the orbit a coarse lane has settled on: from before it was disturbed, if it was."""
+        disturbed = self.state.slowest[lane] > 0.0
+        return self.state.fine[lane, FORCES : FORCES + 3].copy() if disturbed else self.tops(lane, period)
+
+    def tops(self, lane: int, periods: int) -> np.ndarray:
+        """Largest input, output and elastic output force of the last `periods` periods, in scaled units."""
+        return self._last(lane, periods)[:3]
+
+    def jumps(self, lane: int, periods: int) -> np.ndarray:
+        """Largest jumps of input and output force in the same periods."""
+        return self._last(lane, periods)[3:]
+
+    def _last(self, lane: int, periods: int) -> np.ndarray:
+        run = int(self.state.periods[lane])
+        places = np.arange(max(1, run - min(periods, REMEMBERED) + 1), run + 1) % REMEMBERED
+        return self.state.tops[lane, places].max(axis=0)

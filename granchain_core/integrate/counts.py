@@ -1,0 +1,36 @@
+"""What a motion cost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..kernels.status import EVALUATIONS, EVENTS, STEPS
+
+
+@dataclass
+class Counts:
+    """What a computation cost: accepted steps, evaluations of the equations, contact events, rejected steps."""
+
+    array: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
+
+    @property
+    def by_name(self) -> dict[str, int]:
+        """All four."""
+        return dict(zip(("steps", "rhs", "events", "rejected"), map(int, self.array), strict=True))
+
+    @property
+    def steps(self) -> int:
+        """Accepted steps."""
+        return int(self.array[STEPS])
+
+    @property
+    def rhs(self) -> int:
+        """Evaluations of the equations of motion."""
+        return int(self.array[EVALUATIONS])
+
+    @property
+    def events(self) -> int:
+        """Contact events located."""
+        return int(self.array[EVENTS])

@@ -1,0 +1,53 @@
+"""What a kernel's status means, in a sentence: which bead, when and in which step the motion was lost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import Cancelled, NumbersFailed
+from ..kernels.status import CANCELLED, NOT_FINITE, STEP_TOO_SMALL
+from ..scene import Scene
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A computation that ended before it was done.
+
+    `periods` have been run since the start, `bead` and `step` of its period are those in which the numbers failed (0
+    and None where that is not known or not the reason), `cost` are the counts so far by name.
+    """
+
+    status: int
+    periods: float
+    bead: int
+    step: int | None
+    cost: dict[str, int]
+    scene: Scene
+    method: str
+
+    @property
+    def error(self) -> Cancelled | NumbersFailed:
+        """The outcome as something to raise."""
+        if self.status == CANCELLED:
+            return Cancelled()
+        time = self.periods * self.scene.period
+        when = f"at about {time:.6g} s ({self.periods:.6g} drive periods)"
+        if self.status == NOT_FINITE:
+            where = "" if self.step is None else f" in step {self.step} of its period"
+            return NumbersFailed(f"The motion of bead {self.bead} stopped being a finite number {when}{where}; "
+                                 f"lower the damping or ask for a higher accuracy.", "not-finite", self.bead,
+                                 time, self.step, self.cost)
+        if self.status == STEP_TOO_SMALL:
+            return NumbersFailed(f"The step of {self.method} shrank to nothing {when}; ask for less accuracy than "
+                                 f"{self.scene.accuracy:g} or use method rk4-split.", "step-too-small",
+                                 time=time, cost=self.cost)
+        return NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D or "
+                             f"use method rk4-split.", "chatter", time=time, cost=self.cost)
+
+
+def not_finite(state: np.ndarray, row: int) -> int:
+    """Number of the first bead whose displacement or w is not finite, or 0."""
+    beads = np.isfinite(state[1 : row - 1]) & np.isfinite(state[row + 1 : 2 * row - 1])
+    return 0 if beads.all() else int(np.argmin(beads)) + 1

@@ -1,0 +1,171 @@
+"""Methods with fixed steps, a whole number of them in a drive period.
+
+Their kernels look for numbers that are not finite once a sample or a period, because looking costs as much as a bead.
+When one has found some, the period is gone through again from its start by halves, until the step is known; in that
+step the failure has not spread yet, and its earliest stage names the bead where it began.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..kernels.equations.motion import place
+from ..kernels.equations.velocity_form import naive_motion
+from ..kernels.forces.largest import new_log
+from ..kernels.jit import all_in_simd_kernels
+from ..kernels.rk4.contact_events import ENDS
+from ..kernels.rk4.long_chain import LongChain
+from ..kernels.rk4.run import run_periods, run_samples
+from ..kernels.rk4.short_chain import BLOCK, KEPT, WIDTHS, ShortChain
+from ..kernels.rk4.step import Stages
+from ..kernels.samples import Samples
+from ..kernels.simd.vector import LANES, aligned
+from ..lower import Lowered
+from ..stop import Stop
+from .failure import not_finite
+from .stepper import Output, Start, empty_samples
+
+#: Steps in a period up to which the driver's motion is tabulated.
+_LARGEST_TABLE = 200_000
+
+
+class FixedStep:
+    """Steps of a method in (u, w); `simd` where there are vectors for it."""
+
+    def __init__(self, method: Any, lowered: Lowered, samples: int, simd: bool = False) -> None:
+        self.method = method
+        self.lowered = lowered
+        self.grid: int = method.steps_per_period
+        self.h = lowered.period / self.grid
+        self._every = self.grid // samples
+        self._simd = simd
+        self.drive = self._driver_table()
+        self.work: Any = Stages(np.zeros((4, lowered.size)), np.zeros(lowered.size), np.zeros(lowered.size),
+                                np.zeros((ENDS, lowered.row - 1)), lowered.forces(), self.new_simd_workspace())
+
+    def _driver_table(self) -> np.ndarray:
+        """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
+        # the table is the faster way, but a period of many steps would not fit into memory
+        theta = np.pi * np.arange(2 * self.grid + 1 if self.grid <= _LARGEST_TABLE else 0) / self.grid
+        driver = self.lowered.slots.driver
+        if driver is None:
+            return np.zeros((theta.size, 2))
+        return np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
+
+    def new_simd_workspace(self) -> LongChain | ShortChain | None:
+        """The workspace of SIMD steps: a driven chain with no effect that they do not know."""
+        lo, slots = self.lowered, self.lowered.slots
+        if not self._simd or not all_in_simd_kernels(slots) or slots.driver is None:
+            return None
+        width = next((lanes for lanes in WIDTHS if lo.row <= lanes), 0)
+        return _short_chain(lo, width) if width else _long_chain(lo)
+
+    def use(self, lowered: Lowered) -> None:
+        """Go on with other values in the same slots, or with other effects."""
+        self.lowered = lowered
+        self.drive = self._driver_table()
+        self.work = self.work._replace(forces=lowered.forces(), along=self.new_simd_workspace())
+
+    def prepare(self, y: np.ndarray) -> None:
+        """Begin from a new state: nothing is remembered of the last."""
+
+    def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+        """Put the driver and the slope, where every kernel expects it, in step with y."""
+        place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
+
+    def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
+        """Advance from step `first`, filling the samples; status and number of rows filled."""
+        status, rows = run_samples(self.method, self.lowered.slots, self.drive, self.h, y, self.work, first,
+                                   self._every, samples, *out)
+        return status, rows
+
+    def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
+                out: Output) -> tuple[int, int]:
+        """Advance whole periods, filling strobes and largest forces, which cost nothing; status and periods done."""
+        status, done = run_periods(self.method, self.lowered.slots, self.drive, self.h, y, self.work, strobes, out.log,
+                                   tops, out.counts, out.stop)
+        return status, done
+
+    def step_at(self, grid_index: int) -> int | None:
+        """Number of the step in its period that begins there."""
+        return grid_index
+
+    def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
+        """Bead and step: go through the call again up to the last certain instant, then halve the steps behind it."""
+        n, row = self.grid, self.lowered.row
+        if start is None:
+            return max(1, not_finite(y, row)), None
+        here, slope, first = start
+        low = first + round(done * n)
+        here, slopes = self._again(here, slope, first, low, vectors=True)
+        slope = slopes[0]
+        high = min((low // n + 1) * n, low + self._every)
+        while high - low > 1:
+            middle = (low + high) // 2
+            there, slopes = self._again(here, slope, low, middle, vectors=True)
+            if not_finite(there, row):
+                high = middle
+            else:
+                low, here, slope = middle, there, slopes[0]
+        _, slopes = self._again(here, slope, low, high)
+        end, _ = self._again(here, slope, low, high, vectors=True)
+        # each stage spreads to the next beads only: the earliest stage names the bead
+        return next((b for b in (not_finite(k, row) for k in (*slopes[1:], end)) if b), 1), low % n
+
+    def _again(self, y: np.ndarray, slope: np.ndarray, first: int, last: int,
+               vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """State and slopes after steps `first` to `last`, counted through periods, by vectors or by scalar code."""
+        n, now = self.grid, y.copy()
+        # new vectors: those of the failed call are full of what failed
+        work = self.work._replace(along=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
+        work.k[0] = slope
+        kept, out = empty_samples(self.lowered, 2), Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
+        j = first
+        while j < last:
+            stride = min(last, (j // n + 1) * n) - j
+            run_samples(self.method, self.lowered.slots, self.drive, self.h, now, work, j % n, stride, kept, *out)
+            j += stride
+        return now, work.k
+
+
+class FixedStepInVelocity(FixedStep):
+    """Steps of a method in (u, v), whose equations have no energy account."""
+
+    def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+        """Put the slope in step with y; velocities are part of it."""
+        slots = self.lowered.slots
+        velocity = slots.driver.amplitude * slots.driver.beta * np.cos(theta)
+        naive_motion(slots, slots.driver.amplitude * np.sin(theta), velocity, y, self.work.k[0], self.work.forces)
+
+
+def _short_chain(lowered: Lowered, width: int) -> ShortChain:
+    """The workspace of a chain whose bodies fit into one vector."""
+    slots = lowered.slots
+
+    def padded(values: np.ndarray) -> np.ndarray:
+        row = aligned(1, width)
+        row[0, : len(values)] = values
+        return row
+
+    preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
+    return ShortChain(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
+                      aligned(2 * KEPT, width), aligned(ENDS, width), np.zeros((3, BLOCK)))
+
+
+def _long_chain(lowered: Lowered) -> LongChain:
+    """The workspace of a chain in blocks of eight bodies."""
+    slots, blocks = lowered.slots, -(-lowered.row // LANES)
+
+    def padded(values: np.ndarray) -> np.ndarray:
+        return np.pad(values, (0, blocks * LANES - len(values))).reshape(blocks, LANES)
+
+    def empty(rows: int) -> np.ndarray:
+        return np.zeros((rows, LANES))
+
+    preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
+    return LongChain(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
+                     now=empty(2 * blocks), before=empty(2 * blocks), acc=empty(2 * blocks), first=empty(2 * blocks),
+                     second=empty(2 * blocks), gap=empty(blocks), slope=empty(blocks), elastic=empty(blocks),
+                     signs=np.zeros(blocks, dtype=np.int64))

@@ -1,0 +1,59 @@
+"""What an engine asks of a method: four things, the same for fixed steps and for error control."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from ..kernels.forces.largest import ForceLog
+from ..kernels.samples import Samples
+from ..lower import Lowered
+
+#: Where a call began: state and slope (M,), and the grid index.
+Start = tuple[np.ndarray, np.ndarray, int]
+
+
+class Output(NamedTuple):
+    """What every kernel writes into beside its result, and the byte that it polls."""
+
+    log: ForceLog
+    counts: np.ndarray
+    stop: np.ndarray
+
+
+class Stepper(Protocol):
+    """A method with its arrays. `grid` is the number of its grid points in a drive period, where calls may end."""
+
+    lowered: Lowered
+    grid: int
+    work: Any
+
+    def use(self, lowered: Lowered) -> None:
+        """Go on with other values in the same slots, or with other effects."""
+
+    def prepare(self, y: np.ndarray) -> None:
+        """Begin from a new state."""
+
+    def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+        """Put the driver and the slope in step with y at drive phase `theta`."""
+
+    def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
+        """Advance from grid index `first`, filling the samples; status and number of rows filled."""
+
+    def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
+                out: Output) -> tuple[int, int]:
+        """Advance whole periods, filling strobes and, with `watch`, largest forces; status and periods done."""
+
+    def step_at(self, grid_index: int) -> int | None:
+        """Number of the step in its period that begins there; None where steps are not counted."""
+
+    def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
+        """Bead and step in which the numbers failed, after `done` periods of a call from `start`, if that is known."""
+
+
+def empty_samples(lowered: Lowered, rows: int) -> Samples:
+    """Arrays for `rows` samples in scaled units."""
+    n = lowered.beads
+    energy = np.zeros((rows, 3)) if lowered.slots.balance is not None else None
+    return Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)

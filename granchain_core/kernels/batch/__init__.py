@@ -1,0 +1,1 @@
+"""Eight scenes at a time, one in each SIMD lane."""

@@ -1,0 +1,246 @@
+"""The end of a batch member's drive period: its strobe is kept, its regime checked, its transient extrapolated.
+
+A coarse member is extrapolated only if the jump is no longer than its decay predicts; if the change after the jump is
+not smaller than before, the jump is undone. A chain may approach an unstable orbit before it leaves it, and an
+extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the
+disturbance decays; if it decays slowly, multipliers decide (steady/batch_settle.py). A fine member starts on the
+coarse orbit and is extrapolated to its own, each jump checked in the same way.
+"""
+
+from __future__ import annotations
+
+from math import log
+
+import numpy as np
+
+from ..equations.motion import copy
+from ..forces.peaks import MEMORY, ROWS
+from ..jit import inline_numba, kernel
+from ..strobes.extrapolation import ORBITS, reduced_rank
+from ..strobes.periodicity import (
+    LONGEST_PERIOD,
+    ROUNDING,
+    SETTLED_DISTANCE,
+    change_between,
+    find,
+    largest_of,
+    window_of,
+)
+
+#: Strobes kept of each member at least, and those on which its regime is decided.
+REMEMBERED, SEEN = 432, 4 * LONGEST_PERIOD + 1
+#: Remaining orbits that justify an extrapolation, and fewest periods between two attempts.
+_TOO_LONG, _BETWEEN = 4.0, 8
+#: Longest jump, in units of change/(1 − rate), the distance that the decay predicts.
+LONGEST_JUMP = 3.0
+#: Part of the coarse orbit's error that may be left in the finer run, and extrapolations for it at most.
+FORGET, _MOST_ROUNDS = 0.02, 6
+#: Test of an extrapolated orbit: disturbance relative to the motion, orbits, the largest part of it that may be left at
+#: their end relative to their first quarter, and periods without extrapolation after a failed test.
+_DISTURBANCE, _TEST_ORBITS, _LEFT, _NO_MORE = 1e-4, 16, 0.97, 400
+#: Decay reported for a disturbance that did not shrink in the end: the multipliers are then computed.
+_NEARLY_ONE = 0.9999
+#: Slowest decay that an extrapolation is taken to have removed: slower ones are not measured well enough.
+_SLOWEST = 0.98
+#: Columns of a fine member's record: period, rate, the coarse run's largest forces, orbits a round, rounds.
+PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
+
+
+@kernel
+def keep_member_strobe(state, lane):
+    """Append the state to the strobes, dropping the oldest half if they are full; whether the state is finite."""
+    strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
+    if state.kept[lane] == strobes.shape[1]:
+        half = strobes.shape[1] // 2
+        for p in range(half):
+            copy(strobes[lane, half + p, 0], strobes[lane, p, 0])
+            copy(strobes[lane, half + p, 1], strobes[lane, p, 1])
+        state.kept[lane] = half
+    finite, place = True, state.kept[lane]
+    for i in range(m):
+        strobes[lane, place, 0, i], strobes[lane, place, 1, i] = y[i, lane], y[m + i, lane]
+        finite = finite and np.isfinite(y[i, lane]) and np.isfinite(y[m + i, lane])
+    state.kept[lane] += 1
+    return finite
+
+
+@kernel
+def place_member(state, lane, where):
+    """Put a lane into the state `where` (2, m); its record begins there."""
+    m = where.shape[1]
+    for i in range(1, m - 1):
+        state.y[i, lane], state.y[m + i, lane] = where[0, i], where[1, i]
+    for c in range(m - 1):
+        state.gaps[c, lane] = 0.0
+    for row in range(4):
+        state.ends[row, lane] = 1.0  # closed: what follows is no closing
+    state.kept[lane] = 0
+    keep_member_strobe(state, lane)
+
+
+@kernel
+def follow(state, lane, n, rate, change):
+    """Put a lane where its last strobes, n periods apart, lead, if that is within reach; whether it was."""
+    kept = state.kept[lane]
+    if kept < ORBITS * n + 1 or not 0.0 < rate < 1.0:
+        return False
+    limit, record = state.limit, state.strobes[lane, kept - 1 - ORBITS * n : kept]
+    reduced_rank(record[::n], state.basis, state.triangle, limit)
+    largest_of(record, state.scale)
+    reach = LONGEST_JUMP * change / (1.0 - rate)
+    for q in range(2):
+        for i in range(limit.shape[1]):
+            if not abs(limit[q, i] - record[ORBITS * n, q, i]) <= reach * state.scale[q]:
+                return False
+    place_member(state, lane, limit)
+    return True
+
+
+@kernel
+def check_coarse(state, lane):
+    """See what a lane's last strobes show and follow what they approach; whether it is periodic."""
+    kept, periods = state.kept[lane], state.periods[lane]
+    period, rate, distance, n, its_rate, change = find(
+        state.strobes[lane, max(0, kept - SEEN) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
+        state.slowest[lane], state.scale, state.change)
+    state.seen[lane, 0], state.seen[lane, 1], state.seen[lane, 2] = period, rate, distance
+    if period > 0 and state.slowest[lane] > 0.0:
+        disturb(state, lane, period)
+        return False
+    if period > 0:
+        return True
+    if state.jumped[lane] > 0.0:
+        proved = n > 0 and change < state.jumped[lane]
+        state.jumped[lane] = 0.0
+        if not proved:
+            place_member(state, lane, state.before[lane])
+            state.wait[lane] *= 2
+            state.ready[lane] = periods + state.wait[lane]
+            return False
+    left = change * its_rate / (1.0 - its_rate) if n > 0 else 0.0
+    if periods < state.ready[lane] or left <= SETTLED_DISTANCE:
+        return False
+    if log(SETTLED_DISTANCE / left) > _TOO_LONG * log(its_rate):
+        return False  # it is there sooner by itself
+    copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
+    copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
+    if follow(state, lane, n, its_rate, change):
+        state.jumped[lane] = change
+        state.slowest[lane] = min(_SLOWEST, max(state.slowest[lane], its_rate ** (1.0 / n)))
+        state.earliest[lane] = periods + window_of(n) + n + 1
+        state.ready[lane] = periods + ORBITS * n
+    else:
+        state.ready[lane] = periods + max(_BETWEEN, kept // 4)
+    return False
+
+
+@inline_numba
+def disturb(state, lane, period):
+    """Push a lane off the orbit it seems to be on and note the orbit's state and forces."""
+    kept, m = state.kept[lane], state.limit.shape[1]
+    for q in range(2):
+        copy(state.strobes[lane, kept - 1, q], state.before[lane, q])
+        for i in range(m):
+            state.limit[q, i] = state.before[lane, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
+    for q in range(3):
+        state.fine[lane, FORCES + q] = largest_top(state, lane, period, q)
+    place_member(state, lane, state.limit)
+    state.testing[lane] = period
+    state.earliest[lane] = state.periods[lane] + _TEST_ORBITS * period
+
+
+@inline_numba
+def decayed(state, lane):
+    """Whether the disturbance of a lane has become smaller; the lane is then put back, and its decay is known."""
+    n, m = state.testing[lane], state.limit.shape[1]
+    state.testing[lane] = 0
+    first, middle, late, last = 0.0, 0.0, 0.0, 0.0
+    for k in range(_TEST_ORBITS + 1):
+        there, whole = 0.0, 0.0
+        for q in range(2):
+            for i in range(m):
+                offset = (state.strobes[lane, k * n, q, i] - state.before[lane, q, i]) / state.scale[q]
+                there, whole = max(there, abs(offset)), whole + offset**2
+        quarter = 4 * k // (_TEST_ORBITS + 1)
+        first = max(first, there) if quarter == 0 else first
+        middle += whole if quarter == 1 else 0.0
+        late += whole if quarter == 3 else 0.0
+        last = there
+    if last <= _LEFT * first:
+        place_member(state, lane, state.before[lane])
+        rate = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
+        state.seen[lane, 1] = max(state.seen[lane, 1], min(rate, _NEARLY_ONE))
+        return True
+    state.slowest[lane], state.jumped[lane] = 0.0, 0.0
+    state.ready[lane] = state.periods[lane] + _NO_MORE
+    return False
+
+
+@kernel
+def largest_top(state, lane, n, q):
+    """The largest force of kind q in a lane's last n periods."""
+    largest = 0.0
+    for p in range(n):
+        largest = max(largest, state.tops[lane, (state.periods[lane] - p) % REMEMBERED, q])
+    return largest
+
+
+@inline_numba
+def check_fine(state, lane):
+    """Whether the coarse orbit's error has decayed in a fine member; if not, its transient is extrapolated.
+
+    If changes are not smaller after a jump, the jump is undone and the member continues without.
+    """
+    fine, kept, seen = state.fine[lane], state.kept[lane], state.seen[lane]
+    n, rate = int(fine[PERIOD]), fine[RATE]
+    record = state.strobes[lane, kept - 1 - n : kept]
+    largest_of(record, state.scale)
+    change = change_between(record, state.scale, n, 0)
+    seen[0], seen[1], seen[2] = n, rate, change * rate / (1.0 - rate)
+    proved = change < state.jumped[lane] or state.jumped[lane] == 0.0
+    state.jumped[lane] = 0.0
+    if not proved:
+        place_member(state, lane, state.before[lane])
+        state.earliest[lane], fine[ROUNDS] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND]), _MOST_ROUNDS
+        return False
+    moved = 0.0
+    for q in range(1, 3):
+        largest = largest_top(state, lane, n, q)
+        moved = max(moved, abs(largest - fine[FORCES + q]) / largest if largest > 0.0 else 0.0)
+    if seen[2] <= max(SETTLED_DISTANCE, FORGET * moved) or fine[ROUNDS] >= _MOST_ROUNDS:
+        return True
+    fine[ROUNDS] += 1.0
+    copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
+    copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
+    if follow(state, lane, n, rate, change):
+        state.jumped[lane] = change
+    state.earliest[lane] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND])
+    return False
+
+
+@kernel
+def end_period(state, lane):
+    """Keep strobe and largest forces of a member and restart its phase exactly; whether it is due for a check."""
+    state.periods[lane] += 1
+    periods = state.periods[lane]
+    finite = keep_member_strobe(state, lane)
+    tops = state.tops[lane, periods % REMEMBERED]
+    for q in range(3):
+        tops[q] = state.peaks[ROWS * q, lane]
+        state.peaks[ROWS * q, lane] = 0.0
+    for q in range(2):
+        tops[3 + q] = state.peaks[MEMORY + q, lane]
+        tops[q] = max(tops[q], tops[3 + q])
+        state.peaks[MEMORY + q, lane] = 0.0
+    state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0
+    state.left[lane] = state.steps[lane]
+    if not finite:
+        return True
+    if periods >= state.earliest[lane]:
+        state.earliest[lane] = periods + max(3, state.kept[lane] // 6)
+        if state.testing[lane] > 0:
+            if decayed(state, lane):
+                return True
+        elif check_fine(state, lane) if state.fine[lane, PERIOD] > 0.0 else check_coarse(state, lane):
+            return True
+    return periods >= state.look[lane] and state.testing[lane] == 0

@@ -1,0 +1,180 @@
+"""Eight chains at once, one a SIMD lane: RK4 in w with a fixed step, for curves and maps.
+
+All members share the effects and N; every value may differ, the step and the number of steps in a period too. Each
+member is checked at the end of its own periods. One that may have settled, or that is due for a check,
+ends the kernel, so that its lane can be filled with the next scene.
+"""
+
+from __future__ import annotations
+
+from math import log, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..effects.dissipation import batch_values
+from ..effects.foundation import lane_foundation
+from ..effects.preload import batch_overlap
+from ..jit import inline_numba, kernel
+from ..simd.subnormals import flush_subnormals, restore_subnormals
+from ..simd.vector import LANES, load, store
+from ..status import CANCELLED, DONE, NOT_FINITE
+from .contact_correction import correct_contacts
+from .period_end import end_period
+from .step import Values, batch_step, watch_ends
+
+#: Steps between two checks of the stop flag at most.
+_PATIENCE = 4096
+
+
+class Lanes(NamedTuple):
+    """Values of eight scenes: the wall's stiffness, effect slots with (1, 8) or (rows, 8) arrays or None, step data.
+
+    `turn` is cos and sin of half a step's phase, `beta` the scaled drive rate, `h` the step.
+    """
+
+    wall: np.ndarray
+    unequal: Any
+    dissipation: Any
+    foundation: Any
+    preload: Any
+    turn: np.ndarray
+    beta: np.ndarray
+    h: np.ndarray
+
+
+class BatchState(NamedTuple):
+    """State of the eight members.
+
+    y (2(N+2), 8)            displacements and w
+    gaps (N+1, 8)            overlaps one step ago
+    ends (4, 8)              overlap and rate of the first and of the last contact one step ago
+    phase (2, 8)             sin and cos of the drive phase
+    peaks (17, 8)            largest forces
+    steps, left (8,)         steps in a period, and those left of it
+    periods, look (8,)       periods run, and the period at which the kernel returns in any case
+    earliest (8,)            next period at which the strobes are checked
+    ready, wait (8,)         period from which a transient may be extrapolated, and the pause after a failed attempt
+    kept (8,)                number of strobes
+    slowest (8,)             slowest decay known
+    jumped (8,)              change before an extrapolation that is not yet confirmed, else 0
+    testing (8,)             period of an orbit that is being disturbed, else 0
+    before (8, 2, N+2)       state before the last extrapolation
+    fine (8, 7)              record of a fine member (period_end.py)
+    strobes (8, 2R, 2, N+2)  stroboscopic states
+    tops (8, R, 5)           largest forces and jumps of the last periods, a ring
+    seen (8, 3)              result of the last check: period, rate, distance
+
+    The others are workspaces of period_end.py.
+    """
+
+    y: np.ndarray
+    gaps: np.ndarray
+    ends: np.ndarray
+    phase: np.ndarray
+    peaks: np.ndarray
+    steps: np.ndarray
+    left: np.ndarray
+    periods: np.ndarray
+    look: np.ndarray
+    earliest: np.ndarray
+    ready: np.ndarray
+    wait: np.ndarray
+    kept: np.ndarray
+    slowest: np.ndarray
+    jumped: np.ndarray
+    testing: np.ndarray
+    before: np.ndarray
+    fine: np.ndarray
+    strobes: np.ndarray
+    tops: np.ndarray
+    seen: np.ndarray
+    scale: np.ndarray
+    change: np.ndarray
+    limit: np.ndarray
+    basis: np.ndarray
+    triangle: np.ndarray
+
+
+@kernel
+def batch_steps(lanes, state, count):
+    """Take `count` steps in all lanes."""
+    y, before = state.y, flush_subnormals()
+    last = y.shape[0] // 2 - 2
+    values = Values(load(lanes.wall, 0), batch_values(lanes.dissipation), lane_foundation(lanes.foundation),
+                    lanes.preload, lanes.unequal, last)
+    h, beta = load(lanes.h, 0), load(lanes.beta, 0)
+    c, s = load(lanes.turn, 0), load(lanes.turn, 1)
+    sine, cosine = load(state.phase, 0), load(state.phase, 1)
+    for _ in range(count):
+        middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
+        end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
+        correct_contacts(values, y, state.gaps, h, sine)
+        gap_first = batch_overlap(values.preload, sine, load(y, 1), 0)
+        gap_last = batch_overlap(values.preload, load(y, last), load(y, last + 1), last)
+        ends = batch_step(values, y, h, sine, middle, end)
+        watch_ends(values, h, gap_first, gap_last, beta * cosine, ends, state.ends, state.peaks)
+        sine, cosine = end, end_cosine
+    store(state.phase, 0, sine)
+    store(state.phase, 1, cosine)
+    restore_subnormals(before)
+
+
+@kernel
+def run_batch(lanes, state, stop):
+    """Run until a lane is due for a check; returns (status, lane)."""
+    while True:
+        count = _PATIENCE
+        for lane in range(LANES):
+            count = min(count, state.left[lane])
+        batch_steps(lanes, state, count)
+        found = -1
+        for lane in range(LANES):
+            state.left[lane] -= count
+            if state.left[lane] == 0 and end_period(state, lane) and found < 0:
+                found = lane
+        if stop[0] != 0:
+            return CANCELLED, found
+        if found >= 0:
+            return (DONE if np.isfinite(state.y[1, found]) else NOT_FINITE), found
+
+
+@inline_numba
+def renormalise(state, m, start, growth, lane):
+    """Note by how much a pair of lanes has parted in a period and pull the second back to the distance `start`."""
+    y, total = state.y, 0.0
+    for i in range(2 * m):
+        total += (y[i, lane + 1] - y[i, lane]) ** 2
+    now = max(sqrt(total), 1e-300)
+    growth[lane // 2, state.periods[lane] - 1] = log(now / start)
+    for i in range(2 * m):
+        y[i, lane + 1] = y[i, lane] + (y[i, lane + 1] - y[i, lane]) * (start / now)
+
+
+@kernel
+def run_pairs(lanes, state, start, growth, stop):
+    """Run lanes in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
+
+    growth (4, P) holds the logarithm of each period's growth; pairs that are never to be looked at are left out.
+    """
+    m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
+    while busy:
+        count = _PATIENCE
+        for lane in range(LANES):
+            count = min(count, state.left[lane])
+        batch_steps(lanes, state, count)
+        busy = False
+        for lane in range(0, LANES, 2):
+            counted = state.periods[lane] < periods and state.look[lane] == periods
+            for one in range(lane, lane + 2):
+                state.left[one] -= count
+                if state.left[one] == 0:
+                    end_period(state, one)
+            if counted and state.left[lane] == state.steps[lane]:
+                if not (np.isfinite(state.y[1, lane]) and np.isfinite(state.y[1, lane + 1])):
+                    return NOT_FINITE
+                renormalise(state, m, start, growth, lane)
+            busy = busy or (counted and state.periods[lane] < periods)
+        if stop[0] != 0:
+            return CANCELLED
+    return DONE

@@ -1,0 +1,178 @@
+"""Event location for the flow: steps that end at a release, at an onset, or at neither.
+
+A step returns (status, time, size, contact that changed at its end or −1); the state is in work.end.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..effects.preload import overlap
+from ..jit import inline_numba, kernel
+from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
+from .event_step import attempt_in_time, first_change
+from .tableau import STAGES
+from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
+
+#: Largest overlap at a located event, in units of the largest displacement: a few roundings.
+_LANDED = 1e-14
+#: A release is located in advance if it is at most this many steps away.
+_AIM = 1.5
+_GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
+#: Attempts to locate one event, and to take one step.
+_TRIALS, _ATTEMPTS = 8, 60
+#: Shortest next step to try, in t: two events that rounding brings together do not shrink it further.
+_LEAST = 1e-9
+#: A first step after an onset covers at most this part of the time to the next release.
+_PART = 0.5
+#: Status of a release that could not be located, beside those of kernels/status.py.
+_LOST = -1
+
+
+@inline_numba
+def next_release(slots, y, path):
+    """(contact, time) to the release that is nearest if its speed stays, (−1, ∞) if no contact opens."""
+    contact, first = -1, np.inf
+    for c in range(path.closed.size):
+        if path.closed[c] != 0:
+            speed = path.first[c] - path.first[c + 1]
+            d = overlap(slots.preload, y, c)
+            if speed < 0.0 and d > 0.0 and -d / speed < first:
+                contact, first = c, -d / speed
+    return contact, first
+
+
+@inline_numba
+def locate_change(method, slots, beta, time, h, y, work, path, tangent, c, counts):
+    """Correct the size of a step until it ends on the change of contact c; returns it."""
+    for _ in range(_TRIALS):
+        d = overlap(slots.preload, work.end, c)
+        speed = (work.slope[c] - work.slope[c + 1]) * rate_at(time, h)
+        if abs(d) <= _LANDED * max(1.0, work.scale[0]) or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
+            break
+        if h - d / speed == h:
+            break
+        h -= d / speed
+        attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
+        counts[EVALUATIONS] += STAGES
+    return h
+
+
+@kernel
+def shrunk(h, error):
+    """A smaller step after one with too large an error."""
+    return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
+
+
+@inline_numba
+def grown(h, error):
+    """The step to try after one with a tolerable error."""
+    return h * min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
+
+
+@inline_numba
+def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
+    """Step from t towards the release of contact c, guessed at `goal`: onto it, or part of the way.
+
+    Returns (status, time, size, c or −1, goal), with a status of _LOST where the contact does not open there.
+    """
+    power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
+    time = time_from(BEFORE, goal, t, power)
+    error, landed = np.inf, False
+    for _ in range(_TRIALS):
+        error = attempt_in_time(method, slots, beta, time, time.s, y, work, path, tangent)
+        counts[EVALUATIONS] += STAGES
+        if not np.isfinite(error):
+            return NOT_FINITE, time, 0.0, -1, goal
+        d, speed = overlap(slots.preload, work.end, c), work.slope[c] - work.slope[c + 1]
+        if not speed < 0.0:
+            return _LOST, time, 0.0, -1, goal
+        landed = abs(d) <= _LANDED * max(1.0, work.scale[0]) or goal - d / speed == goal
+        if landed:
+            break
+        goal -= d / speed
+        if not t < goal < farthest:
+            return _LOST, time, 0.0, -1, goal
+        time = time_from(BEFORE, goal, t, power)
+    if not landed:
+        return _LOST, time, 0.0, -1, goal
+    h = size_of(time, min(goal, limit) - t)
+    if goal > limit:
+        landed = False
+        error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
+        counts[EVALUATIONS] += STAGES
+    while error > 1.0:
+        landed = False
+        counts[REJECTED] += 1
+        h = shrunk(h, error)
+        if not t + 0.1 * (time_at(time, h) - t) > t:
+            return STEP_TOO_SMALL, time, h, -1, goal
+        error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
+        counts[EVALUATIONS] += STAGES
+    return DONE, time, h, c if landed else -1, goal
+
+
+@inline_numba
+def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangent, counts):
+    """One accepted step from y at local time t, at most to `limit`, with the last onset at `onset` (−∞: none).
+
+    Returns (status, time, size, contact); a size of 0 with a contact is a change at t itself. `clock[0]` is the next
+    step to try, in t.
+    """
+    power = smooth_power(slots.dissipation)
+    dt = min(clock[0], method.largest_step, limit - t)
+    target, wait = next_release(slots, y, path)
+    goal = t + wait
+    aiming, lost = target >= 0 and wait < _AIM * dt and t > onset, False
+    usual = time_from(BEHIND if onset > -np.inf else PLAIN, onset, t, power)
+    time, h = usual, size_of(usual, dt)
+    for _ in range(_ATTEMPTS):
+        landed, error = -1, 0.0
+        if aiming:
+            status, time, h, landed, goal = aim(method, slots, beta, t, limit, goal, y, work, path, tangent, target,
+                                                counts)
+            if status == _LOST:
+                aiming, lost = False, True
+                time, h = usual, size_of(usual, dt)
+                continue
+            if status != DONE:
+                return status, time, h, -1
+        else:
+            error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
+            counts[EVALUATIONS] += STAGES
+            if not np.isfinite(error):
+                return NOT_FINITE, time, h, -1
+            if error > 1.0:
+                counts[REJECTED] += 1
+                h = shrunk(h, error)
+                dt = time_at(time, h) - t
+                if not t + 0.1 * dt > t:
+                    return STEP_TOO_SMALL, time, h, -1
+                continue
+        contact, x = first_change(slots, beta, time, h, y, work, path, counts, landed)
+        if contact < 0:
+            if not aiming:
+                clock[0] = next_dt(time, h, error, clock[0], limit)
+            return DONE, time, h, landed
+        if x * h == 0.0:
+            return DONE, time, 0.0, contact
+        if path.closed[contact] != 0 and not lost:
+            if t > onset:
+                aiming, target, goal = True, contact, time_at(time, x * h)
+            else:
+                h *= _PART * x
+                dt = time_at(time, h) - t
+            continue
+        h *= x
+        attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
+        counts[EVALUATIONS] += STAGES
+        return DONE, time, locate_change(method, slots, beta, time, h, y, work, path, tangent, contact, counts), contact
+    return STEP_TOO_SMALL, time, h, -1
+
+
+@inline_numba
+def next_dt(time, h, error, before, limit):
+    """The next step in t after an accepted one of size h in x; not less than before where only the limit cut it."""
+    end = time_at(time, h)
+    dt = time_at(time, h + grown(h, error)) - end
+    return max(dt, before, _LEAST) if end >= limit else max(dt, _LEAST)

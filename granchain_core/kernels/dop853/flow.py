@@ -1,0 +1,92 @@
+"""The flow over whole drive periods, contact event by contact event, with the tangents one asks for.
+
+With `tangent` None there is no code for tangents. The events are written into a log: the sequence in which contacts
+open and close is what changes where an orbit grazes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..effects.preload import overlap
+from ..equations.motion import copy
+from ..equations.tangent import Tangent, carry
+from ..jit import by_slot, kernel
+from ..samples import first_not_finite
+from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEP_TOO_SMALL, STEPS
+from .event_location import flow_step
+from .step import evaluate, new_scale
+from .time_map import time_at
+
+#: Steps in one period after which it is given up.
+_MOST_STEPS = 5_000_000
+
+
+@by_slot
+def jump(tangent, slots, c, closes):
+    """Let tangents jump where contact c opens or closes. Absent: there are none, or they are continuous in w."""
+
+
+@jump.of(Tangent)
+def _(tangent, slots, c, closes):
+    pass
+
+
+@kernel
+def begin(slots, y, path):
+    """Which contacts are closed at the start."""
+    for c in range(path.closed.size):
+        path.closed[c] = 1 if overlap(slots.preload, y, c) > 0.0 else 0
+
+
+@kernel
+def change(slots, path, tangent, c, t):
+    """Change contact c at time t; returns whether it closed."""
+    closes = path.closed[c] == 0
+    path.closed[c] = 1 if closes else 0
+    jump(tangent, slots, c, closes)
+    row = path.logged[0]
+    path.log[row, 0], path.log[row, 1] = c + 1.0 if closes else -c - 1.0, t
+    path.logged[0] = row + 1
+    return closes
+
+
+@kernel
+def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent, counts, stop):
+    """Carry motion and tangents through whole periods from phase 0.
+
+    Returns (status, periods done, ∫ trace); the log's times count from the first period's start.
+    """
+    m, trace, onset = slots.chain.inverse_mass.size, 0.0, -np.inf
+    begin(slots, y, path)
+    path.logged[0] = 0
+    for p in range(periods):
+        t, steps = 0.0, 0
+        while t < period:
+            steps += 1
+            if stop[0] != 0:
+                return CANCELLED, p, trace
+            if steps > _MOST_STEPS:
+                return STEP_TOO_SMALL, p, trace
+            evaluate(slots, beta, t, y, path.first, work.forces)
+            status, time, h, contact = flow_step(method, slots, beta, t, period, onset, y, work, path, clock, tangent,
+                                                 counts)
+            if status != DONE:
+                return status, p, trace
+            if h > 0.0:
+                trace += carry(tangent, slots, time, h, path)
+                copy(work.end, y)
+                new_scale(y, work, m)
+                end = time_at(time, h)
+                t = period if period - end < 1e-14 * period else end
+                counts[STEPS] += 1
+            if contact >= 0:
+                if path.logged[0] >= path.log.shape[0]:
+                    return CHATTER, p, trace
+                if change(slots, path, tangent, contact, p * period + t):
+                    onset = t
+                counts[EVENTS] += 1
+        onset -= period
+        if first_not_finite(y, m) != 0:
+            return NOT_FINITE, p, trace
+    return DONE, periods, trace

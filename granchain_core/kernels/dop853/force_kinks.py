@@ -1,0 +1,153 @@
+"""Where a contact whose tension is cut stops pushing, or pushes again, while its beads still touch.
+
+There F = K δ^{3/2} + g(δ) δ̇ = 0: the force has a kink, at which an error-controlled step is to end. Its sign is that of
+F/g = K δ^{3/2}/g(δ) + δ̇, which unlike F goes through zero nowhere else, not even at δ = 0.
+"""
+
+from __future__ import annotations
+
+from ..effects.balance import add_to_account, ends_of
+from ..effects.contact import positive_part
+from ..effects.dissipation import LAWS, power
+from ..effects.preload import overlap
+from ..effects.tension import NoTension, slacken
+from ..equations.motion import write_w
+from ..jit import by_slot, inline_numba, kernel
+from ..simd.functions import gate, root
+from ..status import EVALUATIONS
+from .bracket import between, narrowed
+from .step import STAGES, dense_value, evaluate, prepare_dense
+
+#: A kink nearer to an end of the step than this changes the motion by less than rounding, its square.
+_NEAR = 1e-8
+#: A contact whose F/g is a smaller part of the largest velocity is at rest ahead of a wave: its sign is rounding.
+_STILL = 1e-15
+
+
+@by_slot
+def scaled_force(law, stiffness, d, rate):
+    """F/g for d = [δ]_+ and δ̇ = rate. Absent: positive, an elastic contact never pulls."""
+    return 1.0
+
+
+@scaled_force.of(*LAWS)
+def _(law, stiffness, d, rate):
+    r = root(d)
+    return gate(d, stiffness * d * (r / power(law, d, r)) / law.coefficient) + rate
+
+
+@by_slot
+def enter_force_free(tension, slots, beta, t, y, work):
+    """Note which contacts are slack at the start of a step, whose account then has another slope. Absent: none is."""
+
+
+@enter_force_free.of(NoTension)
+def _(tension, slots, beta, t, y, work):
+    found = False
+    for c in range(tension.slack.size):
+        d, rate = overlap(slots.preload, y, c), work.k[0, c] - work.k[0, c + 1]
+        if d > 0.0 and scaled_force(slots.dissipation, slots.chain.stiffness[c], d, rate) < -_STILL * work.scale[1]:
+            slacken(tension, slots, y, c)
+            found = True
+    if found:
+        evaluate(slots, beta, t, y, work.k[0], work.forces)
+
+
+@by_slot
+def leave_force_free(tension, slots, y, dy, forces):
+    """End a step's slack at its end: the velocities in dy stay, w and the account go over to the law's own G.
+
+    Returns whether anything changed, and the slope with it. Absent: no contact is slack.
+    """
+    return False
+
+
+@leave_force_free.of(NoTension)
+def _(tension, slots, y, dy, forces):
+    found = False
+    for c in range(tension.slack.size):
+        found = found or tension.slack[c] != 0
+    if found:
+        work, lost = ends_of(slots.balance, slots, y, dy)
+        for c in range(tension.slack.size):
+            tension.slack[c] = 0
+        write_w(slots, y, dy, forces)
+        own_work, own_lost = ends_of(slots.balance, slots, y, dy)
+        add_to_account(slots.balance, y, work - own_work, lost - own_lost)
+    return found
+
+
+@kernel
+def scaled_force_in_step(slots, beta, t, h, y, work, c, x):
+    """F/g of contact c at fraction x of the step, on the dense output."""
+    for i in range(y.size):
+        work.probe[i] = dense_value(work.dense, y[i], x, i)
+    evaluate(slots, beta, t + x * h, work.probe, work.slope, work.forces)
+    d = positive_part(overlap(slots.preload, work.probe, c))
+    return scaled_force(slots.dissipation, slots.chain.stiffness[c], d, work.slope[c] - work.slope[c + 1])
+
+
+@inline_numba
+def scaled_force_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
+    """Fraction between `low` and `high` where F of contact c changes sign."""
+    x, side = high, 0
+    for _ in range(60):
+        before = x
+        x = between(low, high, f_low, f_high)
+        f = scaled_force_in_step(slots, beta, t, h, y, work, c, x)
+        counts[EVALUATIONS] += 1
+        if abs(x - before) < 0.1 * _NEAR:
+            break
+        low, high, f_low, f_high, side = narrowed(low, high, f_low, f_high, side, x, f)
+    return x
+
+
+@by_slot
+def first_kink(tension, slots, beta, t, h, y, work, until, counts, again):
+    """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
+
+    0 where the step is to be tried again because rounding had contacts begin on the wrong side of a kink: all of them
+    change sides at once, or a symmetric motion would lose its symmetry; and not if it is tried `again` already: where F
+    is rounding, either side may contradict itself. Absent: forces have no such kink.
+    """
+    return 2.0
+
+
+@first_kink.of(NoTension)
+def _(tension, slots, beta, t, h, y, work, until, counts, again):
+    first, ready, turned, k, still = 2.0, False, False, work.k, _STILL * work.scale[1]
+    for c in range(slots.chain.stiffness.size):
+        d0 = overlap(slots.preload, y, c)
+        if not d0 > 0.0:
+            continue
+        slack, stiffness = tension.slack[c] != 0, slots.chain.stiffness[c]
+        d1 = positive_part(overlap(slots.preload, work.end, c))
+        f0 = scaled_force(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
+        f1 = scaled_force(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
+        if max(abs(f0), abs(f1)) < still or (until == 1.0 and slack != (f1 > 0.0)):
+            continue
+        if not ready:
+            prepare_dense(slots, beta, t, h, y, work)
+            counts[EVALUATIONS] += 3
+            ready = True
+        if until < 1.0:
+            f1 = scaled_force_in_step(slots, beta, t, h, y, work, c, until)
+            counts[EVALUATIONS] += 1
+            if abs(f1) < still or slack != (f1 > 0.0):
+                continue
+        x = 0.0
+        if f0 * f1 < 0.0:  # else F is rounding at the start
+            x = scaled_force_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
+        if x * h > _NEAR:
+            if x < first and x * h < until * h - _NEAR:
+                first = x
+        elif not again:
+            if slack:
+                tension.slack[c] = 0
+            else:
+                slacken(tension, slots, y, c)
+            turned = True
+    if turned:
+        evaluate(slots, beta, t, y, k[0], work.forces)
+        return 0.0
+    return first

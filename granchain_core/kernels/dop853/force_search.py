@@ -1,0 +1,133 @@
+"""The largest forces inside an accepted step of the certified method, on its dense output.
+
+A force is evaluated at the beginning, in the middle and at the end of a step. The step begins just past an event and
+ends just past the next, so these values are right limits and the jump of a closing contact is one of them. If the force
+rises at the beginning and falls at the end, its maximum is searched by golden section, provided that it may exceed the
+largest value so far. It is then as exact as the dense output, whatever the size of the step.
+"""
+
+from __future__ import annotations
+
+from ..effects.contact import elastic_force, positive_part
+from ..effects.dissipation import damping
+from ..effects.preload import overlap
+from ..effects.tension import cut_at_zero
+from ..forces.largest import cubic_top, force_slope
+from ..forces.peaks import OUTPUT
+from ..jit import inline_numba, kernel
+from ..simd.functions import root
+from ..status import EVALUATIONS
+from .step import dense_value, evaluate, prepare_dense
+from .tableau import STAGES
+
+#: Golden sections around the top of a force; each shrinks the bracket to 0.618 and the top's error, as it is flat, to
+#: 0.382.
+_SECTIONS = 24
+#: A step whose ends are below this part of the largest force so far is not looked into.
+_FAINT = 0.3
+#: A top that the cubic through values and slopes at both ends puts below this part of it is not searched.
+_WORTH = 0.98
+_RATIO = 0.6180339887498949
+
+
+@kernel
+def forces_of(slots, y, dy):
+    """Input, output and elastic output force at state y, velocities in dy."""
+    last = slots.chain.stiffness.size - 1
+    d0, d1 = positive_part(overlap(slots.preload, y, 0)), positive_part(overlap(slots.preload, y, last))
+    pushed = elastic_force(slots.chain.stiffness[0], d0) + damping(slots.dissipation, d0) * (dy[0] - dy[1])
+    elastic = elastic_force(slots.chain.stiffness[last], d1)
+    passed = elastic + damping(slots.dissipation, d1) * (dy[last] - dy[last + 1])
+    return cut_at_zero(slots.tension, pushed), cut_at_zero(slots.tension, passed), elastic
+
+
+@kernel
+def forces_in_step(slots, beta, t, h, y, work, x):
+    """The same at fraction x of the step, whose dense output is prepared."""
+    for i in range(y.size):
+        work.probe[i] = dense_value(work.dense, y[i], x, i)
+    evaluate(slots, beta, t + x * h, work.probe, work.slope, work.forces)
+    return forces_of(slots, work.probe, work.slope)
+
+
+@kernel
+def keep_end_forces(slots, y, dy, e):
+    """The elastic forces, those of a cut included, of the two outer contacts at either end."""
+    last = slots.chain.stiffness.size - 1
+    for q in range(4):
+        c = min(q, last) if q < 2 else max(last + q - 3, 0)
+        d = positive_part(overlap(slots.preload, y, c))
+        damped = damping(slots.dissipation, d) * (dy[c] - dy[c + 1])
+        e[c] = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped) - damped
+
+
+@kernel
+def slopes_of(slots, y, dy, work):
+    """Ḟ of the same at state y."""
+    last = slots.chain.stiffness.size - 1
+    keep_end_forces(slots, y, dy, work.forces.e)
+    e, d = work.forces.e, positive_part(overlap(slots.preload, y, last))
+    elastic = 1.5 * slots.chain.stiffness[last] * root(d) * (dy[last] - dy[last + 1])
+    return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
+
+
+@inline_numba
+def top_in_step(slots, beta, t, h, y, work, q, counts):
+    """Largest value of force number q inside the step."""
+    low, high = 0.0, 1.0
+    a, b = 1.0 - _RATIO, _RATIO
+    fa = forces_in_step(slots, beta, t, h, y, work, a)[q]
+    fb = forces_in_step(slots, beta, t, h, y, work, b)[q]
+    for _ in range(_SECTIONS):
+        if fa > fb:
+            high, b, fb = b, a, fa
+            a = high - _RATIO * (high - low)
+            fa = forces_in_step(slots, beta, t, h, y, work, a)[q]
+        else:
+            low, a, fa = a, b, fb
+            b = low + _RATIO * (high - low)
+            fb = forces_in_step(slots, beta, t, h, y, work, b)[q]
+    counts[EVALUATIONS] += _SECTIONS + 2
+    return max(fa, fb)
+
+
+@kernel
+def is_monotone(f0, s0, f1, s1, h):
+    """Whether the cubic with values f0, f1 and slopes s0, s1 at the ends of a step of size h rises or falls throughout.
+
+    Sufficient: both slopes along the chord and at most three times as steep (Fritsch & Carlson 1980).
+    """
+    chord = 3.0 * (f1 - f0)
+    return chord * s0 >= 0.0 and chord * s1 >= 0.0 and h * max(abs(s0), abs(s1)) <= abs(chord)
+
+
+@kernel
+def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
+    """Raise the largest forces to what the step from y holds; whether its dense output is prepared now.
+
+    work.k[0] and work.k[12] are its slopes at both ends. A force that rises or falls throughout is largest at an end.
+    """
+    start, end = forces_of(slots, y, work.k[0]), forces_of(slots, work.end, work.k[STAGES])
+    bright = False
+    for q in range(3):
+        peaks[q * OUTPUT] = max(peaks[q * OUTPUT], start[q], end[q])
+        bright = bright or max(start[q], end[q]) > _FAINT * peaks[q * OUTPUT]
+    if not bright:
+        return ready
+    rises, falls = slopes_of(slots, y, work.k[0], work), slopes_of(slots, work.end, work.k[STAGES], work)
+    turns = False
+    for q in range(3):
+        turns = turns or not is_monotone(start[q], rises[q], end[q], falls[q], h)
+    if not turns:
+        return ready
+    if not ready:
+        prepare_dense(slots, beta, t, h, y, work)
+        counts[EVALUATIONS] += 3
+    middle = forces_in_step(slots, beta, t, h, y, work, 0.5)
+    counts[EVALUATIONS] += 1
+    for q in range(3):
+        peaks[q * OUTPUT] = max(peaks[q * OUTPUT], middle[q])
+        guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], h))
+        if rises[q] > 0.0 and falls[q] < 0.0 and guess > _WORTH * peaks[q * OUTPUT]:
+            peaks[q * OUTPUT] = max(peaks[q * OUTPUT], top_in_step(slots, beta, t, h, y, work, q, counts))
+    return True

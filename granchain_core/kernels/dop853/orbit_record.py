@@ -1,0 +1,82 @@
+"""A run along an orbit that keeps the turning points of all overlaps and the largest forces.
+
+Each accepted step of the certified method is looked at on its dense output. A contact's overlap has a turning point
+where its bodies move equally fast; the smallest of these are the touches and separations about to appear or vanish. The
+largest forces are searched inside the steps (dop853/force_search.py).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..equations.motion import copy
+from ..jit import inline_numba, kernel
+from ..samples import first_not_finite
+from ..status import CANCELLED, DONE, NOT_FINITE
+from .force_search import follow_step
+from .located import certified_step, inner_extremum, overlap_in_step
+from .step import evaluate, new_scale, prepare_dense
+from .tableau import STAGES
+
+#: Outcome: there were more turning points than places to keep them.
+FULL = 5
+
+
+class OrbitRecord(NamedTuple):
+    """What is kept of an orbit.
+
+    Turning points are rows of `turns` (T, 4): contact, +1 for a largest and −1 for a smallest overlap, scaled time
+    since the orbit's phase 0, overlap.
+    `peaks` (17,) hold the largest input, output and elastic output force (forces/peaks.py).
+    """
+
+    turns: np.ndarray
+    peaks: np.ndarray
+
+
+@inline_numba
+def follow_turns(slots, beta, t, h, y, work, since, record, row):
+    """Keep the turning points of all overlaps inside the step; returns the next free row.
+
+    The step has work.k[0] and work.k[12] as slopes at its ends; `since` is the time from the orbit's start to t.
+    """
+    k = work.k
+    for c in range(slots.chain.stiffness.size):
+        s0, s1 = k[0, c] - k[0, c + 1], k[STAGES, c] - k[STAGES, c + 1]
+        if (s0 > 0.0) != (s1 > 0.0):
+            if row < record.turns.shape[0]:
+                sign = 1.0 if s0 > 0.0 else -1.0
+                x = inner_extremum(slots, beta, t, h, y, work, c, sign)
+                record.turns[row, 0], record.turns[row, 1] = c, sign
+                record.turns[row, 2] = since + x * h
+                record.turns[row, 3] = overlap_in_step(slots, beta, t, h, y, work, c, x)
+            row += 1
+    return row
+
+
+@kernel
+def record_orbit(method, slots, beta, period, periods, y, work, clock, record, counts, stop):
+    """Run whole periods from phase 0 and fill `record`. Returns (status, periods done, turning points met)."""
+    m, row = slots.chain.inverse_mass.size, 0
+    evaluate(slots, beta, 0.0, y, work.k[0], work.forces)
+    for p in range(periods):
+        t = 0.0
+        while t < period:
+            status, h, _ = certified_step(method, slots, beta, t, period, y, work, clock, counts)
+            if status != DONE:
+                return status, p, row
+            prepare_dense(slots, beta, t, h, y, work)
+            row = follow_turns(slots, beta, t, h, y, work, p * period + t, record, row)
+            follow_step(slots, beta, t, h, y, work, True, record.peaks, counts)
+            copy(work.end, y)
+            new_scale(y, work, m)
+            copy(work.k[STAGES], work.k[0])
+            t = period if period - (t + h) < 1e-13 * period else t + h
+        evaluate(slots, beta, 0.0, y, work.k[0], work.forces)
+        if first_not_finite(y, m) != 0:
+            return NOT_FINITE, p, row
+        if stop[0] != 0:
+            return CANCELLED, p, row
+    return (DONE if row <= record.turns.shape[0] else FULL), periods, row

@@ -1,0 +1,137 @@
+"""One step of the Dormand–Prince method of order 8: stages, error estimate, dense output."""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..effects.driver import driver_displacement, driver_velocity
+from ..equations.motion import motion
+from ..jit import inline_numba, kernel
+from .tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
+
+
+class Dop853(NamedTuple):
+    """Method slot: relative tolerance of one step and the largest step."""
+
+    tolerance: float
+    largest_step: float
+
+
+class Work(NamedTuple):
+    """Workspace: slopes k (16, M), stage, step end, probe and its slope (M,), dense output (7, M), forces.
+
+    `scale` (2,) is the largest displacement and largest w met so far, what the tolerance is relative to.
+    """
+
+    k: np.ndarray
+    stage: np.ndarray
+    end: np.ndarray
+    probe: np.ndarray
+    slope: np.ndarray
+    dense: np.ndarray
+    scale: np.ndarray
+    forces: Any
+
+
+@kernel
+def evaluate(slots, beta, t, y, dy, forces):
+    """Slope at local time t of the period; the drive phase is βt."""
+    motion(slots, driver_displacement(slots.driver, beta * t), driver_velocity(slots.driver, beta * t), y, dy, forces)
+
+
+@kernel
+def combine(y, h, k, row, out):
+    """out = y + h Σ_s A[row, s] k_s, the state at which slope `row` is taken."""
+    for i in range(y.size):
+        out[i] = y[i]
+    for s in range(row):
+        a = h * A[row, s]
+        if a != 0.0:
+            for i in range(y.size):
+                out[i] += a * k[s, i]
+
+
+@kernel
+def attempt(method, slots, beta, t, h, y, work):
+    """Try a step of size h from y, whose slope is work.k[0]; the result is work.end, its slope work.k[12].
+
+    Returns the error over the tolerance: at most 1 for a step to accept, NaN if the numbers failed.
+    """
+    for s in range(1, STAGES + 1):  # row 12 is the step itself, its slope the next step's first
+        combine(y, h, work.k, s, work.end)
+        evaluate(slots, beta, t + C[s] * h, work.end, work.k[s], work.forces)
+    return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
+
+
+@inline_numba
+def error_norm(tolerance, h, y, work, m):
+    """The method's combined error of orders 5 and 3 in units of the tolerance, root mean square over the beads."""
+    k = work.k
+    fifth, third = 0.0, 0.0
+    for row in range(2):
+        largest = work.scale[row]
+        for i in range(row * m + 1, row * m + m - 1):
+            largest = max(largest, abs(work.end[i]))
+        unit = 1.0 / (tolerance * largest)
+        for i in range(row * m + 1, row * m + m - 1):
+            e5, e3 = 0.0, 0.0
+            for s in range(STAGES + 1):
+                e5 += E5[s] * k[s, i]
+                e3 += E3[s] * k[s, i]
+            fifth += (e5 * unit) ** 2
+            third += (e3 * unit) ** 2
+    if fifth == 0.0 and third == 0.0:
+        return 0.0
+    return abs(h) * fifth / sqrt((fifth + 0.01 * third) * (2 * (m - 2)))
+
+
+@kernel
+def prepare_dense(slots, beta, t, h, y, work):
+    """Fill work.dense for the step from y to work.end: three more slopes and seven coefficients."""
+    k = work.k
+    for s in range(STAGES + 1, ALL_STAGES):
+        combine(y, h, k, s, work.stage)
+        evaluate(slots, beta, t + C[s] * h, work.stage, k[s], work.forces)
+    dense_coefficients(h, y, work)
+
+
+@inline_numba
+def dense_coefficients(h, y, work):
+    """Fill work.dense from the step's end and all its slopes."""
+    k, dense = work.k, work.dense
+    for i in range(y.size):
+        change = work.end[i] - y[i]
+        dense[0, i] = change
+        dense[1, i] = h * k[0, i] - change
+        dense[2, i] = 2.0 * change - h * (k[STAGES, i] + k[0, i])
+    for row in range(4):
+        for i in range(y.size):
+            dense[3 + row, i] = 0.0
+        for s in range(ALL_STAGES):
+            a = h * DENSE[row, s]
+            if a != 0.0:
+                for i in range(y.size):
+                    dense[3 + row, i] += a * k[s, i]
+
+
+@kernel
+def dense_value(dense, y0, x, i):
+    """Component i at fraction x of the step."""
+    value = dense[6, i] * x
+    value = (value + dense[5, i]) * (1.0 - x)
+    value = (value + dense[4, i]) * x
+    value = (value + dense[3, i]) * (1.0 - x)
+    value = (value + dense[2, i]) * x
+    value = (value + dense[1, i]) * (1.0 - x)
+    return y0 + (value + dense[0, i]) * x
+
+
+@kernel
+def new_scale(y, work, m):
+    """Let the scale the tolerance is relative to grow with the motion."""
+    for row in range(2):
+        for i in range(row * m + 1, row * m + m - 1):
+            work.scale[row] = max(work.scale[row], abs(y[i]))

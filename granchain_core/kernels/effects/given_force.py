@@ -1,0 +1,111 @@
+"""A given force in place of the driver's contact: measured and sampled, or handed on from a chain to its observer.
+
+Equation   m_1 ü_1 = F_in − F_1 − k u_1;  observer of a chain: F_in is the total force of the chain's own contact 0
+Source     Zhang et al. 2016, eqs. (3) and (4)
+Values     Sampled: piece (4,), the cubic of the force between two samples in the time since the first of them, constant
+           term first; whoever steps from sample to sample fills it, and the phase θ is that time. Echo: the harmonic
+           driver of the first chain and the contact that stands before the observer's first bead
+Terms      hand_on_primitive and hand_on_force put the force where contact 0 (Sampled) or the named contact (Echo) has
+           its own. An echo hands e_0 and G_0 on separately: in w-variables nothing jumps in the observer either
+Methods    Sampled: fixed steps, from sample to sample. Echo: the certified method; what steps split at events give back
+           (rk4/step.py) is not handed on
+Absent     nothing is handed on
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+from typing import NamedTuple
+
+import numpy as np
+
+from ..jit import by_slot
+from .dissipation import put_prescribed_primitive
+from .driver import FAR, Harmonic, driver_acceleration, driver_displacement, driver_velocity
+
+
+class Sampled(NamedTuple):
+    """Slot of a measured force on bead 1; there is no body 0."""
+
+    piece: np.ndarray
+
+
+class ObserverCoupling(NamedTuple):
+    """Slot of the harmonic driver of a chain whose input force also acts in contact `contact`, on its observer."""
+
+    amplitude: float
+    beta: float
+    contact: int
+
+
+@driver_displacement.of(Sampled)
+def _(driver, theta):
+    return -FAR
+
+
+@driver_velocity.of(Sampled)
+def _(driver, theta):
+    # a force, which hand_on_force takes from here: there is no body 0 that could have a velocity
+    p = driver.piece
+    return p[0] + theta * (p[1] + theta * (p[2] + theta * p[3]))
+
+
+@driver_acceleration.of(Sampled)
+def _(driver, u0):
+    return 0.0
+
+
+@driver_displacement.of(ObserverCoupling)
+def _(driver, theta):
+    return driver.amplitude * sin(theta)
+
+
+@driver_velocity.of(ObserverCoupling)
+def _(driver, theta):
+    return driver.amplitude * driver.beta * cos(theta)
+
+
+@driver_acceleration.of(ObserverCoupling)
+def _(driver, u0):
+    return -driver.beta * driver.beta * u0
+
+
+@by_slot
+def prescribe_primitive(driver, slots, y, G):
+    """Put the input force's G where it pushes another chain. Absent: nothing."""
+
+
+@prescribe_primitive.of(Harmonic)
+def _(driver, slots, y, G):
+    pass
+
+
+@prescribe_primitive.of(Sampled)
+def _(driver, slots, y, G):
+    pass
+
+
+@prescribe_primitive.of(ObserverCoupling)
+def _(driver, slots, y, G):
+    put_prescribed_primitive(slots.dissipation, G, 0, driver.contact)
+
+
+@by_slot
+def prescribe_force(driver, dy, e):
+    """Put the given force into the contact it acts in. Absent: nothing."""
+
+
+@prescribe_force.of(Harmonic)
+def _(driver, dy, e):
+    pass
+
+
+@prescribe_force.of(Sampled)
+def _(driver, dy, e):
+    e[0] = dy[0]
+    dy[0] = 0.0
+
+
+@prescribe_force.of(ObserverCoupling)
+def _(driver, dy, e):
+    e[driver.contact] = e[0]

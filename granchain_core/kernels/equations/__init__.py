@@ -1,0 +1,1 @@
+"""The equations of motion in w, in (u, v), and their linearisation."""

@@ -1,0 +1,125 @@
+"""The equations of motion in w-variables, assembled from the effects that are present.
+
+    w_i = v_i − (G_{i-1} − G_i)/m_i          the dashpot is an exact derivative (docs/model.md)
+    u̇_i = w_i + (G_{i-1} − G_i)/m_i
+    m_i ẇ_i = F^el_{i-1} − F^el_i − k u_i     continuous: no Heaviside function, no velocity differences
+
+One flat array y holds u_0..u_{N+1}, then w_0..w_{N+1}, then (with a balance) work and loss; driver and wall are
+the ends of both rows, so that every loop runs over all contacts without special cases.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..effects.balance import account
+from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
+from ..effects.dissipation import damping, keep_primitive, shifted, velocity
+from ..effects.driver import driver_displacement, driver_velocity
+from ..effects.foundation import add_foundation_force, foundation_energy
+from ..effects.given_force import prescribe_force, prescribe_primitive
+from ..effects.preload import overlap
+from ..effects.tension import cut_tension, keep_slack_primitive, unless_slack
+from ..jit import check_effects, kernel
+
+
+class Slots(NamedTuple):
+    """One slot per effect, None where it is absent; the types alone decide what is compiled."""
+
+    chain: Any
+    dissipation: Any = None
+    tension: Any = None
+    foundation: Any = None
+    preload: Any = None
+    driver: Any = None
+    balance: Any = None
+
+
+class Forces(NamedTuple):
+    """Workspace of one evaluation: elastic forces e (N+1,) and primitives G (N+1,), None without dissipation.
+
+    `held` is None, or says which contacts stay open whatever their overlap.
+    """
+
+    e: np.ndarray
+    G: Any
+    held: Any = None
+
+
+check_effects("granchain_core.kernels.effects")
+
+
+@kernel
+def motion(slots, u0, v0, y, dy, forces):
+    """dy/dτ at state y with the driver at (u0, v0); leaves the contact forces in `forces`."""
+    inverse_mass, stiffness = slots.chain.inverse_mass, slots.chain.stiffness
+    e, G = forces.e, forces.G
+    m = inverse_mass.size
+    y[0] = u0
+    dy[0] = v0
+    for c in range(m - 1):
+        d = pressed(forces.held, c, overlap(slots.preload, y, c))
+        e[c] = elastic_force(stiffness[c], d)
+        keep_primitive(slots.dissipation, G, c, d)
+    keep_slack_primitive(slots.tension, slots, y, G)
+    prescribe_primitive(slots.driver, slots, y, G)
+    for i in range(1, m - 1):
+        dy[i] = velocity(slots.dissipation, inverse_mass, y[m + i], G, i)
+    cut_tension(slots.tension, slots, y, dy, e)
+    prescribe_force(slots.driver, dy, e)
+    for i in range(1, m - 1):
+        dy[m + i] = inverse_mass[i] * add_foundation_force(slots.foundation, e[i - 1] - e[i], y[i])
+    account(slots.balance, slots, y, dy, e)
+
+
+@kernel
+def contact_force(slots, y, dy, e, c):
+    """Total force of contact c from the last evaluation of `motion`."""
+    d = positive_part(overlap(slots.preload, y, c))
+    return unless_slack(slots.tension, c, e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1]))
+
+
+@kernel
+def copy(source, target):
+    """Copy one array; a slice assignment would bring Numba's shape errors and seconds of compiling with it."""
+    for i in range(source.size):
+        target[i] = source[i]
+
+
+@kernel
+def write_w(slots, y, dy, forces):
+    """The variables w of state y from the velocities in dy."""
+    m = slots.chain.inverse_mass.size
+    for c in range(m - 1):
+        keep_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
+    prescribe_primitive(slots.driver, slots, y, forces.G)
+    for i in range(1, m - 1):
+        y[m + i] = shifted(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
+
+
+@kernel
+def place(slots, theta, y, dy, forces, from_velocity):
+    """Set the driver and the slope at drive phase θ; with from_velocity the second row of y holds v and becomes w."""
+    m = slots.chain.inverse_mass.size
+    u0 = driver_displacement(slots.driver, theta)
+    y[0] = u0
+    if from_velocity:
+        for i in range(1, m - 1):
+            dy[i] = y[m + i]
+        write_w(slots, y, dy, forces)
+    motion(slots, u0, driver_velocity(slots.driver, theta), y, dy, forces)
+
+
+@kernel
+def stored_energy(slots, y, dy):
+    """Kinetic, contact and foundation energy; the velocities are read from dy."""
+    inverse_mass = slots.chain.inverse_mass
+    m = inverse_mass.size
+    energy = 0.0
+    for c in range(m - 1):
+        energy += elastic_energy(slots.chain.stiffness[c], positive_part(overlap(slots.preload, y, c)))
+    for i in range(1, m - 1):
+        energy += 0.5 * dy[i] * dy[i] / inverse_mass[i] + foundation_energy(slots.foundation, y[i])
+    return energy

@@ -1,0 +1,93 @@
+"""What one would write first: the equations in (u, v), whose dashpot force jumps, with fixed steps across everything.
+
+Equation   m_i v̇_i = F_{i-1} − F_i − k u_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
+Purpose    shown beside the other methods, to see what the w-variables and located events are worth
+The second row of the state holds v here, not w; nothing else differs for the rest of the program.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..effects.contact import elastic_force, positive_part
+from ..effects.dissipation import damping
+from ..effects.foundation import add_foundation_force
+from ..effects.preload import overlap
+from ..effects.tension import cut_at_zero
+from ..forces.largest import end_overlaps, watch_crossings
+from ..jit import kernel
+from ..rk4.step import drive_displacement, drive_velocity, step
+from ..status import EVALUATIONS, STEPS
+
+
+class Rk4Naive(NamedTuple):
+    """Method slot: RK4 in (u, v) with a fixed step."""
+
+    steps_per_period: int
+
+
+class VerletNaive(NamedTuple):
+    """Method slot: velocity Verlet in (u, v) with a fixed step; damping forces use the half-step velocities."""
+
+    steps_per_period: int
+
+
+@kernel
+def naive_motion(slots, u0, v0, y, dy, forces):
+    """dy/dτ in (u, v); leaves the elastic forces (with what a cut adds to them) in forces.e, as `motion` does."""
+    inverse_mass = slots.chain.inverse_mass
+    m = inverse_mass.size
+    y[0], dy[0] = u0, v0
+    for i in range(1, m - 1):
+        dy[i] = y[m + i]
+    left = 0.0
+    for c in range(m - 1):
+        d = positive_part(overlap(slots.preload, y, c))
+        damped = damping(slots.dissipation, d) * (dy[c] - dy[c + 1])
+        force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped)
+        forces.e[c] = force - damped
+        if c > 0:
+            dy[m + c] = inverse_mass[c] * add_foundation_force(slots.foundation, left - force, y[c])
+        left = force
+
+
+@step.of(Rk4Naive)
+def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
+    k, stage, forces = stages.k, stages.stage, stages.forces
+    before = end_overlaps(slots.dissipation, slots, y, k[0])
+    ua, va = drive_displacement(slots, drive, 2 * j + 1, dtheta), drive_velocity(slots, drive, 2 * j + 1, dtheta)
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
+    for i in range(y.size):
+        stage[i] = y[i] + 0.5 * h * k[0, i]
+    naive_motion(slots, ua, va, stage, k[1], forces)
+    for i in range(y.size):
+        stage[i] = y[i] + 0.5 * h * k[1, i]
+    naive_motion(slots, ua, va, stage, k[2], forces)
+    for i in range(y.size):
+        stage[i] = y[i] + h * k[2, i]
+    naive_motion(slots, ub, vb, stage, k[3], forces)
+    for i in range(y.size):
+        y[i] += h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
+    naive_motion(slots, ub, vb, y, k[0], forces)
+    watch_crossings(slots.dissipation, slots, before, y, k[0], h, theta, dtheta, log)
+    counts[STEPS] += 1
+    counts[EVALUATIONS] += 4
+    return h
+
+
+@step.of(VerletNaive)
+def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
+    m, k = slots.chain.inverse_mass.size, stages.k
+    before = end_overlaps(slots.dissipation, slots, y, k[0])
+    for i in range(1, m - 1):
+        y[m + i] += 0.5 * h * k[0, m + i]
+        y[i] += h * y[m + i]
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
+    naive_motion(slots, ub, vb, y, k[0], stages.forces)
+    for i in range(1, m - 1):
+        y[m + i] += 0.5 * h * k[0, m + i]
+        k[0, i] = y[m + i]
+    watch_crossings(slots.dissipation, slots, before, y, k[0], h, theta, dtheta, log)
+    counts[STEPS] += 1
+    counts[EVALUATIONS] += 1
+    return h

@@ -1,0 +1,1 @@
+"""The largest contact forces of a motion, jumps of closing contacts included."""

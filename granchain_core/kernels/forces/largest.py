@@ -1,0 +1,298 @@
+"""The largest forces of a motion: their suprema over the time watched, the jumps of closing contacts included.
+
+Equation   F = K δ^{3/2} + g(δ) δ̇.  With a linear dashpot F jumps from 0 to λδ̇ at the instant a contact closes. The
+           value behind the jump, its right limit, counts: it is often the largest force there is
+Method     Between two states the force is the cubic with its values and slopes at both. At an event it is watched on
+           either side: nothing is interpolated across a jump or a kink. Methods that do not locate events find the
+           closing by their own crossing: without its own damping force the rate of an overlap is smooth, and
+           its parabola gives the rate at the instant at which the overlap is zero
+Source     Zhang et al. 2016, eq. (1), for the force; docs/model.md for the definition
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..effects.contact import elastic_force, positive_part
+from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, damping, damping_slope
+from ..effects.driver import driver_acceleration
+from ..effects.foundation import add_foundation_force
+from ..effects.preload import overlap
+from ..effects.tension import cut_at_zero
+from ..equations.motion import contact_force
+from ..jit import by_slot, inline_llvm, inline_numba, kernel
+from ..rk4.contact_events import GAP, RATE, TINY, hermite_turn
+from ..simd.functions import clip, root
+from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
+
+#: A force below this part of the largest so far is watched without its slope: a top is higher than the ends of its step
+#: by h²/8 of its curvature, some per cent of it.
+_FAINT = 0.9
+#: Largest rise or fall of a force in one step, over its value: behind a closing, where g has an
+#: infinite slope, the cubic's slope is bounded by this.
+_STEEPEST = 3.0
+
+
+class ForceLog(NamedTuple):
+    """What is known of the forces: the largest so far, the last ones watched, and the jumps.
+
+    `peaks` (17,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value and
+    slope of each force at the last state watched. Rows of `closings` (C, 4) are the number of the last sample before a
+    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (3,) is how many there were, how
+    many of them were touches within a step of a method that does not locate them, and the number of the last sample.
+    """
+
+    peaks: np.ndarray
+    last: np.ndarray
+    closings: np.ndarray
+    met: np.ndarray
+
+
+def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
+    """A log with room for a number of closings; largest forces continue from an earlier log."""
+    peaks, last = (np.zeros(PEAKS), np.zeros((3, 2))) if before is None else (before.peaks, before.last)
+    return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(3, dtype=np.int64))
+
+
+@kernel
+def reach(peaks, row, value):
+    """Raise one largest force to `value`."""
+    if value > peaks[row]:
+        peaks[row] = value
+
+
+@kernel
+def force_beside(slots, y, dy, e, c, event, closed):
+    """Total force of contact c; at the event of contact `event` that one is just closed or just open."""
+    if c != event:
+        return contact_force(slots, y, dy, e, c)
+    if not closed:
+        return 0.0
+    return cut_at_zero(slots.tension, damping(slots.dissipation, TINY) * (dy[c] - dy[c + 1]))
+
+
+@kernel
+def acceleration(slots, y, dy, e, i, event, closed):
+    """v̇ of body i."""
+    if i == 0:
+        return driver_acceleration(slots.driver, y[0])
+    if slots.chain.inverse_mass[i] == 0.0:
+        return 0.0
+    force = force_beside(slots, y, dy, e, i - 1, event, closed) - force_beside(slots, y, dy, e, i, event, closed)
+    return slots.chain.inverse_mass[i] * add_foundation_force(slots.foundation, force, y[i])
+
+
+@kernel
+def force_slope(slots, y, dy, e, c, event, closed):
+    """Ḟ = (3/2) K √δ δ̇ + g'(δ) δ̇² + g(δ) δ̈ of contact c; 0 where it is open."""
+    d, rate = positive_part(overlap(slots.preload, y, c)), dy[c] - dy[c + 1]
+    if c == event:
+        d = TINY if closed else 0.0
+    change = acceleration(slots, y, dy, e, c, event, closed) - acceleration(slots, y, dy, e, c + 1, event, closed)
+    return (1.5 * slots.chain.stiffness[c] * root(d) * rate + damping_slope(slots.dissipation, d) * rate * rate
+            + damping(slots.dissipation, d) * change)
+
+
+@kernel
+def cubic_top(f0, s0, f1, s1, h):
+    """Largest value of the cubic with values f0, f1 and slopes s0, s1 at the ends of a step of size h."""
+    largest = max(f0, f1)
+    if not (s0 > 0.0 and s1 < 0.0):
+        return largest
+    most = _STEEPEST * largest
+    a, b = min(h * s0, most), max(h * s1, -most)
+    x = hermite_turn(f0, a, f1, b)
+    return max(largest, f0 + x * (a + x * (3.0 * (f1 - f0) - 2.0 * a - b + x * (2.0 * (f0 - f1) + a + b))))
+
+
+@kernel
+def follow(log, q, value, slope, h):
+    """Follow force number q to its value at a state that lies h behind the last one."""
+    peaks, last = log.peaks, log.last
+    row = q * OUTPUT
+    reach(peaks, row, cubic_top(last[q, 0], last[q, 1], value, slope, h) if h > 0.0 else value)
+    last[q, 0], last[q, 1] = value, slope
+
+
+@kernel
+def watch_beside(slots, y, dy, e, h, event, closed, log):
+    """Follow the three forces to state y, whose slope is dy, h behind the last one; h = 0 begins anew there."""
+    last = e.size - 1
+    for q in range(2):
+        c = 0 if q == 0 else last
+        value, slope = force_beside(slots, y, dy, e, c, event, closed), np.nan
+        if value > _FAINT * log.peaks[q * OUTPUT]:
+            slope = force_slope(slots, y, dy, e, c, event, closed)
+        follow(log, q, value, slope, h)
+    d = 0.0 if event == last else positive_part(overlap(slots.preload, y, last))
+    stiffness, slope = slots.chain.stiffness[last], np.nan
+    value = elastic_force(stiffness, d)
+    if value > _FAINT * log.peaks[OUTPUT_ELASTIC]:
+        slope = 1.5 * stiffness * root(d) * (dy[last] - dy[last + 1])
+    follow(log, 2, value, slope, h)
+
+
+@inline_llvm
+def watch_state(slots, y, dy, e, h, log):
+    """The same where no contact changes; three values where none of them can be part of a top."""
+    last, peaks = e.size - 1, log.peaks
+    pushed, passed = contact_force(slots, y, dy, e, 0), contact_force(slots, y, dy, e, last)
+    elastic = elastic_force(slots.chain.stiffness[last], positive_part(overlap(slots.preload, y, last)))
+    if (pushed > _FAINT * peaks[INPUT] or passed > _FAINT * peaks[OUTPUT]
+            or elastic > _FAINT * peaks[OUTPUT_ELASTIC]):
+        watch_beside(slots, y, dy, e, h, -1, False, log)
+    else:
+        log.last[0, 0], log.last[1, 0], log.last[2, 0] = pushed, passed, elastic
+        log.last[0, 1] = log.last[1, 1] = log.last[2, 1] = np.nan
+
+
+@kernel
+def watch_event(slots, y, dy, e, h, c, theta, log):
+    """Follow the forces up to the event of contact c at drive phase θ, and begin anew behind it."""
+    rate = dy[c] - dy[c + 1]
+    watch_beside(slots, y, dy, e, h, c, rate < 0.0, log)
+    watch_beside(slots, y, dy, e, 0.0, c, rate > 0.0, log)
+    note_closing(slots.dissipation, rate, c, e.size - 1, theta, log)
+
+
+@inline_numba
+def watch_ends(slots, ends, c, theta, log):
+    """Raise the largest forces at the event of contact c; overlaps and rates are in `ends` (contact_events.py)."""
+    last = slots.chain.stiffness.size - 1
+    for q in range(2):
+        contact = 0 if q == 0 else last
+        d = positive_part(ends[GAP, contact])
+        force = elastic_force(slots.chain.stiffness[contact], d)
+        reach(log.peaks, q * OUTPUT, force + damping(slots.dissipation, d) * ends[RATE, contact])
+        if q == 1:
+            reach(log.peaks, OUTPUT_ELASTIC, force)
+    note_closing(slots.dissipation, ends[RATE, c], c, last, theta, log)
+
+
+@by_slot
+def note_closing(law, rate, c, last, theta, log):
+    """Note the jump of contact c that closes at `rate` at drive phase θ. Absent, and where g(0) = 0: there is none."""
+
+
+@note_closing.of(*JUMP_LAWS)
+def _(law, rate, c, last, theta, log):
+    if rate > 0.0:
+        force = law.coefficient * rate
+        if c == 0:
+            reach(log.peaks, INPUT, force)
+            reach(log.peaks, INPUT_JUMP, force)
+        if c == last:
+            reach(log.peaks, OUTPUT, force)
+            reach(log.peaks, OUTPUT_JUMP, force)
+        place = log.met[0]
+        log.met[0] = place + 1
+        if place < log.closings.shape[0]:
+            row = log.closings[place]
+            row[0], row[1], row[2], row[3] = log.met[2], theta, c, force
+
+
+@by_slot
+def note_closings(law, slots, y, dy, end, end_slope, theta, dtheta, log):
+    """Note the contacts that closed in a located step from y at drive phase θ to `end`. Absent: no force jumps there.
+
+    The step ends just behind an event; one that was too near to its start to be told from it belongs to that.
+    """
+
+
+@note_closings.of(*JUMP_LAWS)
+def _(law, slots, y, dy, end, end_slope, theta, dtheta, log):
+    last = slots.chain.stiffness.size - 1
+    for c in range(last + 1):
+        before, after = overlap(slots.preload, y, c), overlap(slots.preload, end, c)
+        if before <= 0.0 and after > 0.0:
+            if after < -before:
+                note_closing(law, end_slope[c] - end_slope[c + 1], c, last, theta + dtheta, log)
+            else:
+                note_closing(law, dy[c] - dy[c + 1], c, last, theta, log)
+
+
+note_closing.absent_for(*SMOOTH_LAWS)
+note_closings.absent_for(*SMOOTH_LAWS)
+
+
+@inline_llvm
+def closing_rate(before, after, rate, open_rate, own, h):
+    """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
+
+    `rate` is δ̇ before. `open_rate` is δ̇ after without what the contact's own damping took from it since the closing,
+    own·δ. Between the two the rate is a parabola, whose integral is the overlap's own change. For numbers and vectors.
+    """
+    s = before / (before - after)
+    closed = 0.5 * (1.0 - s) * after
+    for _ in range(2):
+        bend = 6.0 * ((after + own * h * closed - before) / h - 0.5 * (rate + open_rate))
+        for _ in range(2):
+            gap = before + h * s * (rate + s * (0.5 * (open_rate - rate + bend) - s * (bend * (1.0 / 3.0))))
+            s = s - gap / (h * (rate + s * (open_rate - rate + bend - s * bend)))
+        there = rate + s * (open_rate - rate + bend - s * bend)
+        left = 1.0 - s
+        # ∫δ over the closed part, over h: the trapezium with its slopes at both ends
+        closed = left * (0.5 * after - left * h * (open_rate - own * after - there) * (1.0 / 12.0))
+    return s, there
+
+
+@inline_llvm
+def brief_touch(before, after, rate, rate_after, h):
+    """λ = 1 times the jump of a touch within a step: √(2 a δ_max) for an overlap with constant acceleration −a.
+
+    The overlap is negative at both ends of the step and turns in between; 0 or a NaN where it does not touch. For
+    numbers and vectors.
+    """
+    fall = (rate - rate_after) / h
+    top = 0.5 * (before + after) + 0.25 * (rate * rate + rate_after * rate_after) / fall
+    return root(clip(2.0 * fall * top))
+
+
+@by_slot
+def end_overlaps(law, slots, y, dy):
+    """Overlap and rate of the first and the last contact at the start of a step. Absent: no force jumps there."""
+    return 0.0
+
+
+@end_overlaps.of(*JUMP_LAWS)
+def _(law, slots, y, dy):
+    last = slots.chain.stiffness.size - 1
+    return (overlap(slots.preload, y, 0), dy[0] - dy[1], overlap(slots.preload, y, last), dy[last] - dy[last + 1])
+
+
+@by_slot
+def watch_crossings(law, slots, before, y, dy, h, theta, dtheta, log):
+    """Note which end contacts closed between two states a step apart, for methods that look for no events.
+
+    `before` are the overlaps and rates of `end_overlaps` at the first of them.
+    """
+
+
+@watch_crossings.of(*JUMP_LAWS)
+def _(law, slots, before, y, dy, h, theta, dtheta, log):
+    last = slots.chain.stiffness.size - 1
+    first_before, first_rate, last_before, last_rate = before
+    if first_before <= 0.0:
+        watch_crossing(law, slots, 0, first_before, first_rate, y, dy, h, theta, dtheta, log)
+    if last_before <= 0.0:
+        watch_crossing(law, slots, last, last_before, last_rate, y, dy, h, theta, dtheta, log)
+
+
+@inline_llvm
+def watch_crossing(law, slots, c, before, rate, y, dy, h, theta, dtheta, log):
+    """Note whether contact c, open at the start of the step, closed in it or touched."""
+    after, rate_after = overlap(slots.preload, y, c), dy[c] - dy[c + 1]
+    if after > 0.0:
+        own = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])
+        s, jump = closing_rate(before, after, rate, rate_after + own * after, own, h)
+        note_closing(law, jump, c, slots.chain.stiffness.size - 1, theta + s * dtheta, log)
+    elif rate > 0.0 and rate_after < 0.0:
+        jump = brief_touch(before, after, rate, rate_after, h)
+        note_closing(law, jump, c, slots.chain.stiffness.size - 1, theta + 0.5 * dtheta, log)
+        log.met[1] += jump > 0.0
+
+
+end_overlaps.absent_for(*SMOOTH_LAWS)
+watch_crossings.absent_for(*SMOOTH_LAWS)

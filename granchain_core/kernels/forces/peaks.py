@@ -1,0 +1,77 @@
+"""The largest value of a force known at equal steps: the top of the quartic through five values around a maximum."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..jit import inline_llvm, kernel
+from ..simd.functions import choose_peak, larger
+from ..simd.vector import load, positive_mask, store
+
+#: Rows of what is remembered of one force: the largest so far, then the last four values, newest first.
+ROWS = 5
+
+#: Largest top of the quartic, over the largest of its values: its neighbours are near (choose_peak).
+HIGHEST = 1.25
+
+#: Where the memories of the three forces start in an array of peaks, and how many values they take.
+INPUT, OUTPUT, OUTPUT_ELASTIC, MEMORY = 0, ROWS, 2 * ROWS, 3 * ROWS
+#: Behind them the largest jumps of input and output force, and the size of the whole.
+INPUT_JUMP, OUTPUT_JUMP, PEAKS = MEMORY, MEMORY + 1, MEMORY + 2
+
+
+@kernel
+def quartic_top(a, b, c, d, e):
+    """Maximum near the middle of the quartic through five equally spaced values, after two Newton steps."""
+    first = (a - e + 8.0 * (d - b)) / 12.0
+    second = (16.0 * (b + d) - a - e - 30.0 * c) / 12.0
+    third = 0.5 * (e - a) + b - d
+    fourth = a + e + 6.0 * c - 4.0 * (b + d)
+    x = 0.0 - first / second
+    slope = first + x * (second + x * (0.5 * third + x * (fourth / 6.0)))
+    x = x - slope / (second + x * (third + x * (0.5 * fourth)))
+    return c + x * (first + x * (0.5 * second + x * (third / 6.0 + x * (fourth / 24.0))))
+
+
+@kernel
+def watch(peaks, row, value):
+    """Follow one force whose memory starts at peaks[row]."""
+    d, c, b, a = peaks[row + 1], peaks[row + 2], peaks[row + 3], peaks[row + 4]
+    if value > peaks[row]:
+        peaks[row] = value
+    if b < c and c >= d:
+        top = choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value))
+        if top > peaks[row]:
+            peaks[row] = top
+    peaks[row + 4], peaks[row + 3], peaks[row + 2], peaks[row + 1] = b, c, d, value
+
+
+@kernel
+def forget(peaks):
+    """Start watching afresh."""
+    for i in range(MEMORY):
+        peaks[i] = -np.inf if i % ROWS == 0 else 0.0
+    peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
+
+
+@kernel
+def next_period(peaks):
+    """Begin a new largest value but keep the last values: a maximum may lie across the end of a period."""
+    for row in range(0, MEMORY, ROWS):
+        peaks[row] = -np.inf
+    peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
+
+
+@inline_llvm
+def watch_lanes(peaks, row, value):
+    """Follow one force in all lanes; its memory starts at row `row` of a (rows, 8) array."""
+    d, c = load(peaks, row + 1), load(peaks, row + 2)
+    b, a = load(peaks, row + 3), load(peaks, row + 4)
+    largest = larger(load(peaks, row), value)
+    if positive_mask(HIGHEST * c - largest) & positive_mask(c - b) & ~positive_mask(d - c) != 0:
+        largest = larger(largest, choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value)))
+    store(peaks, row, largest)
+    store(peaks, row + 4, b)
+    store(peaks, row + 3, c)
+    store(peaks, row + 2, d)
+    store(peaks, row + 1, value)

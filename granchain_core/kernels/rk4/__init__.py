@@ -1,0 +1,1 @@
+"""Runge–Kutta of order 4 with a fixed step, split at contact events: scalar, chain in a register, long chain."""

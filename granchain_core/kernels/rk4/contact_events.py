@@ -1,0 +1,150 @@
+"""Contact events inside a step of fixed size: their times, and the quadrature error of a step beside one.
+
+An overlap is a cubic in between, from its values and rates at the step's two ends. Behind an onset at s = 0 the
+elastic force grows like s^{3/2}, whose integral Simpson's rule (and RK4 with it) misses by a part of h^{5/2}: that
+part is known, because the speed is, and is taken back. So is the same of G ∝ δ^{1+a}, a > 0, in the path.
+"""
+
+from __future__ import annotations
+
+from math import copysign, sqrt
+
+from ..effects.contact import three_halves
+from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power
+from ..jit import by_slot, inline_llvm, inline_numba, kernel
+
+#: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
+#: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
+GAP, RATE, GAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
+#: More contacts than this many changing in one step: the rest of the step is taken whole.
+MOST_SPLITS = 64
+#: An overlap that is none but for its sign.
+TINY = 1e-300
+
+
+@kernel
+def hermite_root(d0, s0, d1, s1, high):
+    """First root in [0, high] of the cubic with values d0, d1 and slopes s0, s1 at 0 and 1, of another sign there."""
+    low = 0.0
+    a = 2.0 * (d0 - d1) + s0 + s1
+    b = 3.0 * (d1 - d0) - 2.0 * s0 - s1
+    x = d0 / (d0 - d1) if high == 1.0 else 0.5 * high
+    for _ in range(40):
+        value = d0 + x * (s0 + x * (b + x * a))
+        if (value > 0.0) == (d0 > 0.0):
+            low = x
+        else:
+            high = x
+        slope = s0 + x * (2.0 * b + 3.0 * a * x)
+        nearer = x - value / slope if slope != 0.0 else low
+        if not (low < nearer < high):
+            nearer = 0.5 * (low + high)
+        if abs(nearer - x) < 1e-12:
+            return nearer
+        x = nearer
+    return x
+
+
+@kernel
+def hermite_turn(d0, s0, d1, s1):
+    """Where the same cubic turns between ends at which its slopes have opposite signs."""
+    a = 2.0 * (d0 - d1) + s0 + s1
+    b = 3.0 * (d1 - d0) - 2.0 * s0 - s1
+    # s0 + 2b x + 3a x² = 0, the root between 0 and 1, without cancellation
+    disc = sqrt(max(0.0, b * b - 3.0 * a * s0))
+    return s0 / (disc - b) if s0 > 0.0 else -s0 / (disc + b)
+
+
+@inline_numba
+def contact_root(d0, s0, d1, s1):
+    """Fraction of a step at which one contact opens or closes; 2 if it does not."""
+    if d0 == 0.0:  # beads that touch: pushed together they close here, and do not where they only part
+        if s0 > 0.0 and d1 > 0.0:
+            return 0.0
+        return 2.0
+    if (d0 > 0.0) != (d1 > 0.0):
+        return hermite_root(d0, s0, d1, s1, 1.0)
+    away = s0 if d0 > 0.0 else -s0
+    back = s1 if d0 > 0.0 else -s1
+    if away >= 0.0 or back <= 0.0:
+        return 2.0
+    x = hermite_turn(d0, s0, d1, s1)
+    if not 0.0 < x < 1.0:
+        return 2.0
+    turned = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
+    if (turned > 0.0) == (d0 > 0.0):
+        return 2.0
+    return hermite_root(d0, s0, d1, s1, x)
+
+
+@kernel
+def first_event(ends, contacts, h):
+    """Fraction of a step of size h at which the first contact opens or closes and that contact; (2, −1) if none."""
+    first, contact = 2.0, -1
+    for c in range(contacts):
+        root = contact_root(ends[GAP, c], h * ends[RATE, c], ends[GAP_END, c], h * ends[RATE_END, c])
+        if root < first:
+            first, contact = root, c
+    return first, contact
+
+
+@kernel
+def reset_corrections(ends):
+    """Reset the accumulated quadrature errors."""
+    for c in range(ends.shape[1]):
+        ends[MOMENTUM_ERROR, c] = 0.0
+        ends[DISPLACEMENT_ERROR, c] = 0.0
+
+
+@inline_numba
+def add_quadrature_errors(law, stiffness, ends, c, h, done):
+    """Contact c changes at the part `done` of a step of size h, at the rate in `ends`.
+
+    Simpson's rule fails over the part of the step on the contact's closed side and over the whole steps beyond it.
+    """
+    rate = ends[RATE, c]
+    ends[GAP, c] = copysign(TINY, rate)  # what the cubic leaves of it is no second event
+    speed, part = abs(rate), 1.0 - done if rate > 0.0 else done
+    ends[MOMENTUM_ERROR, c] += stiffness * speed * sqrt(speed) * h * h * sqrt(h) * three_halves_excess(part)
+    add_displacement_error(law, ends, c, speed, h, part)
+
+
+@inline_llvm
+def simpson_excess(r, p, half, one, inner, middle, far):
+    """What Simpson's rule gives too much for s^p over a part r of a step from 0 and over the two steps after it.
+
+    `half` is 2^{−p}; `one`, `middle` and `far` are s^p at r, r + 1 and r + 2, `inner` its sum at r + 1/2 and r + 3/2.
+    """
+    part = r * (one + 4.0 * half * one)
+    whole = one + 4.0 * inner + 2.0 * middle + far
+    return (part + whole) / 6.0 - 1.0 / (p + 1.0) * (r + 2.0) * far
+
+
+@kernel
+def three_halves_excess(r):
+    """`simpson_excess` of s^{3/2}."""
+    inner = three_halves(r + 0.5) + three_halves(r + 1.5)
+    return simpson_excess(r, 1.5, three_halves(0.5), three_halves(r), inner, three_halves(r + 1.0),
+                          three_halves(r + 2.0))
+
+
+@inline_llvm
+def primitive_excess(law, r):
+    """`simpson_excess` of s^{1+a}."""
+    inner = primitive_power(law, r + 0.5) + primitive_power(law, r + 1.5)
+    return simpson_excess(r, 1.0 + exponent(law), primitive_power(law, 0.5), primitive_power(law, r), inner,
+                          primitive_power(law, r + 1.0), primitive_power(law, r + 2.0))
+
+
+@by_slot
+def add_displacement_error(law, ends, c, speed, h, part):
+    """Note what Simpson's rule gives too much of ∫G dt. Absent, and where G is linear: nothing."""
+
+
+add_displacement_error.absent_for(*JUMP_LAWS)
+
+
+@add_displacement_error.of(*SMOOTH_LAWS)
+def _(law, ends, c, speed, h, part):
+    scale = primitive_factor(law) * law.coefficient * primitive_power(law, speed) * h * primitive_power(law, h)
+    ends[DISPLACEMENT_ERROR, c] += scale * primitive_excess(law, part)

@@ -1,0 +1,171 @@
+"""One chain with SIMD along it: RK4 steps in which no contact opens or closes, eight bodies at a time.
+
+Rows of bodies are blocks of eight; a contact's two bodies come from one block and the next by a shuffle, so that
+every memory access is aligned. The signs of all overlaps are compared from step to step: a step in which one changes
+is not taken here but left, with the state before it, to the scalar method that splits it.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..effects.contact import elastic_force, positive_part
+from ..effects.dissipation import LAWS, damping, primitive
+from ..effects.foundation import add_foundation_force
+from ..effects.preload import batch_overlap
+from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
+from ..jit import by_slot, inline_numba, kernel
+from ..simd.vector import LANES, from_left, from_right, load, positive_mask, splat, store, with_first
+from .step import drive_displacement, drive_velocity
+
+
+class LongChain(NamedTuple):
+    """Workspace in blocks of eight bodies: states (2B, 8) hold B blocks of displacements, then B of w.
+
+    Chain values are padded with zeros: inverse mass, stiffness and static overlap (B, 8). `gap`, `slope` and `elastic`
+    (B, 8) are overlaps, velocities and elastic forces at the last step's start, `signs` (B,) the overlaps' signs.
+    """
+
+    inverse_mass: np.ndarray
+    stiffness: np.ndarray
+    preload: Any
+    now: np.ndarray
+    before: np.ndarray
+    acc: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+    gap: np.ndarray
+    slope: np.ndarray
+    elastic: np.ndarray
+    signs: np.ndarray
+
+
+@inline_numba
+def steps_without_events(along, slots, drive, j, count, dtheta, h, y, peaks):
+    """Take up to `count` steps from half-step index 2j of the drive; how many were taken."""
+    now, before, blocks = along.now, along.before, along.inverse_mass.shape[0]
+    m = slots.chain.inverse_mass.size
+    unpack(y, m, now, blocks)
+    done, first, last = 0, False, False
+    while True:
+        i = 2 * (j + done)
+        changed = first_stage(along, slots, drive_displacement(slots, drive, i, dtheta), h)
+        v0 = drive_velocity(slots, drive, i, dtheta)
+        first_before, last_before = first, last
+        first, last = comes_nearer(along, slots, v0)
+        if done > 0:
+            # one that came nearer and now goes away from zero may have been beyond it in between
+            if changed or (first_before and not first) or (last_before and not last):
+                pack(before, blocks, y, m)
+                return done - 1
+            watch_ends(slots, along, v0, peaks)
+        if done == count:
+            pack(now, blocks, y, m)
+            return done
+        middle, end = drive_displacement(slots, drive, i + 1, dtheta), drive_displacement(slots, drive, i + 2, dtheta)
+        later_stage(along, slots, middle, along.first, along.second, h, 0.5, 1.0 / 3.0)
+        later_stage(along, slots, middle, along.second, along.first, h, 1.0, 1.0 / 3.0)
+        later_stage(along, slots, end, along.first, along.second, h, 0.0, 1.0 / 6.0)
+        for b in range(2 * blocks):
+            store(before, b, load(now, b))
+            store(now, b, load(along.acc, b))
+        done += 1
+
+
+@inline_numba
+def first_stage(along, slots, u0, h):
+    """The slope at the step's start: begins acc and the mid-step state; whether a contact changed since the last."""
+    blocks, law, now = along.inverse_mass.shape[0], slots.dissipation, along.now
+    here, e_before = with_first(load(now, 0), u0), splat(0.0)
+    G_before, changed = primitive(law, e_before), np.int64(0)
+    half, sixth = 0.5 * h, h / 6.0
+    for b in range(blocks):
+        ahead = load(now, b + 1) if b + 1 < blocks else splat(0.0)
+        gap = batch_overlap(along.preload, here, from_right(here, ahead), b)
+        signs = positive_mask(gap)
+        changed |= signs ^ along.signs[b]
+        along.signs[b] = signs
+        d = positive_part(gap)
+        e, G = elastic_force(load(along.stiffness, b), d), primitive(law, d)
+        inverse = load(along.inverse_mass, b)
+        du = long_chain_velocity(law, load(now, blocks + b), inverse, G_before, G)
+        dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
+        store(along.gap, b, gap)
+        store(along.slope, b, du)
+        store(along.elastic, b, e)
+        for row, slope in ((b, du), (blocks + b, dw)):
+            start = load(now, row)
+            store(along.first, row, start + half * slope)
+            store(along.acc, row, start + sixth * slope)
+        here, e_before, G_before = ahead, e, G
+    return changed != 0
+
+
+@kernel
+def later_stage(along, slots, u0, y, out, h, forward, weight):
+    """A later stage at state y: out = now + forward·h·slope, acc += weight·h·slope."""
+    blocks, law, now = along.inverse_mass.shape[0], slots.dissipation, along.now
+    here, e_before = with_first(load(y, 0), u0), splat(0.0)
+    G_before = primitive(law, e_before)
+    reach, share = forward * h, weight * h
+    for b in range(blocks):
+        ahead = load(y, b + 1) if b + 1 < blocks else splat(0.0)
+        d = positive_part(batch_overlap(along.preload, here, from_right(here, ahead), b))
+        e, G = elastic_force(load(along.stiffness, b), d), primitive(law, d)
+        inverse = load(along.inverse_mass, b)
+        du = long_chain_velocity(law, load(y, blocks + b), inverse, G_before, G)
+        dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
+        for row, slope in ((b, du), (blocks + b, dw)):
+            store(out, row, load(now, row) + reach * slope)
+            store(along.acc, row, load(along.acc, row) + share * slope)
+        here, e_before, G_before = ahead, e, G
+
+
+@by_slot
+def long_chain_velocity(law, w, inverse_mass, before, G):
+    """v = w + (G_{i-1} − G_i)/m for a block of bodies."""
+    return w
+
+
+@long_chain_velocity.of(*LAWS)
+def _(law, w, inverse_mass, before, G):
+    return w + inverse_mass * (from_left(before, G) - G)
+
+
+@inline_numba
+def comes_nearer(along, slots, v0):
+    """Whether the overlaps of the first and of the last contact move towards zero at the last step's start."""
+    last = slots.chain.stiffness.size - 1
+    first_gap, last_gap = along.gap[0, 0], along.gap[last // LANES, last % LANES]
+    first_rate, last_rate = v0 - along.slope[0, 1], along.slope[last // LANES, last % LANES]
+    return (first_rate > 0.0) != (first_gap > 0.0), (last_rate > 0.0) != (last_gap > 0.0)
+
+
+@kernel
+def watch_ends(slots, along, v0, peaks):
+    """Follow input force, output force and its elastic part at the last step's start."""
+    last = slots.chain.stiffness.size - 1
+    block, lane = last // LANES, last % LANES
+    d = positive_part(along.gap[0, 0])
+    watch(peaks, INPUT, along.elastic[0, 0] + damping(slots.dissipation, d) * (v0 - along.slope[0, 1]))
+    d, elastic = positive_part(along.gap[block, lane]), along.elastic[block, lane]
+    watch(peaks, OUTPUT, elastic + damping(slots.dissipation, d) * along.slope[block, lane])
+    watch(peaks, OUTPUT_ELASTIC, elastic)
+
+
+@inline_numba
+def unpack(y, m, blocked, blocks):
+    """Two rows of m bodies into two rows of blocks."""
+    for row in range(2):
+        for i in range(m):
+            blocked[row * blocks + i // LANES, i % LANES] = y[row * m + i]
+
+
+@kernel
+def pack(blocked, blocks, y, m):
+    """Two rows of blocks back into two rows of m bodies."""
+    for row in range(2):
+        for i in range(m):
+            y[row * m + i] = blocked[row * blocks + i // LANES, i % LANES]

@@ -1,0 +1,119 @@
+"""Runs of a fixed-step method: whole periods, or samples, with the largest forces between them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..effects.contact import elastic_force, positive_part
+from ..effects.preload import overlap
+from ..equations.motion import contact_force, copy, motion
+from ..forces.largest import watch_state
+from ..forces.peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
+from ..jit import by_slot_inlined, kernel
+from ..samples import first_not_finite, keep, keep_strobe
+from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS
+from .long_chain import LongChain, steps_without_events
+from .short_chain import ShortChain
+from .short_chain_steps import run_short_chain
+from .step import PATIENCE, drive_displacement, drive_velocity, step
+
+
+@by_slot_inlined
+def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+    """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
+
+    The stop flag is asked often enough to end within milliseconds; the steps are then incomplete.
+    """
+    for i in range(j, j + count):
+        left = step(method, slots, drive, i, i * dtheta, dtheta, h, y, stages, log, counts)
+        watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
+        if i % PATIENCE == 0 and stop[0] != 0:
+            break
+
+
+@advance.of(ShortChain)
+def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+    run_short_chain(along, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, log, counts, stop)
+
+
+@advance.of(LongChain)
+def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+    done = 0
+    while done < count and stop[0] == 0:
+        smooth = steps_without_events(along, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y,
+                                      log.peaks)
+        if smooth > 0:
+            done += smooth
+            counts[STEPS] += smooth
+            counts[EVALUATIONS] += 4 * smooth
+            i = 2 * (j + done)
+            u0, v0 = drive_displacement(slots, drive, i, dtheta), drive_velocity(slots, drive, i, dtheta)
+            motion(slots, u0, v0, y, stages.k[0], stages.forces)
+        if done < count:
+            watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
+            left = step(method, slots, drive, j + done, (j + done) * dtheta, dtheta, h, y, stages, log, counts)
+            watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
+            watch_equal(slots, y, stages.k[0], stages.forces.e, log.peaks)
+            done += 1
+
+
+@kernel
+def watch_equal(slots, y, dy, e, peaks):
+    """Follow the three forces at one of equal steps (forces/peaks.py)."""
+    last = e.size - 1
+    watch(peaks, INPUT, contact_force(slots, y, dy, e, 0))
+    watch(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
+    d = positive_part(overlap(slots.preload, y, last))
+    watch(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
+
+
+@kernel
+def run_periods(method, slots, drive, h, y, stages, strobes, log, tops, counts, stop):
+    """Run whole periods with a fixed-step method, keeping the state and the largest forces of each.
+
+    strobes (P+1, 2, N+2) hold displacement and velocity, the start first; tops (P, 3) in the order of `peaks`.
+    Returns (status, periods done).
+    """
+    n = method.steps_per_period
+    dtheta = 2.0 * np.pi / n
+    m = slots.chain.inverse_mass.size
+    keep_strobe(y, stages.k[0], strobes[0])
+    watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
+    for p in range(tops.shape[0]):
+        if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
+            return NOT_FINITE, p
+        next_period(log.peaks)
+        advance(stages.along, method, slots, drive, 0, n, dtheta, h, y, stages, log, counts, stop)
+        if stop[0] != 0:
+            return CANCELLED, p
+        if first_not_finite(y, m) != 0:
+            return NOT_FINITE, p
+        keep_strobe(y, stages.k[0], strobes[p + 1])
+        copy(log.peaks[:MEMORY:ROWS], tops[p])
+    return DONE, tops.shape[0]
+
+
+@kernel
+def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples, log, counts, stop):
+    """Run with a fixed-step method from step index `first_step` of the period, keeping every stride-th state.
+
+    Row 0 of `samples` is the state it starts from. Closings are noted in `log`. Returns (status, rows filled).
+    """
+    n = method.steps_per_period
+    dtheta = 2.0 * np.pi / n
+    m = slots.chain.inverse_mass.size
+    j = first_step
+    watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
+    keep(slots, 0, y, stages.k[0], stages.forces.e, samples)
+    for row in range(1, samples.displacement.shape[0]):
+        if first_not_finite(y, m) != 0:
+            return NOT_FINITE, row - 1
+        log.met[2] = row - 1
+        advance(stages.along, method, slots, drive, j, stride, dtheta, h, y, stages, log, counts, stop)
+        j = 0 if j + stride == n else j + stride
+        if stop[0] != 0:
+            return CANCELLED, row
+        if first_not_finite(y, m) != 0:
+            return NOT_FINITE, row
+        keep(slots, row, y, stages.k[0], stages.forces.e, samples)
+    return DONE, samples.displacement.shape[0]

@@ -1,0 +1,204 @@
+"""A short chain in one vector: all bodies in the lanes of a register pair, RK4 split at contact events.
+
+Body i is lane i of the displacements and of w, contact c lane c of the overlaps; bodies beyond the wall have no
+mass to move and contacts beyond it no stiffness. A step is three new slopes and the slope at its end, which is the
+next step's first: nothing is evaluated twice, and nothing goes through memory but the forces at the two ends.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..effects.contact import positive_part
+from ..effects.dissipation import LAWS, shape
+from ..effects.foundation import add_foundation_force
+from ..effects.preload import row_overlap, row_values
+from ..jit import by_slot, inline_llvm
+from ..simd.functions import root
+from ..simd.vector import blank, from_left, from_right, load, load16, load32, store, with_first
+from .contact_events import GAP, RATE
+
+
+class Width8(NamedTuple):
+    """Up to 8 bodies."""
+
+    lanes: int = 8
+
+
+class Width16(NamedTuple):
+    """Up to 16 bodies."""
+
+    lanes: int = 16
+
+
+class Width32(NamedTuple):
+    """Up to 32 bodies."""
+
+    lanes: int = 32
+
+
+#: The widths there are, by their number of bodies.
+WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
+
+#: A step's beginning and its end in the workspace, and what is kept of each, one row a vector.
+BEGIN, END = 0, 1
+U, W, DU, NET_FORCE, ELASTIC, KEPT = range(6)
+#: Steps whose forces are looked through together.
+BLOCK = 32
+
+
+class ShortChain(NamedTuple):
+    """Workspace of a chain of up to `width` bodies: values padded with zeros (1, width), `rows` (10, width) of states.
+
+    `ends` (6, width) are overlaps and rates at the ends of a step that is split (contact_events.py), `forces` (3, 32)
+    input force, output force and its elastic part of the last steps.
+    """
+
+    width: Any
+    inverse_mass: np.ndarray
+    stiffness: np.ndarray
+    preload: Any
+    rows: np.ndarray
+    ends: np.ndarray
+    forces: np.ndarray
+
+
+class ChainValues(NamedTuple):
+    """The chain's values as vectors, and its slots."""
+
+    inverse_mass: Any
+    damping_over_mass: Any
+    stiffness: Any
+    dissipation: Any
+    foundation: Any
+    preload: Any
+
+
+class ChainState(NamedTuple):
+    """The chain at one instant: state, velocities, forces on the beads, overlaps, their rates, elastic forces."""
+
+    u: Any
+    w: Any
+    du: Any
+    push: Any
+    gap: Any
+    rate: Any
+    elastic: Any
+
+
+@by_slot
+def load_row(width, array, row):
+    """One row of a (rows, width) array."""
+    raise NotImplementedError
+
+
+@load_row.of(Width8)
+def _(width, array, row):
+    return load(array, row)
+
+
+@load_row.of(Width16)
+def _(width, array, row):
+    return load16(array, row)
+
+
+@load_row.of(Width32)
+def _(width, array, row):
+    return load32(array, row)
+
+
+@by_slot
+def over_masses(law, inverse_mass):
+    """What multiplies differences of shapes of G: its coefficient over the masses. Absent: nothing does."""
+    return None
+
+
+@over_masses.of(*LAWS)
+def _(law, inverse_mass):
+    return law.coefficient * inverse_mass
+
+
+@by_slot
+def row_velocity(law, w, damping_over_mass, shapes):
+    """v = w + (G_{i-1} − G_i)/m of all beads, from the shapes of G."""
+    return w
+
+
+@row_velocity.of(*LAWS)
+def _(law, w, damping_over_mass, shapes):
+    return w + damping_over_mass * (from_left(blank(shapes), shapes) - shapes)
+
+
+@inline_llvm
+def row_of(wide, slots):
+    """The chain's values in registers."""
+    width = wide.width
+    inverse_mass = load_row(width, wide.inverse_mass, 0)
+    return ChainValues(inverse_mass, over_masses(slots.dissipation, inverse_mass), load_row(width, wide.stiffness, 0),
+               slots.dissipation, slots.foundation, row_values(wide.preload, load_row, width))
+
+
+@inline_llvm
+def row_slope(row, u0, u, w):
+    """Overlaps, elastic forces, velocities and forces on the beads; the driver's own velocity is left at zero."""
+    here = with_first(u, u0)
+    gap = row_overlap(row.preload, here, from_right(here, blank(here)))
+    d = positive_part(gap)
+    r = root(d)
+    e = row.stiffness * d * r
+    du = row_velocity(row.dissipation, w, row.damping_over_mass, shape(row.dissipation, d, r))
+    return gap, e, du, add_foundation_force(row.foundation, from_left(blank(e), e) - e, here)
+
+
+@inline_llvm
+def row_at(row, u0, v0, u, w):
+    """The chain in state (u, w) with the driver at u0, moving at v0."""
+    gap, e, du, push = row_slope(row, u0, u, w)
+    moving = with_first(du, v0)
+    return ChainState(u, w, du, push, gap, moving - from_right(moving, blank(moving)), e)
+
+
+@inline_llvm
+def row_step(row, ua, ub, vb, h, x, path, impulse):
+    """One RK4 step from x; the driver at ua at mid-step, at ub, moving at vb, at the end.
+
+    `path` and `impulse` are what is added to displacements and w at the end.
+    """
+    half, sixth = 0.5 * h, h / 6.0
+    half_m, whole_m, sixth_m = half * row.inverse_mass, h * row.inverse_mass, sixth * row.inverse_mass
+    _, _, du2, push2 = row_slope(row, ua, x.u + half * x.du, x.w + half_m * x.push)
+    _, _, du3, push3 = row_slope(row, ua, x.u + half * du2, x.w + half_m * push2)
+    _, _, du4, push4 = row_slope(row, ub, x.u + h * du3, x.w + whole_m * push3)
+    return row_at(row, ub, vb, x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + path,
+                  x.w + sixth_m * (x.push + push4 + 2.0 * (push2 + push3)) + impulse)
+
+
+@inline_llvm
+def store_state(wide, end, x):
+    """Write the chain at a step's beginning or end into the workspace."""
+    first = KEPT * end
+    store(wide.rows, first + U, x.u)
+    store(wide.rows, first + W, x.w)
+    store(wide.rows, first + DU, x.du)
+    store(wide.rows, first + NET_FORCE, x.push)
+    store(wide.rows, first + ELASTIC, x.elastic)
+    store(wide.ends, 2 * end + GAP, x.gap)
+    store(wide.ends, 2 * end + RATE, x.rate)
+
+
+@inline_llvm
+def load_state(wide, end):
+    """The chain at a step's beginning or end from the workspace."""
+    width, rows, first = wide.width, wide.rows, KEPT * end
+    return ChainState(
+        load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
+        load_row(width, rows, first + NET_FORCE), load_row(width, wide.ends, 2 * end + GAP),
+        load_row(width, wide.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
+
+
+@inline_llvm
+def row_correction(row, excess):
+    """Correction of the beads' displacements or w, from the quadrature errors of their contacts."""
+    return row.inverse_mass * (excess - from_left(blank(excess), excess))

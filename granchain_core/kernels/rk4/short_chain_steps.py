@@ -1,0 +1,143 @@
+"""Steps of a short chain in one vector: whole ones, those split at contact events, and the forces at the two ends."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..effects.contact import positive_part
+from ..effects.dissipation import damping
+from ..effects.driver import driver_displacement, driver_velocity
+from ..forces.largest import watch_ends
+from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
+from ..jit import inline_llvm, inline_numba, kernel
+from ..simd.functions import larger
+from ..simd.subnormals import flush_subnormals, restore_subnormals
+from ..simd.vector import at, blank, positive_mask, store
+from ..status import EVALUATIONS, EVENTS, STEPS
+from .contact_events import (
+    DISPLACEMENT_ERROR,
+    GAP,
+    MOMENTUM_ERROR,
+    MOST_SPLITS,
+    RATE,
+    add_quadrature_errors,
+    first_event,
+    reset_corrections,
+)
+from .short_chain import (
+    BEGIN,
+    BLOCK,
+    DU,
+    ELASTIC,
+    END,
+    NET_FORCE,
+    U,
+    W,
+    load_row,
+    load_state,
+    row_at,
+    row_correction,
+    row_of,
+    row_step,
+    store_state,
+)
+from .step import drive_displacement, drive_velocity
+
+
+@inline_numba
+def split_row(wide, slots, theta, dtheta, u_end, v_end, h, log, counts):
+    """Repeat the step in the workspace from contact event to contact event; its end is written there anew."""
+    ends, row, driver, done = wide.ends, row_of(wide, slots), slots.driver, 0.0
+    reset_corrections(ends)
+    for _ in range(MOST_SPLITS):
+        first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
+        if first > 1.0:
+            return
+        part = first * (1.0 - done)
+        middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
+        start = load_state(wide, BEGIN)
+        event = row_step(row, driver_displacement(driver, middle), driver_displacement(driver, there),
+                         driver_velocity(driver, there), h * part, start, blank(start.u), blank(start.w))
+        store_state(wide, BEGIN, event)
+        done += part
+        add_quadrature_errors(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
+        watch_ends(slots, ends, contact, there, log)
+        middle = theta + dtheta * 0.5 * (1.0 + done)
+        end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
+                       row_correction(row, load_row(wide.width, ends, DISPLACEMENT_ERROR)),
+                       row_correction(row, load_row(wide.width, ends, MOMENTUM_ERROR)))
+        store_state(wide, END, end)
+        counts[EVALUATIONS] += 8
+        counts[EVENTS] += 1
+
+
+@inline_llvm
+def keep_forces(wide, row, last, k, x):
+    """Write input force, output force and its elastic part at step k of a block; returns them."""
+    store(wide.ends, GAP, x.gap)
+    store(wide.ends, RATE, x.rate)
+    store(wide.rows, ELASTIC, x.elastic)
+    gap, rate, elastic = wide.ends[GAP, last], wide.ends[RATE, last], wide.rows[ELASTIC, last]
+    pushed = at(x.elastic, 0) + damping(row.dissipation, positive_part(at(x.gap, 0))) * at(x.rate, 0)
+    passed = elastic + damping(row.dissipation, positive_part(gap)) * rate
+    wide.forces[0, k], wide.forces[1, k], wide.forces[2, k] = pushed, passed, elastic
+    return pushed, passed, elastic
+
+
+@kernel
+def watch_block(values, count, largest, peaks, first):
+    """Follow one force through the steps of a block; step by step only where a largest value may be among them."""
+    skipped = 0 if HIGHEST * largest > peaks[first] else max(0, count - 4)
+    for k in range(skipped, count):
+        watch(peaks, first, values[k])
+
+
+@inline_numba
+def run_short_chain(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, counts, stop):
+    """Take `count` steps from step index j of the period, slope dy and forces e at the end included.
+
+    The stop flag leaves them incomplete.
+    """
+    rows, row, before = wide.rows, row_of(wide, slots), flush_subnormals()
+    m = slots.chain.inverse_mass.size
+    for i in range(m):
+        rows[U, i], rows[W, i] = y[i], y[m + i]
+    x = row_at(row, drive_displacement(slots, drive, 2 * j, dtheta), drive_velocity(slots, drive, 2 * j, dtheta),
+               load_row(wide.width, rows, U), load_row(wide.width, rows, W))
+    closed, rising, nothing = positive_mask(x.gap), positive_mask(x.rate), blank(x.w)
+    for first in range(j, j + count, BLOCK):
+        block = min(BLOCK, j + count - first)
+        top_in, top_out, top_elastic = -np.inf, -np.inf, -np.inf
+        for k in range(block):
+            i = 2 * (first + k)
+            ua, ub = drive_displacement(slots, drive, i + 1, dtheta), drive_displacement(slots, drive, i + 2, dtheta)
+            vb = drive_velocity(slots, drive, i + 2, dtheta)
+            end = row_step(row, ua, ub, vb, h, x, nothing, nothing)
+            closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
+            # another sign, or moved towards zero at first and away from it at last
+            if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
+                store_state(wide, BEGIN, x)
+                store_state(wide, END, end)
+                split_row(wide, slots, (first + k) * dtheta, dtheta, ub, vb, h, log, counts)
+                end = load_state(wide, END)
+                closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
+            x, closed, rising = end, closed_after, rising_after
+            pushed, passed, elastic = keep_forces(wide, row, m - 2, k, x)
+            top_in, top_out = larger(top_in, pushed), larger(top_out, passed)
+            top_elastic = larger(top_elastic, elastic)
+        watch_block(wide.forces[0], block, top_in, log.peaks, INPUT)
+        watch_block(wide.forces[1], block, top_out, log.peaks, OUTPUT)
+        watch_block(wide.forces[2], block, top_elastic, log.peaks, OUTPUT_ELASTIC)
+        if stop[0] != 0:
+            break
+    restore_subnormals(before)
+    counts[STEPS] += count
+    counts[EVALUATIONS] += 4 * count
+    store_state(wide, BEGIN, x)
+    for i in range(1, m - 1):
+        y[i], y[m + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
+        dy[m + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
+        e[i] = rows[ELASTIC, i]
+    e[0] = rows[ELASTIC, 0]
+    y[0] = drive_displacement(slots, drive, 2 * (j + count), dtheta)
+    dy[0] = drive_velocity(slots, drive, 2 * (j + count), dtheta)

@@ -1,0 +1,215 @@
+"""Fixed-step methods: classical Runge–Kutta of order 4 in w, plain or with its step split at contact events.
+
+The drive phase comes from an integer step count: `drive` holds (u_0, v_0) at every half step of one period, or is
+empty if a period has too many steps for it, and the driver is evaluated instead.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..effects.balance import Balance
+from ..effects.driver import driver_displacement, driver_velocity
+from ..effects.preload import overlap
+from ..equations.motion import copy, motion
+from ..forces.largest import end_overlaps, watch_crossings, watch_event
+from ..jit import by_slot, by_slot_inlined, inline_numba, kernel
+from ..status import EVALUATIONS, EVENTS, STEPS
+from .contact_events import (
+    DISPLACEMENT_ERROR,
+    GAP,
+    GAP_END,
+    MOMENTUM_ERROR,
+    MOST_SPLITS,
+    RATE,
+    RATE_END,
+    add_quadrature_errors,
+    first_event,
+    reset_corrections,
+)
+
+
+class Rk4(NamedTuple):
+    """Method slot: RK4 in w without looking for events; order 2 at the kinks of opening and closing contacts."""
+
+    steps_per_period: int
+
+
+class Rk4Split(NamedTuple):
+    """Method slot: RK4 in w whose step is split where a contact opens or closes."""
+
+    steps_per_period: int
+
+
+class Stages(NamedTuple):
+    """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays.
+
+    `ends` (6, N+1) are overlaps and rates at the ends of a step that is split (contact_events.py).
+    `along` is the workspace of steps with SIMD along the chain (long_chain.py), None where the scene or method cannot.
+    """
+
+    k: np.ndarray
+    stage: np.ndarray
+    end: np.ndarray
+    ends: np.ndarray
+    forces: Any
+    along: Any
+
+
+#: Steps after which the stop flag is asked at the latest.
+PATIENCE = 4096
+
+
+@kernel
+def drive_displacement(slots, drive, i, dtheta):
+    """u_0 at half-step index i of the period."""
+    return drive[i, 0] if drive.shape[0] > 0 else driver_displacement(slots.driver, 0.5 * dtheta * i)
+
+
+@kernel
+def drive_velocity(slots, drive, i, dtheta):
+    """v_0 at half-step index i of the period."""
+    return drive[i, 1] if drive.shape[0] > 0 else driver_velocity(slots.driver, 0.5 * dtheta * i)
+
+
+@kernel
+def rk4(slots, ua, va, ub, vb, h, y, stages):
+    """One RK4 step from y, whose slope is stages.k[0], to stages.end; (u, v)_a at mid-step, _b at its end."""
+    k, stage, end, forces = stages.k, stages.stage, stages.end, stages.forces
+    for i in range(y.size):
+        stage[i] = y[i] + 0.5 * h * k[0, i]
+    motion(slots, ua, va, stage, k[1], forces)
+    for i in range(y.size):
+        stage[i] = y[i] + 0.5 * h * k[1, i]
+    motion(slots, ua, va, stage, k[2], forces)
+    for i in range(y.size):
+        stage[i] = y[i] + h * k[2, i]
+    motion(slots, ub, vb, stage, k[3], forces)
+    for i in range(y.size):
+        end[i] = y[i] + h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
+
+
+@inline_numba
+def may_change(slots, y, slope, end, end_slope):
+    """Whether a contact may open or close within the step: its overlap has another sign at the end, or turned.
+
+    An overlap that moves towards zero at first and away from it at last may have been beyond in between.
+    """
+    changed = 0
+    for c in range(slots.chain.stiffness.size):
+        before, after = overlap(slots.preload, y, c) > 0.0, overlap(slots.preload, end, c) > 0.0
+        rising, risen = slope[c] - slope[c + 1] > 0.0, end_slope[c] - end_slope[c + 1] > 0.0
+        changed += (before != after) or (rising != before and risen == before)
+    return changed > 0
+
+
+@kernel
+def keep_overlaps(slots, y, slope, ends, overlaps, rates):
+    """Overlaps and their rates at one end of a step."""
+    for c in range(slots.chain.stiffness.size):
+        ends[overlaps, c] = overlap(slots.preload, y, c)
+        ends[rates, c] = slope[c] - slope[c + 1]
+
+
+@kernel
+def correct_state(slots, ends, v0, y):
+    """Subtract the quadrature errors beside contact events from y; the driver moves at v0."""
+    inverse_mass = slots.chain.inverse_mass
+    m = inverse_mass.size
+    for i in range(1, m - 1):
+        y[i] += inverse_mass[i] * (ends[DISPLACEMENT_ERROR, i] - ends[DISPLACEMENT_ERROR, i - 1])
+        y[m + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR, i] - ends[MOMENTUM_ERROR, i - 1])
+    correct_work(slots.balance, ends[MOMENTUM_ERROR, 0] * v0, y)
+
+
+@by_slot
+def correct_work(balance, excess, y):
+    """Subtract the error of its contact's impulse from the driver's work. Absent: no work is recorded."""
+
+
+@correct_work.of(Balance)
+def _(balance, excess, y):
+    y[y.size - 2] -= excess
+
+
+@by_slot_inlined
+def step(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
+    """Advance y by one step from half-step index 2j of the drive table; slope in stages.k[0] before and after.
+
+    What happens to the forces inside the step is written to `log`. Returns how far behind the last state at which they
+    were followed the step ends.
+    """
+    raise NotImplementedError
+
+
+@kernel
+def whole_step(slots, drive, j, dtheta, h, y, stages):
+    """One RK4 step from half-step index 2j to stages.end; returns the driver's displacement and velocity there."""
+    ua, va = drive_displacement(slots, drive, 2 * j + 1, dtheta), drive_velocity(slots, drive, 2 * j + 1, dtheta)
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
+    rk4(slots, ua, va, ub, vb, h, y, stages)
+    return ub, vb
+
+
+@step.of(Rk4)
+def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
+    before = end_overlaps(slots.dissipation, slots, y, stages.k[0])
+    ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
+    copy(stages.end, y)
+    motion(slots, ub, vb, y, stages.k[0], stages.forces)
+    watch_crossings(slots.dissipation, slots, before, y, stages.k[0], h, theta, dtheta, log)
+    counts[STEPS] += 1
+    counts[EVALUATIONS] += 4
+    return h
+
+
+@step.of(Rk4Split)
+def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
+    ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
+    k, end, left = stages.k, stages.end, h
+    motion(slots, ub, vb, end, k[3], stages.forces)
+    counts[STEPS] += 1
+    counts[EVALUATIONS] += 4
+    if may_change(slots, y, k[0], end, k[3]):
+        left = split(slots, theta, dtheta, ub, vb, h, y, stages, log, counts)
+    for i in range(y.size):
+        y[i], k[0, i] = end[i], k[3, i]
+    return left
+
+
+@kernel
+def split(slots, theta, dtheta, u_end, v_end, h, y, stages, log, counts):
+    """Repeat a step in which contacts change from event to event; leaves its end in stages.end.
+
+    Returns how far behind the last event the step ends.
+    """
+    ends, end, k = stages.ends, stages.end, stages.k
+    reset_corrections(ends)
+    keep_overlaps(slots, y, k[0], ends, GAP, RATE)
+    done = 0.0
+    for _ in range(MOST_SPLITS):
+        keep_overlaps(slots, end, k[3], ends, GAP_END, RATE_END)
+        first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
+        if first > 1.0:
+            break
+        part = first * (1.0 - done)
+        middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
+        u, v = driver_displacement(slots.driver, there), driver_velocity(slots.driver, there)
+        rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
+            u, v, h * part, y, stages)
+        copy(end, y)
+        motion(slots, u, v, y, k[0], stages.forces)
+        done += part
+        keep_overlaps(slots, y, k[0], ends, GAP, RATE)
+        watch_event(slots, y, k[0], stages.forces.e, h * part, contact, there, log)
+        add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
+        middle = theta + dtheta * 0.5 * (1.0 + done)
+        rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
+            u_end, v_end, h * (1.0 - done), y, stages)
+        correct_state(slots, ends, v_end, end)
+        motion(slots, u_end, v_end, end, k[3], stages.forces)
+        counts[EVALUATIONS] += 8
+        counts[EVENTS] += 1
+    return h * (1.0 - done)

@@ -1,0 +1,65 @@
+"""What is kept of a motion: samples, states a period apart, and the first number that is not finite."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .effects.balance import Balance, account_ends
+from .equations.motion import contact_force, stored_energy
+from .jit import by_slot, kernel
+
+
+class Samples(NamedTuple):
+    """Recorded motion in scaled units: displacement and velocity (T, N), force (T, N+1), energy (T, 3) or None.
+
+    The energy columns are stored energy, work of the driver, energy lost.
+    """
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    force: np.ndarray
+    energy: Any
+
+
+@kernel
+def keep(slots, row, y, dy, e, samples):
+    """Write one sample of state y, whose slope is dy and whose forces are in e."""
+    n = samples.displacement.shape[1]
+    for i in range(n):
+        samples.displacement[row, i] = y[i + 1]
+        samples.velocity[row, i] = dy[i + 1]
+    for c in range(n + 1):
+        samples.force[row, c] = contact_force(slots, y, dy, e, c)
+    keep_account(slots.balance, slots, row, y, dy, samples)
+
+
+@by_slot
+def keep_account(balance, slots, row, y, dy, samples):
+    """Write stored energy, work and loss of one sample. Absent: there is no account and no array for it."""
+
+
+@keep_account.of(Balance)
+def _(balance, slots, row, y, dy, samples):
+    samples.energy[row, 0] = stored_energy(slots, y, dy)
+    work, lost = account_ends(slots, y, dy)
+    samples.energy[row, 1] = y[y.size - 2] + work
+    samples.energy[row, 2] = y[y.size - 1] + lost
+
+
+@kernel
+def first_not_finite(y, m):
+    """Number of the first bead whose displacement or w is not finite, or 0."""
+    for i in range(1, m - 1):
+        if not (np.isfinite(y[i]) and np.isfinite(y[m + i])):
+            return i
+    return 0
+
+
+@kernel
+def keep_strobe(y, dy, strobe):
+    """Displacements and velocities of the beads at one instant; driver and wall stay zero."""
+    for i in range(1, strobe.shape[1] - 1):
+        strobe[0, i] = y[i]
+        strobe[1, i] = dy[i]

@@ -1,0 +1,1 @@
+"""Vectors of doubles as Numba types, functions of them, and subnormal numbers."""

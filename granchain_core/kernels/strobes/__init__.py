@@ -1,0 +1,1 @@
+"""Decisions on states a period apart: is the motion periodic, and where does it go."""

@@ -1,0 +1,67 @@
+"""Where a decaying sequence of states leads: reduced rank extrapolation.
+
+Near its orbit the stroboscopic map is linear, x_{k+1} − x* = M (x_k − x*). With the differences d_j = x_{j+1} − x_j the
+weights ξ that make d_0 + Σ ξ_j (d_{j+1} − d_j) least give x* ≈ x_0 + Σ ξ_j d_j: the slowest modes are taken out.
+Source: Eddy 1979; Sidi, Vector Extrapolation Methods (2017), chapter 2, by modified Gram–Schmidt.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from ..jit import kernel
+
+#: Differences used; as many slow modes less one are removed.
+ORBITS = 8
+#: A second difference of which less than this is left beside the earlier ones says nothing new.
+_DEPENDENT = 1e-9
+
+
+@kernel
+def dot(a, b):
+    """Scalar product."""
+    total = 0.0
+    for i in range(a.size):
+        total += a[i] * b[i]
+    return total
+
+
+@kernel
+def subtract(a, factor, b):
+    """a −= factor·b."""
+    for i in range(a.size):
+        a[i] -= factor * b[i]
+
+
+@kernel
+def reduced_rank(states, basis, triangle, limit):
+    """The limit (2, m) of states (k + 1, 2, m); basis (k, 2m) and triangle (k, k) are workspaces."""
+    count, m = states.shape[0] - 2, states.shape[2]
+    residual, weights = basis[count], triangle[count]
+    for q in range(2):
+        for i in range(m):
+            residual[q * m + i] = states[0, q, i] - states[1, q, i]
+            for j in range(count):
+                basis[j, q * m + i] = states[j + 2, q, i] - 2.0 * states[j + 1, q, i] + states[j, q, i]
+    for j in range(count):
+        size = sqrt(dot(basis[j], basis[j]))
+        for k in range(j):
+            triangle[k, j] = dot(basis[k], basis[j])
+            subtract(basis[j], triangle[k, j], basis[k])
+        left = sqrt(dot(basis[j], basis[j]))
+        triangle[j, j] = left if left > _DEPENDENT * size else 0.0
+        scale = 1.0 / left if left > _DEPENDENT * size else 0.0
+        for i in range(2 * m):
+            basis[j, i] *= scale
+        weights[j] = dot(basis[j], residual)
+        subtract(residual, weights[j], basis[j])
+    for j in range(count - 1, -1, -1):
+        for k in range(j + 1, count):
+            weights[j] -= triangle[j, k] * weights[k]
+        weights[j] = weights[j] / triangle[j, j] if triangle[j, j] > 0.0 else 0.0
+    for q in range(2):
+        for i in range(m):
+            value = states[0, q, i]
+            for j in range(count):
+                value += weights[j] * (states[j + 1, q, i] - states[j, q, i])
+            limit[q, i] = value

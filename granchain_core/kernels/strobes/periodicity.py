@@ -1,0 +1,180 @@
+"""Decisions on stroboscopic states, compiled because a curve takes thousands: changes, decay, the shortest period.
+
+States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one a drive period; all changes are
+relative to the largest of either in the record.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..jit import kernel
+
+#: Longest period that is tested, in drive periods, and the least number of changes that give its decay.
+LONGEST_PERIOD, LEAST_WINDOW = 16, 8
+#: A state is on its orbit when its distance bound, relative to the largest displacement and velocity, is below this.
+SETTLED_DISTANCE = 1e-6
+#: Changes below this are rounding of a fixed-step map.
+ROUNDING = 1e-12
+#: A change larger than this cannot have a distance bound that small: nothing decays a thousandfold in one period.
+_FAR = 1e-3
+#: A change this much smaller than the required distance is accepted without a steady rate: a slow mode below it
+#: would have to decay a hundred times more slowly than what is observed.
+_DEEP = 1e-2
+#: A change over q periods that decays faster than this, per q periods, is going to zero and not to a longer orbit's.
+_APPROACHING = 0.97
+#: Changes below this may be extrapolated (kernels/strobes/extrapolation.py).
+_WORTH_A_JUMP = 1e-2
+
+
+@kernel
+def largest_of(strobes, scale):
+    """Largest displacement and velocity of a record into `scale` (2,); 1 where there is none."""
+    for q in range(2):
+        scale[q] = 0.0
+        for p in range(strobes.shape[0]):
+            for i in range(strobes.shape[2]):
+                scale[q] = max(scale[q], abs(strobes[p, q, i]))
+        if scale[q] == 0.0:
+            scale[q] = 1.0
+
+
+@kernel
+def change_between(strobes, scale, now, then):
+    """Largest relative change from state `then` to state `now`."""
+    change = 0.0
+    for q in range(2):
+        largest = 0.0
+        for i in range(strobes.shape[2]):
+            largest = max(largest, abs(strobes[now, q, i] - strobes[then, q, i]))
+        change = max(change, largest / scale[q])
+    return change
+
+
+@kernel
+def changes_before(strobes, scale, n, end, out):
+    """The last out.size changes over n periods up to state `end`, oldest first."""
+    for k in range(out.size):
+        now = end - out.size + 1 + k
+        out[k] = change_between(strobes, scale, now, now - n)
+
+
+@kernel
+def largest_change(change, first, count):
+    """Largest of `count` changes from `first` on."""
+    largest = 0.0
+    for k in range(first, first + count):
+        largest = max(largest, change[k])
+    return largest
+
+
+@kernel
+def decay_rate(change, count, n):
+    """Rate of decay per n drive periods in `count` changes, and whether both halves of them show the same.
+
+    Largest changes over one orbit at the window's start, middle and end are compared, so that turning complex
+    multipliers do not look like decay or growth; the slower half counts.
+    """
+    first = largest_change(change, 0, n)
+    middle = largest_change(change, (count - n) // 2, n)
+    last = largest_change(change, count - n, n)
+    if min(first, middle, last) <= 0.0:
+        return 0.0, True
+    power = 2.0 * n / (count - n)
+    early, late = (middle / first) ** power, (last / middle) ** power
+    rate = max(early, late)
+    return rate, abs(early - late) < 0.2 * rate
+
+
+@kernel
+def window_of(n):
+    """Number of changes that give the rate."""
+    return max(LEAST_WINDOW, 3 * n)
+
+
+@kernel
+def shortest(strobes, scale, n, nothing):
+    """The shortest period that divides n and over which these states change by no more than `nothing`."""
+    run = strobes.shape[0] - 1
+    for q in range(1, n):
+        largest = 0.0
+        for k in range(n if n % q == 0 else 0):
+            largest = max(largest, change_between(strobes, scale, run - k, run - k - q))
+        if n % q == 0 and largest <= nothing:
+            return q
+    return n
+
+
+@kernel
+def earlier_rate(strobes, scale, n, rounding, change):
+    """The decay rate over n periods from the last part of the record that is well above rounding; −1 if none is."""
+    end, count = strobes.shape[0] - 1, window_of(n)
+    while end >= n and change_between(strobes, scale, end, end - n) <= 1e3 * rounding:
+        end -= 1
+    if end < count + n - 1:
+        return -1.0
+    changes_before(strobes, scale, n, end, change[:count])
+    rate, _ = decay_rate(change, count, n)
+    return rate if 0.0 < rate < 1.0 else -1.0
+
+
+@kernel
+def find(strobes, longest, rounding, settled, slowest, scale, change):
+    """(period, rate, distance, approached, its rate, its change) of a record; 0 for a period that is not there.
+
+    `period` is the smallest whose distance bound change·rate/(1 − rate) is at most `settled`; changes below
+    `rounding` count as none, the rate is −1 where none was seen. `approached` is the first period over which changes
+    decay. `slowest` is a rate per drive period known to be in the motion whether these states show it or not.
+    `scale` (2,) and `change` (3·longest or more,) are workspaces.
+    """
+    run = strobes.shape[0] - 1
+    largest_of(strobes, scale)
+    approaching, approached, its_rate, its_change = 0, 0, 0.0, 0.0
+    for n in range(1, longest + 1):
+        count = window_of(n)
+        if run < count + n:
+            break
+        nearer = False
+        for q in range(1, n):
+            nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
+        now = change_between(strobes, scale, run, run - n)
+        if nearer or now > _WORTH_A_JUMP:
+            continue  # a shorter period is still being approached: this one's small change is that approach
+        changes_before(strobes, scale, n, run, change[:count])
+        if largest_change(change, 0, count) <= rounding:
+            return n, earlier_rate(strobes, scale, n, rounding, change), rounding, 0, 0.0, 0.0
+        rate, even = decay_rate(change, count, n)
+        recent = largest_change(change, count - n, n)
+        if rate >= 1.0:
+            continue
+        if approached == 0:
+            approached, its_rate, its_change = n, rate, recent
+        if now > _FAR:
+            continue
+        if rate < _APPROACHING:
+            approaching |= 1 << n
+        rate = max(rate, slowest**n)
+        distance = recent * rate / (1.0 - rate)
+        if distance <= settled and (even or recent <= _DEEP * settled):
+            q = shortest(strobes, scale, n, max(10.0 * distance, 3.0 * settled))
+            return q, rate ** (q / n), distance, 0, 0.0, 0.0
+    return 0, 0.0, 0.0, approached, its_rate, its_change
+
+
+@kernel
+def nearest_neighbours(strobes, scale, nearest):
+    """Distance of every state in the later half of a record from the nearest one in the earlier half."""
+    largest_of(strobes, scale)
+    half = strobes.shape[0] // 2
+    for p in range(nearest.size):
+        nearest[p] = np.inf
+        for q in range(half):
+            if abs(strobes[half + p, 0, 0] - strobes[q, 0, 0]) < nearest[p] * scale[0]:
+                nearest[p] = min(nearest[p], change_between(strobes, scale, half + p, q))
+
+
+@kernel
+def record_changes(strobes, n, scale, out):
+    """The last out.size changes over n periods of a record, oldest first."""
+    largest_of(strobes, scale)
+    changes_before(strobes, scale, n, strobes.shape[0] - 1, out)

@@ -1,0 +1,35 @@
+"""Drift by its name: an observer that nothing holds moves away as a whole.
+
+The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
+wall alone, and only while they touch it. A multiplier outside the unit circle that is real and whose mode moves all
+beads the same way is no instability of a form but a drift: to one side where it is positive, where it is negative (at
+200 Hz) to either side by turns.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..orbits import Orbit
+from ..orbits.flow import StroboscopicMap
+
+#: How far inside the unit circle a multiplier still counts as on it: what a tangent is known to.
+_NEAR = 1e-6
+
+
+def observer_drift(orbit: Orbit) -> str | None:
+    """A sentence if the observer of `orbit` drifts, None if it does not; the orbit must have been asked for it."""
+    found = orbit.observer_multipliers
+    if found is None or abs(found[0]) < 1.0 - _NEAR:
+        return None
+    strobe = StroboscopicMap(orbit.scene, orbit.period)
+    flow = strobe(strobe.inner(strobe.engine.lowered.scaled(orbit.state)), observer=True)
+    values, vectors = np.linalg.eig(flow.derivative)
+    leading = int(np.argmax(np.abs(values)))
+    moved = vectors[: orbit.scene.N, leading].real
+    real = values[leading].imag == 0.0
+    if not real or not ((moved > 0.0).all() or (moved < 0.0).all()):
+        return None
+    way = "the same way" if values[leading].real > 0.0 else "the same way, to either side by turns"
+    return (f"The observer drifts: its leading multiplier {values[leading].real:.4g} is real and moves all beads "
+            f"{way}, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")

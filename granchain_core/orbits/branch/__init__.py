@@ -1,0 +1,1 @@
+"""Branches of periodic orbits along a knob, and the special points on them."""

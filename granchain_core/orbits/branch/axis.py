@@ -1,0 +1,97 @@
+"""The knob of a branch: which knobs are continuous, and the coordinate in which one is followed.
+
+A branch is a curve of points z = (x/√(2N), p): x is the scaled state (u, w) at drive phase 0 in the scales of its own
+chain, so that a new amplitude A0, which changes the scales, leaves it of order one; p is a logarithmic or linear
+coordinate of the knob. The length of an arc is that of z.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...errors import BadInput, unknown_name
+from ...quantities import QUANTITIES
+from ...scene import Scene
+
+#: Knobs that move a chain continuously; N and the laws jump, `accuracy` changes no chain.
+CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
+#: Length of a factor e in a logarithmic knob, and of the whole range of a linear one. The state changes by about its
+#: own size where f changes by a tenth.
+_LOGARITHMIC, _LINEAR = 10.0, 20.0
+
+
+@dataclass(frozen=True)
+class KnobAxis:
+    """One knob of a scene from `start` to `end`, with its coordinate p (0 at `start`)."""
+
+    scene: Scene
+    knob: str
+    start: float
+    end: float
+
+    @classmethod
+    def of(cls, scene: Scene, knob: str, start: object, end: object) -> KnobAxis:
+        """The checked axis; `BadInput` for a knob that is unknown or jumps, and for values that are none."""
+        if knob not in QUANTITIES:
+            raise unknown_name("knob", knob, CONTINUOUS)
+        quantity = QUANTITIES[knob]
+        if knob not in CONTINUOUS:
+            raise BadInput(f"{quantity.label} {knob} cannot be moved continuously along a branch; those that can are "
+                           f"{', '.join(CONTINUOUS)}.")
+        first, last = float(quantity.check(start)), float(quantity.check(end))
+        if first == last:
+            raise BadInput(f"The branch would go from {knob} = {first:g} to the same value; give two different ones.")
+        return cls(scene, knob, first, last)
+
+    @property
+    def logarithmic(self) -> bool:
+        """Whether p goes with the knob's logarithm."""
+        return QUANTITIES[self.knob].scale == "log"
+
+    @property
+    def direction(self) -> int:
+        """+1 where the knob grows from start to end, −1 where it falls."""
+        return 1 if self.end > self.start else -1
+
+    @property
+    def low(self) -> float:
+        """The smaller end."""
+        return min(self.start, self.end)
+
+    @property
+    def high(self) -> float:
+        """The larger end."""
+        return max(self.start, self.end)
+
+    def coordinate(self, value: float) -> float:
+        """p of a knob value."""
+        if self.logarithmic:
+            return _LOGARITHMIC * math.log(value / self.low)
+        return _LINEAR * (value - self.low) / (self.high - self.low)
+
+    def value(self, p: float) -> float:
+        """Knob value at p, kept inside what the knob may be at all."""
+        if self.logarithmic:
+            value = self.low * math.exp(p / _LOGARITHMIC)
+        else:
+            value = self.low + p / _LINEAR * (self.high - self.low)
+        quantity = QUANTITIES[self.knob]
+        return min(max(value, quantity.low), quantity.high)
+
+    def slope(self, value: float) -> float:
+        """Change of the knob with p."""
+        return value / _LOGARITHMIC if self.logarithmic else (self.high - self.low) / _LINEAR
+
+    def scene_at(self, value: float) -> Scene:
+        """The scene with the knob at `value`."""
+        return self.scene.evolve(**{self.knob: value})
+
+    def said(self, value: float) -> str:
+        """A knob value in words."""
+        unit = QUANTITIES[self.knob].unit
+        return f"{self.knob} = {value:.8g}{'' if unit in ('', '1') else ' ' + unit}"
+
+    def contains(self, value: float) -> bool:
+        """Whether a value is between the ends, which belong to it."""
+        return self.low <= value <= self.high

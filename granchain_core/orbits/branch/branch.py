@@ -1,0 +1,227 @@
+"""Branches of periodic orbits: followed in one knob through folds, stable or not, with their special points.
+
+    branch = continue_branch(scene("sec2"), "f", 340.0, 60.0)
+
+Pseudo-arclength continuation (Keller 1977) of fixed points of the n-period stroboscopic map. The points come out one
+by one from a `Continuation`, which can be left at any time, saved, and taken up again as if it had never stopped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...errors import BadInput
+from ...integrate import State
+from ...scene import Scene
+from ...stop import Stop
+from ..orbit import periodic_orbit
+from .axis import KnobAxis
+from .equations import BranchEquations, relative_change
+from .point import BranchPoint, branch_point, state_at
+from .special import SpecialPoint
+from .walk import SHORTER, Arm, Walk
+
+#: Points of one arm at most: a branch that folds without end has to stop somewhere.
+MOST_POINTS = 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A branch of periodic orbits over one knob.
+
+    Attributes
+    ----------
+    axis : KnobAxis
+        The knob, where it starts and where it ends.
+    period : int
+        Of its orbits, in drive periods.
+    arms : tuple of Arm
+        One or two directions from the same seed; `ended` and `reason` say how each ended.
+    points : list of BranchPoint
+        All orbits in their order along the branch.
+    special : list of SpecialPoint
+        Folds, period doublings, Neimark–Sacker points and grazings, each with the interval that holds it.
+
+    Examples
+    --------
+    >>> from granchain_core import branch, scene
+    >>> found = branch(scene("sec2").evolve(N=2), "f", 2000.0, 2020.0)
+    >>> found.arms[0].ended, len(found.points) == len(found.column("knob"))
+    ('reached', True)
+    """
+
+    axis: KnobAxis
+    period: int
+    arms: tuple[Arm, ...]
+
+    @property
+    def points(self) -> list[BranchPoint]:
+        """All orbits in their order along the branch, from the end of the second arm to that of the first."""
+        first = self.arms[0].points
+        return first if len(self.arms) == 1 else [*reversed(self.arms[1].points[1:]), *first]
+
+    @property
+    def special(self) -> list[SpecialPoint]:
+        """All special points in the order of the points."""
+        first = self.arms[0].special
+        return first if len(self.arms) == 1 else [*reversed(self.arms[1].special), *first]
+
+    def column(self, name: str) -> np.ndarray:
+        """One attribute of every point as an array, for example "knob" or "stable"."""
+        return np.array([getattr(point, name) for point in self.points])
+
+    def state(self, point: BranchPoint) -> State:
+        """The state of one of its orbits at drive phase 0 in SI."""
+        return state_at(self.axis.scene_at(point.knob), point.x)
+
+
+class Continuation(Iterator[BranchPoint]):
+    """A branch as it grows: each `next` is one more orbit; `branch` is what there is so far.
+
+    Of two arms the shorter one grows, so both go on by turns; `run` follows both at once. One may stop asking and go
+    on at any time. Where the stop flag is raised, `Cancelled` ends the present step only. An arm that closes on
+    itself is the whole branch: the other is dropped.
+    """
+
+    def __init__(self, branch: Branch, stop: Stop | None = None) -> None:
+        self.branch = branch
+        self.stop = Stop() if stop is None else stop
+        self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), arm) for arm in branch.arms]
+
+    def __next__(self) -> BranchPoint:
+        while left := [walk for walk in self._walks if not self._closed and not walk.arm.ended]:
+            shorter: Walk = min(left, key=lambda walk: len(walk.arm.points))
+            point = next(shorter, None)
+            if point is not None:
+                self._drop_double()
+                return point
+        raise StopIteration
+
+    def run(self, most_points: int = MOST_POINTS, on_point: Callable[[Arm], None] | None = None) -> Branch:
+        """Follow all arms to their ends, each in a thread, or until one has `most_points`."""
+
+        def follow(walk: Walk) -> None:
+            while not self._closed and len(walk.arm.points) < most_points and next(walk, None) is not None:
+                if on_point is not None:
+                    on_point(walk.arm)
+
+        with ThreadPoolExecutor(len(self._walks)) as pool:
+            for future in [pool.submit(follow, walk) for walk in self._walks]:
+                future.result()
+        self._drop_double()
+        return self.branch
+
+    @property
+    def _closed(self) -> bool:
+        return any(walk.arm.ended == "closed" for walk in self._walks)
+
+    def _drop_double(self) -> None:
+        closed = next((arm for arm in self.branch.arms if arm.ended == "closed"), None)
+        if closed is not None:
+            self.branch = replace(self.branch, arms=(closed,))
+
+
+def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
+                 start_state: State | None = None, both: bool = False, stop: Stop | None = None) -> Branch:
+    """The seed of a branch, to be followed by a `Continuation`.
+
+    The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
+    rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
+    and to `end`. Raises `BadInput`, `NumbersFailed` where there is no such orbit, and `Cancelled`.
+    """
+    axis = KnobAxis.of(scene, knob, start, end)
+    seed_at = float(scene.knobs[knob]) if both else axis.start
+    if not axis.contains(seed_at):
+        nearest = min(max(seed_at, axis.low), axis.high)
+        raise BadInput(f"Both ways begin at the scene's own {axis.said(seed_at)}, which is outside {axis.low:g} to "
+                       f"{axis.high:g}; the nearest valid value is {nearest:g}.")
+    BranchEquations(axis, 1).strobe(seed_at)  # a scene whose orbits are not computed is refused before it settles
+    orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
+    equations = BranchEquations(axis, orbit.period, stop)
+    strobe = equations.strobe(seed_at)
+    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
+    _refuse_shorter(equations, x, seed_at)
+    return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
+
+
+def arms_from(equations: BranchEquations, x: np.ndarray, value: float, directions: tuple[int, ...]) -> tuple[Arm, ...]:
+    """Arms with their seed only, the orbit at the knob's `value` near the scaled state x."""
+    fixed = np.zeros(equations.size + 1)
+    fixed[-1] = 1.0
+    solved = equations.solve(equations.point(x, value), fixed)
+    return tuple(Arm(direction, [branch_point(equations, solved, equations.tangent(solved, direction * fixed), 0.0)])
+                 for direction in directions)
+
+
+def continue_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
+                    start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
+                    on_point: Callable[[Arm], None] | None = None, stop: Stop | None = None) -> Branch:
+    """Follow a branch of periodic orbits over one knob, by pseudo-arclength. Also called `branch`.
+
+    An arm ends where the knob reaches `end` or comes back to `start`, where the branch closes on itself or merges with
+    one of half the period, or where it cannot be followed; `branch.arms[0].reason` says which (docs/branches.md).
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its tension must not be cut.
+    knob : str
+        "f", "A0", "D", "k", "kappa" or "F0".
+    start, end : float
+        Values of the knob in SI between which the branch is followed; the first orbit is at `start`.
+    period : int, optional
+        Of the orbits, in drive periods; the steady state's at `start` if not given.
+    start_state : State, optional
+        Near the first orbit; the steady state from rest if not given.
+    both : bool
+        Begin at the scene's own value of the knob and follow both ways, to `start` and to `end`.
+    most_points : int
+        Points of an arm at most.
+    on_point : callable, optional
+        Called with the arm that has grown.
+    stop : Stop, optional
+        A byte that another thread sets to 1 to end the computation.
+
+    Returns
+    -------
+    Branch
+        Orbits, multipliers, largest forces and special points.
+
+    Raises
+    ------
+    BadInput
+        The knob cannot be followed, or a value is out of range.
+    NumbersFailed
+        There is no orbit to begin with.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import branch, scene
+    >>> found = branch(scene("sec2").evolve(N=2), "f", 2000.0, 2020.0)
+    >>> found.column("knob")[[0, -1]]
+    array([2000., 2020.])
+    >>> bool(found.column("stable").all())
+    True
+    """
+    if not 2 <= most_points <= MOST_POINTS:
+        raise BadInput(f"most_points = {most_points} is outside 2 to {MOST_POINTS}; the nearest valid value is "
+                       f"{min(max(most_points, 2), MOST_POINTS)}.")
+    begun = begin_branch(scene, knob, start, end, period, start_state, both, stop)
+    return Continuation(begun, stop).run(most_points, on_point)
+
+
+def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> None:
+    """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
+    n = equations.period
+    for d in range(1, n):
+        if n % d == 0:
+            end = equations.strobe(value, d).end(x)
+            if relative_change(end - x, x) < SHORTER:
+                raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after "
+                               f"{d} already; give period {d}.")

@@ -1,0 +1,75 @@
+"""What has to hold on every branch, whatever chain and knob it is of."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .branch import Branch
+from .equations import ACCEPTED
+from .point import BranchPoint
+from .walk import LONGEST, Arm
+
+#: Neighbours may be so much farther apart than the longest step: correction goes across it.
+_APART = 1.2
+#: Liouville's sum of logarithms: error of the tangents relative to the largest entry of the monodromy matrix, and
+#: what is allowed on top. Where the smallest multiplier is below that error the sum says nothing.
+_TANGENTS, _LIOUVILLE = 1e-11, 1e-5
+
+
+def check_branch(branch: Branch) -> list[str]:
+    """Sentences on what does not hold: none, for a branch that is right.
+
+    Residuals are small, neighbours are near, Liouville's formula holds, stability and contact sequence change at
+    reported special points only, and each of those lies in its interval, between two orbits it tells apart.
+    """
+    found = []
+    for arm in branch.arms:
+        for point in arm.points:
+            found.extend(_orbit_wrong(branch, point))
+        for i in range(1, len(arm.points)):
+            found.extend(_step_wrong(branch, arm, i))
+        found.extend(_special_wrong(branch, arm))
+    return found
+
+
+def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
+    where, found = branch.axis.said(point.knob), []
+    if not point.residual <= ACCEPTED:
+        found.append(f"residual {point.residual:.1e} at {where}")
+    smallest, largest = np.abs(point.multipliers[-1]), max(1.0, float(np.abs(point.multipliers[0])))
+    unsure = len(point.multipliers) * _TANGENTS * largest / smallest if smallest > 0.0 else np.inf
+    if unsure < 0.1 and point.liouville > _LIOUVILLE + unsure:
+        found.append(f"Liouville is off by {point.liouville:.1e} at {where}")
+    return found
+
+
+def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
+    a, b, found = arm.points[i - 1], arm.points[i], []
+    where = f"between {branch.axis.said(a.knob)} and {branch.axis.said(b.knob)}"
+    moved = np.append((b.x - a.x) / np.sqrt(len(a.x)), branch.axis.coordinate(b.knob) - branch.axis.coordinate(a.knob))
+    if np.linalg.norm(moved) > _APART * LONGEST or not b.arclength > a.arclength:
+        found.append(f"neighbours are {np.linalg.norm(moved):.2g} apart {where}")
+    between = [s for s in arm.special if a.arclength <= s.before.arclength and s.after.arclength <= b.arclength
+               and s.before.arclength < b.arclength]
+    if a.stable != b.stable and not any(s.multiplier is not None for s in between):
+        found.append(f"stability changes without a special point {where}")
+    if a.turning != b.turning and not any(s.kind == "fold" for s in between):
+        found.append(f"the knob turns without a fold {where}")
+    for contact in np.flatnonzero(a.closings != b.closings):
+        if not any(s.contact == contact for s in between):
+            found.append(f"contact {contact} changes its sequence without a grazing {where}")
+    return found
+
+
+def _special_wrong(branch: Branch, arm: Arm) -> list[str]:
+    found = []
+    for s in arm.special:
+        where, (low, high) = f"{s.kind} at {branch.axis.said(s.knob)}", s.interval
+        if not low <= s.knob <= high:
+            found.append(f"{where} is outside its interval")
+        if s.before.signature == s.after.signature:
+            found.append(f"{where} lies between orbits that are alike")
+        inside = [low - 1e-12 * abs(low) <= p.knob <= high + 1e-12 * abs(high) for p in (s.before, s.after)]
+        if s.before.turning == s.after.turning and not all(inside):
+            found.append(f"{where} has orbits outside its interval")
+    return found

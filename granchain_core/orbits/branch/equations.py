@@ -1,0 +1,123 @@
+"""The equations of a branch, P(x; p) − x = 0 and one condition on the step, and Newton's method on them.
+
+Jacobian   [[(P_x − 1)√(2N), P_p], [nᵀ]] in z = (x/√(2N), p): P_x is the exact derivative of the stroboscopic map, P_p
+           a difference of the map in the knob. n is the plane's normal, across which z may not move: the matrix stays
+           regular through folds (Keller 1977).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import NumbersFailed
+from ...stop import Stop
+from ..flow import Flow, StroboscopicMap
+from .axis import KnobAxis
+
+#: Residual at which a point is good, and the most that is accepted where rounding does not let it fall so far.
+GOOD, ACCEPTED = 1e-11, 1e-10
+#: Newton's iterations at most; below the residual _LAST the next is the last, and below _NEAR the last derivative
+#: serves once more.
+_MOST, _LAST, _NEAR = 8, 1e-6, 1e-4
+#: Difference in p: between the curvature of the map and its rounding (1e-13).
+_DIFFERENCE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A point z on the branch, its monodromy matrix, knob derivative P_p and the residuals on the way there."""
+
+    z: np.ndarray
+    flow: Flow
+    knob_slope: np.ndarray
+    residuals: tuple[float, ...]
+
+
+class BranchEquations:
+    """Everything that can be asked of the n-period map along one axis."""
+
+    def __init__(self, axis: KnobAxis, period: int, stop: Stop | None = None) -> None:
+        self.axis, self.period, self.stop = axis, period, stop
+        self.size = 2 * axis.scene.N
+        self.weight = np.sqrt(self.size)
+
+    def point(self, x: np.ndarray, value: float) -> np.ndarray:
+        """z of a scaled state and a knob value."""
+        return np.append(x / self.weight, self.axis.coordinate(value))
+
+    def state(self, z: np.ndarray) -> np.ndarray:
+        """The scaled state in z."""
+        return z[:-1] * self.weight
+
+    def value(self, z: np.ndarray) -> float:
+        """The knob's value in z."""
+        return self.axis.value(float(z[-1]))
+
+    def strobe(self, value: float, periods: int | None = None) -> StroboscopicMap:
+        """The map at a knob value, always a new one, so that the same question has the same answer to the bit."""
+        return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop)
+
+    def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
+              farthest: float = np.inf) -> Solved:
+        """The branch's point in the plane through z across `normal`, at most `farthest` from z.
+
+        `slope` is P_p nearby, where it is known. A step with the last derivative follows each of Newton's that is not
+        the last, since the map alone costs a third of it. Raises `NumbersFailed` with the residuals where it does not
+        get there.
+        """
+        start, residuals = z, list[float]()
+        for _ in range(_MOST):
+            value, x = self.value(z), self.state(z)
+            flow = self.strobe(value)(x)
+            residuals.append(relative_change(flow.end - x, x))
+            if residuals[-1] <= GOOD or (len(residuals) > 2 and residuals[-1] > 0.3 * residuals[-2]):
+                break
+            slope = self._knob_slope(x, value, flow) if slope is None else slope
+            matrix = self._matrix(flow, slope, normal)
+            z = z - np.linalg.solve(matrix, np.append(flow.end - x, (z - start) @ normal))
+            if not np.linalg.norm(z - start) <= farthest:
+                raise NumbersFailed(f"Newton's method went {np.linalg.norm(z - start):.1e} away after residuals "
+                                    f"{said(residuals)}.", "no-convergence")
+            if residuals[-1] > _LAST:
+                change = self.strobe(self.value(z)).end(self.state(z)) - self.state(z)
+                if relative_change(change, self.state(z)) < _NEAR:
+                    z = z - np.linalg.solve(matrix, np.append(change, (z - start) @ normal))
+        if not residuals[-1] <= ACCEPTED:
+            raise NumbersFailed(f"Newton's residuals were {said(residuals)}.", "no-convergence")
+        return Solved(z, flow, self._knob_slope(self.state(z), self.value(z), flow), tuple(residuals))
+
+    def tangent(self, solved: Solved, towards: np.ndarray) -> np.ndarray:
+        """Unit tangent of the branch, on the side of `towards`."""
+        found = np.linalg.solve(self._matrix(solved.flow, solved.knob_slope, towards),
+                                np.append(np.zeros(self.size), 1.0))
+        found /= np.linalg.norm(found)
+        return found if found @ towards > 0.0 else -found
+
+    def _matrix(self, flow: Flow, slope: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        n = self.size
+        matrix = np.empty((n + 1, n + 1))
+        matrix[:n, :n] = (flow.derivative - np.eye(n)) * self.weight
+        matrix[:n, n] = slope
+        matrix[n] = normal
+        return matrix
+
+    def _knob_slope(self, x: np.ndarray, value: float, flow: Flow) -> np.ndarray:
+        p = self.axis.coordinate(value)
+        moved = self.axis.value(p + _DIFFERENCE)
+        if moved == value:  # at the knob's largest value the difference is taken downwards
+            moved = self.axis.value(p - _DIFFERENCE)
+        return (self.strobe(moved).end(x) - flow.end) / (self.axis.coordinate(moved) - p)
+
+
+def relative_change(change: np.ndarray, x: np.ndarray) -> float:
+    """The larger of the changes of displacements and of w, each relative to its largest entry."""
+    half = len(x) // 2
+    return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
+               for part in (slice(0, half), slice(half, None)))
+
+
+def said(residuals: list[float] | tuple[float, ...]) -> str:
+    """Residuals in words."""
+    return ", ".join(f"{r:.1e}" for r in residuals)

@@ -1,0 +1,130 @@
+"""One orbit of a branch with everything that tells it from its neighbours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import NumbersFailed
+from ...integrate import Engine, State, certified
+from ...kernels.dop853.orbit_record import FULL, OrbitRecord, record_orbit
+from ...kernels.forces.peaks import MEMORY, PEAKS, ROWS
+from ...lower import lower
+from ...scene import Scene
+from ..orbit import sorted_multipliers
+from .equations import BranchEquations, Solved
+
+#: Tolerance of one step of the run that records forces and contacts: they are then good to about 1e-9.
+_TOLERANCE = 1e-11
+#: Turning points of overlaps there is room for at first, for each contact and period.
+_ROOM = 32
+#: Contact counts of a contact that never changes: always open, always closed.
+_OPEN, _CLOSED = 0, -1
+
+
+@dataclass(frozen=True, eq=False)
+class BranchPoint:
+    """A periodic orbit on a branch.
+
+    `knob` in SI; `x` (2N,) is the scaled state (u, w) at phase 0; `tangent` (2N + 1,) the branch's unit tangent in
+    (x/√(2N), p); `arclength` counts from the seed. `multipliers` (2N,) come largest modulus first. The three largest
+    forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
+    open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
+    the last being the orbit's; `liouville` is how far ln |det| of the monodromy matrix is from ∫ trace. `turns` are the
+    turning points of all overlaps (kernels/dop853/orbit_record.py).
+    """
+
+    knob: float
+    x: np.ndarray
+    tangent: np.ndarray
+    arclength: float
+    multipliers: np.ndarray
+    max_input_force: float
+    max_output_force: float
+    max_output_force_elastic: float
+    closings: np.ndarray
+    slope: np.ndarray
+    residuals: tuple[float, ...]
+    liouville: float
+    turns: np.ndarray
+
+    @property
+    def residual(self) -> float:
+        """What the orbit's state lacks to come back, relative to its largest entry."""
+        return self.residuals[-1]
+
+    @property
+    def unstable(self) -> int:
+        """How many multipliers are outside the unit circle."""
+        return int((np.abs(self.multipliers) >= 1.0).sum())
+
+    @property
+    def stable(self) -> bool:
+        """Whether all multipliers are inside the unit circle."""
+        return self.unstable == 0
+
+    @property
+    def turning(self) -> int:
+        """+1 where the knob grows along the branch, −1 where it falls."""
+        return 1 if self.tangent[-1] > 0.0 else -1
+
+    @property
+    def signature(self) -> tuple[int, ...]:
+        """What changes at special points and nowhere else."""
+        return (self.turning, self.unstable, *(int(n) for n in self.closings))
+
+
+def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
+    """The point with its multipliers, forces and contacts, from a run along the orbit."""
+    x, value = equations.state(solved.z), equations.value(solved.z)
+    multipliers = sorted_multipliers(solved.flow.derivative)
+    engine, record = record_along(equations, x, value)
+    tops = record.peaks[:MEMORY:ROWS] * engine.lowered.scales.force
+    return BranchPoint(
+        knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
+        max_input_force=float(tops[0]), max_output_force=float(tops[1]), max_output_force_elastic=float(tops[2]),
+        closings=_counts(len(x) // 2 + 1, record, solved.flow.changes), slope=solved.knob_slope,
+        residuals=solved.residuals,
+        liouville=_liouville(multipliers, solved.flow.log_determinant), turns=record.turns)
+
+
+def state_at(scene: Scene, x: np.ndarray) -> State:
+    """The scaled state x of a scene at phase 0 in SI."""
+    lowered = lower(scene)
+    return lowered.unscaled(lowered.embed(x))
+
+
+def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:
+    """Largest forces and turning points of all overlaps along the way from the scaled state x."""
+    engine = Engine(equations.axis.scene_at(value), certified(_TOLERANCE), 1, stop=equations.stop)
+    lo, stepper, room = engine.lowered, engine.stepper, _ROOM * (equations.size // 2 + 1) * equations.period
+    while True:
+        engine.start_scaled(x)
+        record = OrbitRecord(np.zeros((room, 4)), np.zeros(PEAKS))
+        status, done, found = record_orbit(stepper.method, lo.slots, lo.beta, lo.period, equations.period, engine.y,
+                                           stepper.work, stepper.clock, record, engine.counts.array, engine.stop.flag)
+        if status != FULL:
+            engine.raise_for(status, done)
+            return engine, record._replace(turns=record.turns[:found].copy())
+        room = found
+
+
+def _counts(contacts: int, record: OrbitRecord, changes: np.ndarray) -> np.ndarray:
+    """Closings of every contact; always open and always closed are distinguished by the overlap's turning points."""
+    numbers = changes[:, 0].astype(int)
+    closings = np.bincount(numbers[numbers > 0] - 1, minlength=contacts)
+    if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):
+        raise NumbersFailed("A contact closed more often than it opened along a closed orbit.", "contacts")
+    for contact in np.flatnonzero(closings == 0):
+        overlaps = record.turns[record.turns[:, 0] == contact, 3]
+        if len(overlaps) and overlaps.max() > 0.0:
+            closings[contact] = _CLOSED
+    return closings
+
+
+def _liouville(multipliers: np.ndarray, log_determinant: float) -> float:
+    """Difference of ln |det| and ∫ trace, relative to the latter where that is above 1."""
+    with np.errstate(divide="ignore"):
+        found = float(np.sum(np.log(np.abs(multipliers))))
+    return abs(found - log_determinant) / max(1.0, abs(log_determinant))

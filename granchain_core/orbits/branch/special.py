@@ -1,0 +1,196 @@
+"""Special points of a branch: what changes between two neighbouring orbits, found to a narrow interval of the knob.
+
+fold             the knob turns; a real multiplier passes +1
+period_doubling  a real multiplier passes −1
+neimark_sacker   a complex pair passes the unit circle
+grazing          a contact touches or separates once more, or less, along the orbit
+
+Each is enclosed between two orbits that have the change between them, however it was approached: every guess is checked
+by the orbit there, so an interval is never wrong because a test function was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .axis import KnobAxis
+from .point import BranchPoint
+
+#: An interval is narrow enough at this width relative to the knob.
+WIDTH = 1e-5
+#: The tangents at both ends of a bracket meet within this factor times its length: they turn by no more
+#: than 30° (walk.py).
+_SIDE = 1.25
+#: A guess is put so far beside where the test function vanishes, relative to the bracket, first on one side and then on
+#: the other; a narrower bracket is straighter, so the second two are nearer. Then come halves, by turns.
+_BESIDE = (0.02, -0.02, 0.003, -0.003, None, 0.02, -0.02)
+#: Orbits between two neighbours at most before what is found is taken as it is.
+_DEEPEST = 60
+
+Between = Callable[[BranchPoint, BranchPoint, float], BranchPoint]
+"""The orbit at a fraction of the way from one to another."""
+
+
+@dataclass(frozen=True, eq=False)
+class SpecialPoint:
+    """A special point: its kind, the knob there, the interval that holds it, and the two orbits around it.
+
+    `contact` and `event` ("touch" or "separation") say what grazes; `multiplier` is the one that passes the unit
+    circle.
+    """
+
+    kind: str
+    knob: float
+    interval: tuple[float, float]
+    before: BranchPoint
+    after: BranchPoint
+    multiplier: complex | None = None
+    contact: int | None = None
+    event: str | None = None
+
+
+def special_between(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between) -> list[SpecialPoint]:
+    """All special points between neighbours a and b, in their order."""
+    brackets = _brackets(axis, a, b, between, 0)
+    found = [special for bracket in brackets for special in _classified(axis, *bracket)]
+    return _merged(found)
+
+
+def _brackets(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between,
+              depth: int) -> list[tuple[BranchPoint, BranchPoint]]:
+    if a.signature == b.signature:
+        return []
+    if _narrow(axis, a, b) or depth >= _DEEPEST:
+        return [(a, b)]
+    middle = between(a, b, _fraction(a, b, depth))
+    return [*_brackets(axis, a, middle, between, depth + 1), *_brackets(axis, middle, b, between, depth + 1)]
+
+
+def _narrow(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> bool:
+    low, high = _interval(axis, a, b)
+    width = max(high, a.knob, b.knob) - min(low, a.knob, b.knob)
+    return width <= WIDTH * max(abs(a.knob), abs(b.knob), 1e-3 * axis.high)
+
+
+def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, float]:
+    """An interval that holds all knob values between a and b.
+
+    Where the knob turns in between, the curve stays on the inner side of its tangents at a and b.
+    """
+    low, high = min(a.knob, b.knob), max(a.knob, b.knob)
+    if a.turning != b.turning:
+        reach = _SIDE * _distance(axis, a, b) * min(abs(a.tangent[-1]), abs(b.tangent[-1])) * axis.slope(high)
+        return (high, float(high + reach)) if a.turning > 0 else (float(low - reach), low)
+    return low, high
+
+
+def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
+    """Length of the straight line between two points of the branch."""
+    moved = axis.coordinate(b.knob) - axis.coordinate(a.knob)
+    return float(np.hypot(np.linalg.norm(b.x - a.x) / np.sqrt(len(a.x)), moved))
+
+
+def _fraction(a: BranchPoint, b: BranchPoint, depth: int) -> float:
+    """Where to look next: beside where a test function vanishes, or the middle."""
+    beside, root = _BESIDE[depth % len(_BESIDE)], _root(a, b)
+    if beside is None or root is None:
+        return 0.5
+    return min(max(root + beside, 0.5 * abs(beside)), 1.0 - 0.5 * abs(beside))
+
+
+def _root(a: BranchPoint, b: BranchPoint) -> float | None:
+    """Fraction at which the straight line through the test function's values vanishes."""
+    values = _test_values(a, b)
+    if values is None or not values[0] * values[1] < 0.0:
+        return None
+    return values[0] / (values[0] - values[1])
+
+
+def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
+    if a.turning != b.turning:
+        return float(a.tangent[-1]), float(b.tangent[-1])
+    if a.unstable != b.unstable:
+        k = max(a.unstable, b.unstable) - 1
+        return float(np.log(abs(a.multipliers[k]))), float(np.log(abs(b.multipliers[k])))
+    contact = int(np.flatnonzero(a.closings != b.closings)[0])
+    return _turning_values(a, b, contact)
+
+
+def _turning_values(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float, float] | None:
+    """The overlap at the turning point that passes zero, at a and at b; None if it is not found in both."""
+    more, less = (a, b) if _changes(a, contact) > _changes(b, contact) else (b, a)
+    candidates = _turns(more, contact)
+    candidates = candidates[candidates[:, 1] * candidates[:, 3] > 0.0]
+    if not len(candidates):
+        return None
+    mine = candidates[np.argmin(np.abs(candidates[:, 3]))]
+    others = _turns(less, contact)
+    others = others[(others[:, 1] == mine[1]) & (others[:, 3] * mine[3] < 0.0)]
+    if not len(others):
+        return None
+    its = others[np.argmin(np.abs(others[:, 2] - mine[2]))]
+    return (float(mine[3]), float(its[3])) if more is a else (float(its[3]), float(mine[3]))
+
+
+def _turns(point: BranchPoint, contact: int) -> np.ndarray:
+    return point.turns[point.turns[:, 0] == contact]
+
+
+def _changes(point: BranchPoint, contact: int) -> int:
+    return max(0, int(point.closings[contact]))
+
+
+def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialPoint]:
+    """What happens inside a narrow bracket; most often one thing."""
+    low, high = _interval(axis, a, b)
+    found = []
+    left = _passing(a, b)
+    if a.turning != b.turning:
+        mine = next((mu for mu in left if mu.imag == 0.0 and mu.real > 0.0), None)
+        left = [mu for mu in left if mu is not mine]
+        found.append(SpecialPoint("fold", 0.5 * (low + high), (low, high), a, b, multiplier=mine))
+    interval = min(low, a.knob, b.knob), max(high, a.knob, b.knob)
+    knob = 0.5 * (interval[0] + interval[1])
+    for mu in left:
+        kind = "neimark_sacker" if mu.imag != 0.0 else "fold" if mu.real > 0.0 else "period_doubling"
+        found.append(SpecialPoint(kind, knob, interval, a, b, multiplier=mu))
+    for contact in np.flatnonzero(a.closings != b.closings):
+        found.append(SpecialPoint("grazing", knob, interval, a, b, contact=int(contact),
+                                  event=_event(a, b, int(contact))))
+    return found
+
+
+def _passing(a: BranchPoint, b: BranchPoint) -> list[complex]:
+    """Multipliers that pass the unit circle between a and b; of a complex pair the one above the real axis."""
+    more, fewer = (a, b) if a.unstable > b.unstable else (b, a)
+    passing = more.multipliers[fewer.unstable : more.unstable]
+    return [complex(mu) for mu in passing if mu.imag >= 0.0]
+
+
+def _event(a: BranchPoint, b: BranchPoint, contact: int) -> str:
+    """"touch" where a contact's closed piece appears or vanishes, "separation" where an open piece does."""
+    more = a if _changes(a, contact) > _changes(b, contact) else b
+    fewer = b if more is a else a
+    if _changes(fewer, contact) == 0:
+        return "separation" if fewer.closings[contact] < 0 else "touch"
+    turns = _turns(more, contact)
+    turns = turns[turns[:, 1] * turns[:, 3] > 0.0]
+    return "touch" if turns[np.argmin(np.abs(turns[:, 3])), 1] > 0.0 else "separation"
+
+
+def _merged(found: list[SpecialPoint]) -> list[SpecialPoint]:
+    """A fold's turning and its multiplier's passage through 1 are one, also where a bracket ended between them."""
+    merged: list[SpecialPoint] = []
+    for one in found:
+        last = merged[-1] if merged else None
+        if last is not None and one.kind == last.kind == "fold" and one.before is last.after \
+                and (one.multiplier is None) != (last.multiplier is None):
+            turn = one if one.before.turning != one.after.turning else last
+            merged[-1] = SpecialPoint("fold", turn.knob, turn.interval, last.before, one.after,
+                                      multiplier=one.multiplier or last.multiplier)
+        else:
+            merged.append(one)
+    return merged

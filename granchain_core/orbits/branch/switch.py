@@ -1,0 +1,65 @@
+"""From a period doubling to the branch of doubled orbits.
+
+At a multiplier −1 with eigenvector v the orbits of twice the period lie at x ± εv + O(ε²), p + O(ε²): Newton's method
+on the doubled map in the plane at distance ε along v finds one, and there the trivial solution is not.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...errors import BadInput, NumbersFailed
+from ...stop import Stop
+from .branch import Branch
+from .equations import BranchEquations, Solved
+from .point import branch_point
+from .special import SpecialPoint
+from .walk import Arm
+
+#: Distances ε along the eigenvector that are tried, in arclength.
+_DISTANCES = (0.02, 0.005, 0.05, 0.001)
+#: The knob may move so far for it: with ε², but that may have a large factor.
+_FARTHEST = 0.3
+#: The orbit's halves have to differ by this part of what ε makes them differ.
+_DOUBLED = 0.5
+
+
+def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None = None) -> Branch:
+    """A branch of twice the period, begun beside the period doubling `special` of `branch` and leading away from it.
+
+    Raises `BadInput` for another kind of point and `NumbersFailed` where no doubled orbit is found.
+    """
+    if special.kind != "period_doubling" or special.multiplier is None:
+        raise BadInput(f"A doubled branch begins at a period_doubling of multiplier −1, not at a {special.kind}.")
+    once = BranchEquations(branch.axis, branch.period, stop)
+    twice = BranchEquations(branch.axis, 2 * branch.period, stop)
+    foot = special.before
+    z = once.point(foot.x, foot.knob)
+    direction = np.append(_eigenvector(once, foot.x, foot.knob), 0.0)
+    tried = []
+    for distance in _DISTANCES:
+        try:
+            solved = twice.solve(z + distance * direction, direction, farthest=_FARTHEST)
+        except NumbersFailed as problem:
+            tried.append(problem.sentence)
+            continue
+        x = twice.state(solved.z)
+        halves = once.strobe(twice.value(solved.z)).end(x) - x
+        if np.linalg.norm(halves) / once.weight > _DOUBLED * 2.0 * distance:
+            return Branch(branch.axis, 2 * branch.period, (_arm(twice, solved, direction),))
+        tried.append("the orbit found repeats after half of its period.")
+    raise NumbersFailed(f"No orbit of {2 * branch.period} drive periods was found beside the period doubling at "
+                        f"{branch.axis.said(special.knob)}: {tried[-1]}", "no-convergence")
+
+
+def _eigenvector(equations: BranchEquations, x: np.ndarray, value: float) -> np.ndarray:
+    """Unit eigenvector of the multiplier nearest to −1."""
+    found, vectors = np.linalg.eig(equations.strobe(value)(x).derivative)
+    vector = np.real(vectors[:, np.argmin(np.abs(found + 1.0))])
+    return vector / np.linalg.norm(vector)
+
+
+def _arm(equations: BranchEquations, solved: Solved, away: np.ndarray) -> Arm:
+    tangent = equations.tangent(solved, away)
+    seed = branch_point(equations, solved, tangent, 0.0)
+    return Arm(seed.turning, [seed])

@@ -1,0 +1,232 @@
+"""A walk along a branch: predict along the tangent, correct by Newton's method, find the special points in between.
+
+The step grows while Newton's method needs few iterations and the tangent hardly turns, and shrinks where not. A
+failed step is halved; at the smallest step the branch ends, and the last residuals are reported.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...errors import NumbersFailed
+from .equations import BranchEquations, Solved, relative_change, said
+from .point import BranchPoint, branch_point
+from .special import SpecialPoint, special_between
+
+#: First, longest and shortest step in arclength.
+FIRST, LONGEST, SHORTEST = 0.02, 0.4, 1e-7
+#: Newton's iterations up to which a step grows, and from which it shrinks.
+_EASY, _HARD = 3, 5
+#: Turns of the tangent (cosines) up to which a step grows, and beyond which it is rejected.
+_STRAIGHT, _BENT = np.cos(np.radians(10.0)), np.cos(np.radians(30.0))
+_GROW, _SHRINK = 2.0, 0.6
+#: The corrected point may lie this part of the step from the predicted one.
+_OFF = 0.3
+#: A step passes the seed if that lies this near to it, relative to its length; it has closed if the corrected point
+#: is the seed to this.
+_PASSES, _CLOSED = 0.2, 1e-7
+#: A state that comes back this near, relative to its largest entry, before its period has a shorter one.
+SHORTER = 1e-8
+#: Points from the seed on before the branch may close on itself.
+_AWAY = 4
+
+
+@dataclass
+class Arm:
+    """One direction of a branch from its seed: points (the seed first), special points, and how it ended.
+
+    `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` says
+    it in a sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if it had
+    never stopped.
+    """
+
+    direction: int
+    points: list[BranchPoint]
+    special: list[SpecialPoint] = field(default_factory=list)
+    step: float = FIRST
+    ended: str = ""
+    reason: str = ""
+
+
+class Walk(Iterator[BranchPoint]):
+    """The points of one arm, one after the other; each `next` adds one to the arm, with the special points before it.
+
+    A walk that is left alone is paused; one whose stop flag is raised throws `Cancelled` and can go on later.
+    """
+
+    def __init__(self, equations: BranchEquations, arm: Arm) -> None:
+        self.equations, self.arm = equations, arm
+        self._seeds = _images(equations, arm.points[0])
+
+    def __next__(self) -> BranchPoint:
+        arm = self.arm
+        failure = ""
+        while not arm.ended and arm.step >= SHORTEST:
+            try:
+                self._step(arm.points[-1])
+                return arm.points[-1]
+            except NumbersFailed as problem:
+                failure = problem.sentence
+            except np.linalg.LinAlgError:
+                failure = "the equations became singular"
+            arm.step *= 0.5
+        if not arm.ended:
+            last = arm.points[-1]
+            arm.ended = "lost"
+            arm.reason = (f"the branch could not be followed beyond {self.equations.axis.said(last.knob)} although "
+                          f"steps were shortened to {SHORTEST:g}: {failure.rstrip('.')}; residuals at the last orbit: "
+                          f"{said(last.residuals)}")
+        raise StopIteration
+
+    # --- one step ------------------------------------------------------------------------------------------
+
+    def _step(self, last: BranchPoint) -> None:
+        """Add the next orbit and what is special before it; `NumbersFailed` where the step is too long."""
+        arm, equations = self.arm, self.equations
+        solved = equations.solve(self._predicted(last), last.tangent, last.slope, _OFF * arm.step)
+        self._refuse_shorter(solved)
+        tangent = equations.tangent(solved, last.tangent)
+        cosine = float(tangent @ last.tangent)
+        if cosine < _BENT:
+            raise NumbersFailed(f"the branch turns by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step",
+                                "no-convergence")
+        way = float(np.linalg.norm(solved.z - self._z(last)))
+        point, ended, reason = self._end(last, branch_point(equations, solved, tangent, last.arclength + way))
+        special = special_between(equations.axis, last, point, self.between)
+        merging = self._merging(special)
+        if merging is not None:
+            special, point = special[: merging + 1], special[merging].before
+            special[merging] = replace(special[merging], kind="period_doubling")
+            ended = "merged"
+            reason = (f"merged with the branch of period {equations.period // 2}, whose period doubles at "
+                      f"{equations.axis.said(special[merging].knob)}: beyond it are the same orbits, half a period "
+                      "later")
+        arm.special.extend(special)
+        if point is not last:
+            arm.points.append(point)
+        arm.ended, arm.reason = ended, reason
+        self._adapt(solved, cosine)
+
+    def _refuse_shorter(self, solved: Solved) -> None:
+        """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
+        x, value, n = self.equations.state(solved.z), self.equations.value(solved.z), self.equations.period
+        for d in range(1, n):
+            if n % d == 0 and relative_change(self.equations.strobe(value, d).end(x) - x, x) < SHORTER:
+                raise NumbersFailed(f"the step leads to an orbit that repeats after {d} of {n} drive periods",
+                                    "no-convergence")
+
+    def _predicted(self, last: BranchPoint) -> np.ndarray:
+        """A step along the tangent, bent as the branch has bent since the point before."""
+        step, z = self.arm.step, self._z(last)
+        guess = z + step * last.tangent
+        if len(self.arm.points) > 1:
+            before = self.arm.points[-2]
+            bend = _across(last.tangent - before.tangent, last.tangent) / (last.arclength - before.arclength)
+            sideways = 0.5 * step**2 * bend
+            if np.linalg.norm(sideways) < _OFF * step:
+                guess += sideways
+        return guess
+
+    def _adapt(self, solved: Solved, cosine: float) -> None:
+        iterations = len(solved.residuals) - 1
+        if iterations <= _EASY and cosine >= _STRAIGHT:
+            self.arm.step = min(LONGEST, _GROW * self.arm.step)
+        elif iterations >= _HARD or cosine < _STRAIGHT:
+            self.arm.step *= _SHRINK
+
+    def _z(self, point: BranchPoint) -> np.ndarray:
+        return self.equations.point(point.x, point.knob)
+
+    def between(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
+        """The orbit at a fraction of the way from a to b, near the cubic through both with their tangents."""
+        za, zb = self._z(a), self._z(b)
+        way = float(np.linalg.norm(zb - za))
+        normal = (zb - za) / way
+        guess = za + fraction * (zb - za)  # in the plane that the corrected orbit stays in
+        guess += _across(_cubic(za, zb, way * a.tangent, way * b.tangent, fraction) - guess, normal)
+        return self._corrected(guess, normal, a, a.arclength + fraction * (b.arclength - a.arclength))
+
+    def _corrected(self, guess: np.ndarray, normal: np.ndarray, a: BranchPoint, arclength: float) -> BranchPoint:
+        solved = self.equations.solve(guess, normal, a.slope)
+        return branch_point(self.equations, solved, self.equations.tangent(solved, a.tangent), arclength)
+
+    # --- ends ----------------------------------------------------------------------------------------------
+
+    def _end(self, last: BranchPoint, point: BranchPoint) -> tuple[BranchPoint, str, str]:
+        """The step's last point, and how and why the branch ends there, if it does."""
+        axis = self.equations.axis
+        closing = self._closing(last, point)
+        if closing is not None:
+            return closing, "closed", (f"closed on itself at {axis.said(closing.knob)} after {closing.arclength:.3g} "
+                                       "of arclength: the orbit there is the seed's")
+        if axis.contains(point.knob):
+            return point, "", ""
+        landed, first = self._landed(last, point), self.arm.points[0].knob
+        if landed.knob == first:
+            return landed, "returned", f"came back to {axis.said(first)}"
+        return landed, "reached", f"reached {axis.said(landed.knob)}"
+
+    def _landed(self, last: BranchPoint, beyond: BranchPoint) -> BranchPoint:
+        """The orbit exactly at the end of the axis that was passed."""
+        axis = self.equations.axis
+        end = axis.high if beyond.knob > axis.high else axis.low
+        za, zb = self._z(last), self._z(beyond)
+        fraction = (axis.coordinate(end) - za[-1]) / (zb[-1] - za[-1])
+        way = float(np.linalg.norm(zb - za))
+        guess = _cubic(za, zb, way * last.tangent, way * beyond.tangent, fraction)
+        guess[-1] = axis.coordinate(end)
+        fixed = np.zeros(len(guess))
+        fixed[-1] = 1.0
+        point = self._corrected(guess, fixed, last, last.arclength + fraction * (beyond.arclength - last.arclength))
+        return replace(point, knob=end)
+
+    def _merging(self, special: list[SpecialPoint]) -> int | None:
+        """Which fold is none: there the difference of an orbit's two halves changes sign, so it vanishes in between."""
+        if self.equations.period % 2:
+            return None
+        for place, one in enumerate(special):
+            if one.kind == "fold" and self._halves(one.before) @ self._halves(one.after) < 0.0:
+                return place
+        return None
+
+    def _halves(self, point: BranchPoint) -> np.ndarray:
+        """How far the state half an orbit later is from the state now."""
+        return self.equations.strobe(point.knob, self.equations.period // 2).end(point.x) - point.x
+
+    def _closing(self, last: BranchPoint, point: BranchPoint) -> BranchPoint | None:
+        """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
+        if len(self.arm.points) < _AWAY:
+            return None
+        za, zb = self._z(last), self._z(point)
+        way = zb - za
+        length = float(np.linalg.norm(way))
+        for seed in self._seeds:
+            along = float((seed - za) @ way) / length**2
+            if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSES * length:
+                found = self.between(last, point, along)
+                if np.linalg.norm(self._z(found) - seed) < _CLOSED:
+                    return found
+        return None
+
+
+def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
+    """The seed seen at each of its drive periods: the same orbit."""
+    x, images = seed.x, []
+    for _ in range(equations.period):
+        images.append(equations.point(x, seed.knob))
+        x = equations.strobe(seed.knob, 1).end(x)
+    return images
+
+
+def _across(vector: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """The part of a vector across a unit normal."""
+    return vector - (vector @ normal) * normal
+
+
+def _cubic(za: np.ndarray, zb: np.ndarray, ta: np.ndarray, tb: np.ndarray, s: float) -> np.ndarray:
+    """Hermite's cubic between two points with their derivatives."""
+    r = 1.0 - s
+    return (1 + 2 * s) * r * r * za + s * r * r * ta + s * s * (3 - 2 * s) * zb - s * s * r * tb

@@ -1,0 +1,152 @@
+"""What a run will cost, before it is run, and a refusal with what would fit.
+
+The number of steps of a fixed-step method is known; that of a method with error control, and the time of a step, are
+from measurements on section 2's chain and the rig (docs/hard-cases.md), brought to this machine by the speed of its
+square roots. A run is computed at least twice, the second time finer, and about as often a third time: the estimate
+lies half way between on a logarithmic scale.
+"""
+
+from __future__ import annotations
+
+import functools
+import threading
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numba.core import event
+
+from ..errors import OverBudget
+from ..integrate import METHODS, Setting
+from ..lower import Lowered, lower
+from ..scene import Scene
+
+#: Default budget of a run [s].
+BUDGET = 86_400.0
+#: Seconds of one recorded sample, and of each bead in it.
+_SAMPLE = 0.6e-6, 40e-9
+#: Seconds of the measure of speed on the machine the figures above were taken on.
+_REFERENCE_SPEED = 5.0e-6
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Seconds and steps that a run is expected to take."""
+
+    seconds: float
+    steps: float
+
+
+class _Compiler(event.Listener):
+    """Seconds that each thread has spent in Numba's compiler, waiting for it, or loading what it compiled before."""
+
+    def __init__(self) -> None:
+        self._own = threading.local()
+
+    @property
+    def seconds(self) -> float:
+        """Those of this thread so far."""
+        return getattr(self._own, "seconds", 0.0)
+
+    def on_start(self, event: event.Event) -> None:
+        """The compiler is asked for; kernels that call others ask again meanwhile."""
+        self._own.depth = getattr(self._own, "depth", 0) + 1
+        if self._own.depth == 1:
+            self._own.began = time.perf_counter()
+
+    def on_end(self, event: event.Event) -> None:
+        """The compiler is done."""
+        self._own.depth -= 1
+        if self._own.depth == 0:
+            self._own.seconds = self.seconds + time.perf_counter() - self._own.began
+
+
+_COMPILER = _Compiler()
+event.register("numba:compiler_lock", _COMPILER)
+
+
+class Stopwatch:
+    """Time of a computation in this thread, without that of compiling kernels at their first use."""
+
+    def __init__(self) -> None:
+        self._began, self._compiled = time.perf_counter(), _COMPILER.seconds
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since the stopwatch was made, without those of the compiler."""
+        return time.perf_counter() - self._began - (_COMPILER.seconds - self._compiled)
+
+
+@functools.cache
+def slowness() -> float:
+    """Time of 4096 square roots over that on the machine of the figures; takes about a millisecond, once."""
+    values, out, best = np.linspace(1.0, 2.0, 4096), np.empty(4096), np.inf
+    for _ in range(100):
+        began = time.perf_counter()
+        np.sqrt(values, out=out)
+        best = min(best, time.perf_counter() - began)
+    return best / _REFERENCE_SPEED
+
+
+def estimate(scene: Scene, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
+    """The cost of a run whose first setting is `setting`, with the finer one that it is compared with."""
+    return _estimate(lower(scene), setting, periods, samples, record)
+
+
+def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
+    beads, steps, seconds = lowered.beads, 0.0, 0.0
+    finer = setting.finer_than(lowered, samples)
+    twice = _share(setting) + _share(finer)
+    for one in (setting, finer):
+        cost = METHODS[one.method].cost
+        if METHODS[one.method].adaptive:
+            # with contacts open most of the time, as at low frequency, steps are longer
+            rate = cost.rate * (1e-8 / max(one.tolerance, 1e-16)) ** cost.power
+            count = periods * max(16.0, lowered.period * rate)
+        else:
+            count = float(periods * one.steps_per_period(lowered, samples))
+        steps += count
+        seconds += count * (cost.fixed + cost.each * (beads + 1))
+    often = np.sqrt(1.0 + _share(finer.finer_than(lowered, samples)) / twice)
+    steps, seconds = steps * often, seconds * often
+    seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
+    return Estimate(seconds * slowness(), steps)
+
+
+def _share(setting: Setting) -> float:
+    """What a computation costs beside others of the same run."""
+    if METHODS[setting.method].adaptive:
+        return float(max(setting.tolerance, 1e-16) ** -METHODS[setting.method].cost.power)
+    return setting.refine
+
+
+def check_budget(scene: Scene, setting: Setting, periods: int, record: int, samples: int, budget: float) -> Estimate:
+    """The estimate of a run of `periods` discarded and `record` recorded periods; `OverBudget` if it does not fit."""
+    total, lowered = periods + record, lower(scene)
+    found = _estimate(lowered, setting, total, samples, record)
+    if found.seconds <= budget:
+        return found
+    fit = _what_fits(scene, total, budget / found.seconds)
+    if not METHODS[setting.method].adaptive:
+        coarse = _estimate(lowered, replace(setting, refine=0.5), total, samples, record)
+        fit += ["an accuracy of 1e-4"] if coarse.seconds <= budget else []
+    remedy = f"{', or '.join(fit)} would fit" if fit else "a higher frequency or fewer beads are needed"
+    raise OverBudget(f"This run would take about {_in_words(found.seconds)} ({found.steps:.1e} steps of "
+                     f"{setting.method}), the budget is {_in_words(budget)}: {remedy}.", found.seconds, budget)
+
+
+def _what_fits(scene: Scene, total: int, part: float) -> list[str]:
+    """What one could ask for instead, where a part of the run fits."""
+    found, periods, beads = [], int(total * part), int(scene.N * part)
+    if periods >= 1:
+        found.append(f"{periods} period{'s' if periods > 1 else ''} in all")
+    if beads >= 1 and not scene.impurities and not scene.start_velocity:
+        found.append(f"{beads} bead{'s' if beads > 1 else ''}")
+    return found
+
+
+def _in_words(seconds: float) -> str:
+    for size, unit in ((86400.0 * 365.25, "years"), (86400.0, "days"), (3600.0, "hours"), (60.0, "minutes")):
+        if seconds >= 2.0 * size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds:.3g} s"

@@ -1,0 +1,141 @@
+"""The chain that goes on while its knobs are moved."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from ..integrate import Engine, State, live
+from ..result import Cost, Jumps, Run, run_from
+from ..scene import Scene
+from ..state import rest
+from ..steady.regime import Regime
+
+_NOT_ASKED = Regime.unsettled(0)
+
+
+class LiveChain:
+    """A chain that goes on while its knobs are moved, by the live method.
+
+    D, k, the laws and the frequency act at the next sample: the drive phase goes on from where it is, so the driver
+    never jumps. A new amplitude waits for the driver's next passage through its middle position, where u_0 is
+    continuous for every A0.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    samples : int
+        Recorded samples a drive period, an even number.
+    start : State, optional
+        Where it begins; at rest if not given.
+
+    Raises
+    ------
+    ValueError
+        `samples` is odd.
+
+    Examples
+    --------
+    >>> from granchain_core import LiveChain, scene
+    >>> chain = scene("sec2").evolve(N=2, f=2000.0)
+    >>> live = LiveChain(chain, samples=16)
+    >>> live.advance(32).displacement.shape
+    (33, 2)
+    >>> live.change(chain.evolve(f=1900.0))
+    >>> live.time == 2 / 2000.0
+    True
+    """
+
+    def __init__(self, scene: Scene, samples: int = 96, start: State | None = None) -> None:
+        if samples % 2:
+            raise ValueError("samples must be even, so that the driver's middle position is one of them")
+        self.samples = samples
+        self.scene = scene
+        self.time = 0.0
+        self._index = 0
+        self._waiting: Scene | None = None
+        self._engine = self._new_engine(scene, rest(scene) if start is None else start)
+        if start is not None:
+            self._index = round(start.phase * samples) % samples
+
+    def _new_engine(self, scene: Scene, state: State) -> Engine:
+        engine = Engine(scene, live(2), self.samples)
+        engine.start(state)
+        return engine
+
+    @property
+    def state(self) -> State:
+        """Where the chain is now."""
+        return self._engine.state
+
+    def change(self, scene: Scene) -> None:
+        """Use other knobs from the right instant of the drive on; another number of beads starts from rest."""
+        if scene.N != self.scene.N:
+            self.scene = scene
+            self.reset()
+            return
+        at_once = scene.evolve(A0=self.scene.A0, k=scene.k)
+        self._waiting = scene if scene.A0 != self.scene.A0 else None
+        self._engine = self._new_engine(at_once, self._engine.state)
+        self.scene = at_once
+
+    def reset(self) -> None:
+        """Back to rest at drive phase 0, with the newest knobs."""
+        self.scene = self._waiting or self.scene
+        self._waiting = None
+        self.time, self._index = 0.0, 0
+        self._engine = self._new_engine(self.scene, rest(self.scene))
+
+    def advance(self, count: int) -> Run:
+        """Go on by `count` samples: count + 1 rows, the present state first; `time` goes on from call to call."""
+        began = time.perf_counter()
+        pieces = []
+        left = count
+        while left > 0:
+            piece = min(left, self._until_middle()) if self._waiting is not None else left
+            pieces.append(self._advance_piece(piece, began))
+            left -= piece
+            if self._waiting is not None and self._index % (self.samples // 2) == 0:
+                waiting, self._waiting = self._waiting, None
+                self._engine = self._new_engine(waiting, self._engine.state)
+                self.scene = waiting
+        return joined(pieces) if len(pieces) > 1 else pieces[0]
+
+    def _until_middle(self) -> int:
+        half = self.samples // 2
+        return half - self._index % half
+
+    def _advance_piece(self, count: int, began: float) -> Run:
+        engine, first = self._engine, self._index
+        engine.counts.array[:] = 0
+        record = engine.record(count)
+        cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)
+        run = run_from(engine, record, first, _NOT_ASKED, None, cost)
+        start = self.time - float(run.time[0])
+        run = replace(run, time=self.time + np.arange(count + 1) * (self.scene.period / self.samples),
+                      jumps=replace(run.jumps, time=run.jumps.time + start))
+        self.time = float(run.time[-1])
+        self._index = (first + count) % self.samples
+        return run
+
+
+def joined(pieces: list[Run]) -> Run:
+    """One run out of successive ones; the first row of each later piece repeats the last of the one before."""
+
+    def rows(name: str) -> np.ndarray:
+        return np.concatenate([getattr(p, name)[(i > 0) :] for i, p in enumerate(pieces)])
+
+    cost = Cost(sum(p.cost.wall_s for p in pieces), sum(p.cost.steps for p in pieces),
+                sum(p.cost.rhs for p in pieces), sum(p.cost.events for p in pieces), pieces[-1].cost.method)
+    return replace(
+        pieces[-1], cost=cost, time=rows("time"), displacement=rows("displacement"), velocity=rows("velocity"),
+        force=rows("force"), drive_displacement=rows("drive_displacement"),
+        max_input_force=max(p.max_input_force for p in pieces),
+        max_output_force=max(p.max_output_force for p in pieces),
+        max_output_force_elastic=max(p.max_output_force_elastic for p in pieces),
+        jumps=Jumps(np.concatenate([p.jumps.time for p in pieces]), np.concatenate([p.jumps.contact for p in pieces]),
+                    np.concatenate([p.jumps.force for p in pieces]), sum(p.jumps.missing for p in pieces)),
+    )

@@ -1,0 +1,228 @@
+"""`run`: a chain from its start through discarded and recorded periods, to the accuracy asked for.
+
+The motion is computed twice, the second time finer; their largest difference bounds the finer one's error. While it
+is above the accuracy asked for, a still finer one is computed: every accuracy is reached by comparison, none by
+trust in a tolerance.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import BadInput
+from ..integrate import Counts, Engine, Setting, State, live, method_for
+from ..integrate.methods import jump_errors, setting_of, typical_error
+from ..kernels.samples import Samples
+from ..result import Cost, Run, relative_changes, residual, run_from
+from ..scene import Scene
+from ..scene.validity import overlap_warnings
+from ..state import rest
+from ..steady.decide import as_it_stands
+from ..steady.regime import Regime, find_period
+from ..stop import Stop
+from .budget import BUDGET, Stopwatch, check_budget
+from .stated import Computations
+
+#: Most periods in all and most recorded rows of one run.
+MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
+#: Stated error above which a motion may be chaotic: finer computations do not help then.
+_LOST = 0.3
+#: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.
+_CLOSES = 10.0
+#: Periods whose stroboscopic states are kept to decide the regime, however long a run is.
+_KEPT = 420
+#: Time of the next finer computation over that of the last.
+_TWICE = 2.0
+#: Fewest periods on which a run is called anything but unsettled.
+_ENOUGH = 40
+
+
+@dataclass(eq=False)
+class _Attempt:
+    """One computation of the whole motion."""
+
+    engine: Engine
+    samples: Samples
+    strobes: np.ndarray
+
+
+def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, method: str | None = None,
+        start: State | None = None, stop: Stop | None = None,
+        progress: Callable[[float], None] | None = None, budget: float = BUDGET) -> Run:
+    """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
+
+    The motion is computed twice, the second time finer; their largest difference bounds the finer one's error. While
+    it is above the accuracy asked for, a still finer one follows (docs/design.md, "Accuracy is measured, not
+    trusted").
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; `scene.accuracy` is the relative error of the displacements that is asked for.
+    periods : int
+        Drive periods that are run and discarded.
+    record : int
+        Drive periods that are recorded.
+    samples : int
+        Samples a period; both ends are recorded, record · samples + 1 rows.
+    method : str, optional
+        "rk4-split", "dop853", "rk4", "rk4-naive" or "verlet-naive" in place of the one chosen from the accuracy.
+    start : State, optional
+        Where the motion begins; at rest, or with the scene's thrown beads, if not given.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+    progress : callable, optional
+        Called with the fraction of the present computation, 0 to 1.
+    budget : float
+        Seconds the run may take; compiling does not count.
+
+    Returns
+    -------
+    Run
+        The recorded motion. Its `status` is "done", "accuracy-not-reached" where no finer computation came near enough
+        (chaos magnifies every error), or "over-budget" where the next finer one would take too long.
+
+    Raises
+    ------
+    BadInput
+        A number of periods or samples is out of range, or there is no such method.
+    OverBudget
+        The run would take longer than `budget` from the beginning; it is a `BadInput`.
+    NumbersFailed
+        The motion is no longer finite, or a step has shrunk to nothing; the message says which bead, when and why.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import run, scene
+    >>> result = run(scene("sec2").evolve(N=2, f=2000.0), periods=60, record=2, samples=8)
+    >>> result.status, result.regime.name, result.regime.period
+    ('done', 'periodic', 1)
+    >>> result.displacement.shape, result.force.shape
+    ((17, 2), (17, 3))
+    >>> result.error_estimate < 1e-5
+    True
+    """
+    _check_sizes(scene, periods, record, samples)
+    began, spent = time.perf_counter(), Stopwatch()
+    stop = Stop() if stop is None else stop
+    begin = rest(scene) if start is None else start
+    setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
+    check_budget(scene, setting, periods, record, samples, budget)
+    total, status, shown = Counts(), "accuracy-not-reached", Computations(scene.cuts_tension)
+    shown.begin(setting)
+    before = _attempt(scene, setting, begin, (periods, record, samples), stop, progress, total)
+    while True:
+        setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
+        now = _attempt(scene, setting, begin, (periods, record, samples), stop, progress, total)
+        shown.add(setting, now.engine.counts.steps, _differences(now, before), _least(now, setting))
+        error = float(shown.stated[0])
+        lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
+        if error <= scene.accuracy or setting.finest or shown.rounded or lost:
+            break
+        if spent.seconds + _TWICE * lap.seconds > budget:
+            status = "over-budget"
+            break
+        before = now
+    regime = _regime(scene, now, periods + record, stop)
+    if error <= scene.accuracy:
+        status = "done"
+    error, *forces = shown.final(status == "done")
+    cost = Cost.of(time.perf_counter() - began, total, setting.method)
+    first = periods * samples + round(begin.phase * samples)
+    result = run_from(now.engine, now.samples, first, regime, float(error), cost, status, np.array(forces))
+    return replace(result, start=_origin(scene, start))
+
+
+def _origin(scene: Scene, start: State | None) -> str:
+    if start is not None:
+        return "given state"
+    return "thrown beads" if scene.start_velocity else "rest"
+
+
+def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
+    for name, value, low, high in (("periods", periods, 0, MOST_PERIODS), ("record", record, 1, MOST_PERIODS),
+                                   ("samples", samples, 1, 1_000_000)):
+        if not low <= value <= high:
+            raise BadInput(f"{name} = {value} is outside {low} to {high}; the nearest valid value is "
+                           f"{min(max(value, low), high)}.")
+    rows = record * samples * scene.N
+    if rows > MOST_ROWS:
+        raise BadInput(f"{record} periods of {samples} samples for {scene.N} beads are {rows:.1e} values; at most "
+                       f"{MOST_ROWS:.0e} are recorded: record {max(1, MOST_ROWS // (samples * scene.N))} periods.")
+
+
+def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int, int], stop: Stop,
+             progress: Callable[[float], None] | None, total: Counts) -> _Attempt:
+    periods, record, samples = sizes
+    engine = Engine(scene, setting, samples, balance=True, stop=stop)
+    engine.start(start)
+    strobes = [engine.periods(0)[0]]
+    chunk = min(max(1, periods // 50), _KEPT)
+    for done in range(0, periods, chunk):
+        now = min(chunk, periods - done)
+        if start.phase == 0.0:
+            passed, _ = engine.periods(now, watch=False)
+        else:
+            passed = _strobes(engine.record(now * samples), samples)
+        strobes = [*strobes[-_KEPT // chunk - 1 :], passed[1:]]
+        if progress is not None:
+            progress(min(done + chunk, periods) / (periods + record))
+    engine.forget_peaks()
+    rows = engine.record(record * samples)
+    if progress is not None:
+        progress(1.0)
+    total.array += engine.counts.array
+    strobes.append(_strobes(rows, samples)[1:])
+    return _Attempt(engine, rows, np.concatenate(strobes)[-_KEPT - 1 :])
+
+
+def _strobes(rows: Samples, samples: int) -> np.ndarray:
+    """The states one period apart, (P + 1, 2, N)."""
+    return np.stack([rows.displacement[::samples], rows.velocity[::samples]], axis=1)
+
+
+def _difference(now: _Attempt, before: _Attempt) -> float:
+    """Largest difference of any displacement sample over the largest displacement."""
+    largest = float(np.abs(now.samples.displacement).max())
+    if largest == 0.0:
+        return 0.0
+    return float(np.abs(now.samples.displacement - before.samples.displacement).max()) / largest
+
+
+def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
+    """Relative differences (4,) of the displacements and of the largest input, output and elastic output force.
+
+    F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force. Where forces jump their error is
+    uneven from one step size to the next (`jump_errors`), and twice the change is taken for it.
+    """
+    factor = 3.0 if now.engine.lowered.scene.forces_jump else 1.5
+    return np.array([_difference(now, before), *(factor * relative_changes(now.engine.tops, before.engine.tops))])
+
+
+def _least(now: _Attempt, setting: Setting) -> np.ndarray:
+    """What the errors of the same are at least, whatever the differences."""
+    engine = now.engine
+    jumps = jump_errors(setting, engine.lowered, engine.samples, engine.jumps, engine.tops)
+    return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])
+
+
+def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime:
+    """The regime shown by these periods; a slow motion is classified by multipliers or its Lyapunov exponent."""
+    tolerance = 10.0 * scene.accuracy
+    regime = replace(find_period(attempt.strobes, rounding=min(1e-6, tolerance)), periods_run=periods)
+    if periods < _ENOUGH or attempt.engine.grid_index != 0:
+        return regime
+    engine = Engine(scene, live(), 1, stop=stop)
+    engine.start(attempt.engine.state)
+    return as_it_stands(engine, attempt.strobes, regime)
+
+
+def warnings(result: Run) -> list[str]:
+    """Sentences on where the model itself stopped being valid during a run."""
+    return overlap_warnings(result.scene, result.overlap.max(axis=0))

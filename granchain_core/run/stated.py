@@ -1,0 +1,82 @@
+"""The error stated of the finest of several computations of one motion, each finer than the one before."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..integrate.methods import METHODS, Setting, typical_error
+
+#: What the difference of two computations is multiplied by for a method whose order is even across contact events,
+#: and for others.
+_CAUTION, _UNEVEN = 1.5, 3.0
+#: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors. It is
+#: chosen so that few scenes exceed it: eight times the usual rounding.
+_ROUNDINGS = 32.0
+#: Where the typical error of the steps is above this, rounding is no part of the difference.
+_SMOOTH = 1e-10
+#: Relative error above which a motion counts as chaotic at its end, and what is stated then, in amplitudes of the
+#: motion: two chaotic computations may differ by twice the amplitude.
+_WORTHLESS, _ALL = 0.05, 2.0
+
+
+@dataclass(eq=False)
+class Computations:
+    """The errors of several computations of one motion, for several quantities at once.
+
+    Two computations may agree by chance, and a search that stops at agreement favours such chances. The stated error is
+    the largest of
+      - the difference of the last two, times a factor;
+      - the previous difference, reduced by the method's order;
+      - the typical error of a method with such steps;
+      - the rounding of the steps, magnified as the errors of the first computation were.
+    The first quantity determines how errors grow.
+    """
+
+    cuts_tension: bool
+    settings: list[Setting] = field(default_factory=list)
+    stated: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    rounding: float = 0.0
+    _before: np.ndarray | None = None
+    _growth: float = 0.0
+
+    def begin(self, setting: Setting) -> None:
+        """The first computation."""
+        self.settings.append(setting)
+
+    def add(self, setting: Setting, steps: int, differences: np.ndarray, least: np.ndarray) -> None:
+        """Add a finer computation of `steps` steps: its relative differences from the last one, and least errors."""
+        coarser = self.settings[-1]
+        self._see_growth(coarser, float(differences[0]))
+        self.rounding = _ROUNDINGS * self._growth * np.finfo(float).eps * float(np.sqrt(steps))
+        seen = differences
+        if self._before is not None:
+            seen = np.maximum(seen, self._before / self._falls(coarser, setting))
+        even = METHODS[setting.method].even and not self.cuts_tension
+        self.stated = np.maximum((_CAUTION if even else _UNEVEN) * seen, np.maximum(least, self.rounding))
+        self._before = differences
+        self.settings.append(setting)
+
+    @property
+    def rounded(self) -> bool:
+        """Whether rounding is all that is left of the first quantity's error: finer steps gain nothing then."""
+        return bool(self.stated[0] <= self.rounding)
+
+    def final(self, done: bool) -> np.ndarray:
+        """What is stated where no finer computation follows."""
+        if done or self.stated[0] <= _WORTHLESS:
+            return self.stated
+        return np.maximum(self.stated, _ALL)
+
+    def _see_growth(self, coarser: Setting, difference: float) -> None:
+        typical = typical_error(coarser)
+        if typical > _SMOOTH:
+            self._growth = max(self._growth, difference / typical)
+
+    def _falls(self, coarser: Setting, finer: Setting) -> float:
+        """How many times smaller the finer one's error is by the method's order."""
+        method = METHODS[finer.method]
+        if method.adaptive:
+            return coarser.tolerance / finer.tolerance
+        return float((finer.refine / coarser.refine) ** (method.order_with_cut if self.cuts_tension else method.order))

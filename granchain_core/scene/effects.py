@@ -1,0 +1,123 @@
+"""The effects a scene may have, each once: which knobs it has, when it is there, its term in the equation, its words.
+
+`Scene.effects`, the equation on screen, the slots that are filled (lower.py), the names of compiled kernels (warm.py),
+`--explain`, the page's switches and the kernels whose cost is measured are all read from this table.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ..laws import LAWS
+from ..quantities import QUANTITIES
+from .description import Description
+
+
+@dataclass(frozen=True)
+class Equation:
+    """The equation of motion in LaTeX, in parts: right-hand side, force and overlap of contact j, stiffness symbol."""
+
+    motion: str
+    force: str
+    overlap: str
+    stiffness: str
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One effect.
+
+    `slot` is its field of the kernels' `Slots`. `off` are the knob values that switch it off; `knobs` are those that
+    come back when it is switched on, and `usual` what they are where neither the visitor nor the scene has said.
+    `latex` puts its term into the equation. `label` names it in a scene, `key` in the name of a compiled kernel, where
+    its laws are told apart. Where it is not `possible`, `refusal` says why.
+    """
+
+    name: str
+    slot: str
+    title: str
+    meaning: str
+    present: Callable[[Description], bool]
+    latex: Callable[[Equation, Description], Equation] = lambda equation, scene: equation
+    knobs: tuple[str, ...] = ()
+    off: Mapping[str, Any] = field(default_factory=dict)
+    usual: Mapping[str, Any] = field(default_factory=dict)
+    label_of: Callable[[Description], str] | None = None
+    key_of: Callable[[Description], str] | None = None
+    possible: Callable[[Description], bool] = lambda scene: True
+    refusal: str = ""
+
+    def __post_init__(self) -> None:
+        for knob in (*self.knobs, *self.off, *self.usual):
+            if knob not in QUANTITIES:
+                raise TypeError(f"effect {self.name!r}: its knob {knob!r} is not among QUANTITIES of quantities.py.")
+        if self.knobs and not (set(self.off) <= set(self.knobs) and self.off and self.usual):
+            raise TypeError(f"effect {self.name!r} has knobs; it needs `off`, the values of some of them without it, "
+                            "and `usual`, their values with it.")
+
+    def label(self, scene: Description) -> str:
+        """What it is called in a scene."""
+        return self.title if self.label_of is None else self.label_of(scene)
+
+    def key(self, scene: Description) -> str:
+        """What it is called in the name of a compiled kernel."""
+        return self.name if self.key_of is None else self.key_of(scene)
+
+
+def _damped(equation: Equation, scene: Description) -> Equation:
+    return replace(equation, force=equation.force + " + " + LAWS[scene.dissipation].latex)
+
+
+def _cut(equation: Equation, scene: Description) -> Equation:
+    return replace(equation, force=r"\max\left(0,\; " + equation.force + r"\right)")
+
+
+def _founded(equation: Equation, scene: Description) -> Equation:
+    return replace(equation, motion=equation.motion + r" - k\,u_i")
+
+
+def _pressed(equation: Equation, scene: Description) -> Equation:
+    return replace(equation, overlap=equation.overlap + r" + (F_0/" + equation.stiffness + ")^{2/3}")
+
+
+#: In the order in which their terms enter the equation: the cut is one of the damped force.
+EFFECTS = (
+    Effect("dashpot", "dissipation", "contact damping", "A contact loses energy while it is pressed.",
+           lambda scene: scene.has_dissipation, _damped, ("dissipation", "D"), {"dissipation": "none"},
+           {"dissipation": "linear", "D": 100.0}, label_of=lambda scene: LAWS[scene.dissipation].title,
+           key_of=lambda scene: scene.dissipation),
+    Effect("tension", "tension", "tension cut", "A damped contact may not pull while it opens.",
+           lambda scene: scene.cuts_tension, _cut, ("tension",), {"tension": "allowed"}, {"tension": "cut"},
+           key_of=lambda scene: "cut", possible=lambda scene: scene.has_dissipation,
+           refusal="Without contact damping no contact can pull: switch that on first."),
+    Effect("foundation", "foundation", "foundation", "A spring from every bead to the ground.",
+           lambda scene: scene.k > 0.0, _founded, ("k",), {"k": 0.0}, {"kappa": 0.001}),
+    Effect("preload", "preload", "preload",
+           "A static force presses the chain together; without it: sonic vacuum.",
+           lambda scene: scene.F0 > 0.0, _pressed, ("F0",), {"F0": 0.0}, {"F0": 1.0}),
+)
+#: The one effect that is no knob of a scene: it changes nothing in the motion.
+ACCOUNT = Effect("account", "balance", "energy account",
+                 "Work, loss and stored energy are integrated along: how well they close is told in the badge.",
+                 lambda scene: False)
+#: Slots that every scene fills, with what they hold.
+ALWAYS = {"chain": "Hertz contact", "driver": "driver"}
+
+
+def effects_of(scene: Description) -> list[Effect]:
+    """The effects that are in a scene."""
+    return [effect for effect in EFFECTS if effect.present(scene)]
+
+
+def latex(scene: Description) -> str:
+    """Motion, contact force, overlap and driver of `scene` (Zhang et al. 2016, eqs. 1, 3 and 5), active terms only."""
+    masses = len(set(scene.beads)) > 1
+    stiffness = "K_j" if masses or scene.wall_factor != 1.0 else "K"
+    equation = Equation(("m_i" if masses else "m") + r"\,\ddot u_i = F_{i-1} - F_i",
+                        stiffness + r"\,[\delta_j]_+^{3/2}", r"u_j - u_{j+1}", stiffness)
+    for effect in effects_of(scene):
+        equation = effect.latex(equation, scene)
+    return (equation.motion + r",\qquad F_j = " + equation.force + r",\qquad \delta_j = " + equation.overlap
+            + r",\qquad u_0 = A_0\sin 2\pi f t,\quad u_{N+1} = 0")

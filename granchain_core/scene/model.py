@@ -1,0 +1,93 @@
+"""A scene: the description of a chain with its effects, its equation, its identity, and changes of its knobs."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from ..errors import BadInput, unknown_name
+from ..quantities import QUANTITIES
+from .description import Bead, Description
+from .effects import effects_of, latex
+from .validity import warnings
+
+
+@dataclass(frozen=True)
+class Scene(Description):
+    """A driven chain, immutable and hashable; `evolve` gives one with other knobs.
+
+    Its fields are those of `Description`.
+
+    Examples
+    --------
+    >>> from granchain_core import scene
+    >>> chain = scene("sec2").evolve(N=2, f=2000.0, dissipation="tsuji")
+    >>> chain.effects
+    ['contact', 'driver', 'wall', 'Tsuji damping']
+    >>> chain.masses().shape, chain.contact_stiffness().shape
+    ((2,), (3,))
+    >>> chain.evolve(f=-1.0)
+    Traceback (most recent call last):
+    ...
+    granchain_core.errors.BadInput: drive frequency f = -1 Hz is outside 0.1 to 1e+06 Hz; ...
+    """
+
+    @property
+    def effects(self) -> list[str]:
+        """Names of the effects that are in this scene, and therefore in its kernel."""
+        return ["contact", "driver", "wall", *(effect.label(self) for effect in effects_of(self))]
+
+    def equation_latex(self) -> str:
+        """The equation of motion with the terms that are computed, and no others."""
+        return latex(self)
+
+    def validity(self) -> list[str]:
+        """Sentences on where the model itself stops being valid for this scene (none, when it is fine)."""
+        return warnings(self)
+
+    # --- identity and change -------------------------------------------------------------------------------
+
+    def to_json(self) -> dict[str, Any]:
+        """The whole scene as plain data, enough to build it again."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Scene:
+        """The scene that `to_json` described."""
+        pairs = ("ranges", "start_velocity", "preset")
+        return cls(**{**data, "pattern": tuple(Bead(**b) for b in data["pattern"]),
+                      "impurities": tuple((int(i), Bead(**b)) for i, b in data["impurities"]),
+                      **{p: tuple(tuple(x) for x in data[p]) for p in pairs}})
+
+    @property
+    def digest(self) -> str:
+        """Hash of everything that changes the answer: the key of caches and the identity of a share link."""
+        physics = {k: v for k, v in self.to_json().items()
+                   if k not in ("name", "title", "look_at", "paper", "ranges", "preset")}
+        return hashlib.sha256(json.dumps(physics, sort_keys=True).encode()).hexdigest()[:16]
+
+    def evolve(self, **changes: Any) -> Scene:
+        """This scene with other knobs; `kappa` sets k = κ·K·√A0 with the resulting scene's own A0.
+
+        Raises `BadInput` for unknown knobs, values outside their range, and k together with kappa.
+        """
+        for name in changes:
+            if name not in QUANTITIES:
+                raise unknown_name("knob", name, QUANTITIES)
+        if "k" in changes and "kappa" in changes:
+            raise BadInput("k and kappa say the same thing: give one of them, not both.")
+        checked = {name: QUANTITIES[name].check(value) for name, value in changes.items()}
+        kappa = checked.pop("kappa", None)
+        new = replace(self, **checked)  # type: ignore[arg-type]  # checked above against the table
+        special = (*new.impurities, *new.start_velocity)
+        if special and max(i for i, _ in special) > new.N:
+            place = max(i for i, _ in special)
+            raise BadInput(f"number of beads N = {new.N} leaves no bead {place}, which is special in scene "
+                           f"{self.name!r}; the nearest valid value is {place}.")
+        if kappa is not None:
+            k = float(kappa) * new.K * math.sqrt(new.A0)
+            new = replace(new, k=QUANTITIES["k"].check(k))  # type: ignore[arg-type]
+        return new

@@ -1,0 +1,43 @@
+"""Where a chain is at one instant, in SI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """Where a chain is: its state at one instant.
+
+    Attributes
+    ----------
+    displacement : numpy.ndarray, shape (N,)
+        Displacements from the places of first touch [m].
+    velocity : numpy.ndarray, shape (N,)
+        [m/s]
+    phase : float
+        Drive phase as a fraction of a period, 0 to 1.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from granchain_core import State
+    >>> State(np.zeros(2), np.array([0.01, 0.0])).phase
+    0.0
+    """
+
+    displacement: np.ndarray
+    velocity: np.ndarray
+    phase: float = 0.0
+
+
+def rest(scene: Scene) -> State:
+    """The scene's start: at rest at drive phase 0, except for beads that are given a velocity."""
+    velocity = np.zeros(scene.N)
+    for bead, v in scene.start_velocity:
+        velocity[bead - 1] = v
+    return State(np.zeros(scene.N), velocity)

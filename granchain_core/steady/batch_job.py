@@ -1,0 +1,154 @@
+"""One member of a batch: when its regime is checked, and what follows from the result."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..integrate import Engine, State, live
+from ..integrate.batch import Batch
+from ..integrate.methods import AT_A_JUMP, jump_errors
+from ..lower import Lowered
+from ..result import CAUTION, relative_changes
+from ..scene import Scene
+from ..state import rest
+from .decide import MOST_PERIODS, SLOW_PERIODS
+from .regime import SLOW_RECORD, Regime, shrinking
+from .settle import MOST_STEPS
+from .steady_state import SteadyState
+
+#: How the largest forces on an orbit are found where they jump: finer than the batch that found the orbit.
+_LOCATED = live(8)
+#: Periods over which the largest force of an irregular motion is taken.
+_IRREGULAR_PERIODS = 100
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """A scene that is to be settled, from rest or from `state` at phase 0; its `number` comes back with the result."""
+
+    scene: Scene
+    state: State | None = None
+    number: int = 0
+
+
+@dataclass(eq=False)
+class Job:
+    """A scene on its way, from the scaled state y at phase 0, after `run` periods before.
+
+    `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record, its
+    forces [N] and what a first measurement of its Lyapunov exponent said.
+    """
+
+    scene: Scene
+    lowered: Lowered
+    y: np.ndarray
+    run: int = 0
+    coarse: tuple[Regime, np.ndarray] | None = None
+    in_doubt: bool = False
+    record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
+    tops: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    measured: Regime | None = None
+    number: int = 0
+
+    @property
+    def affordable_periods(self) -> int:
+        """Periods of the coarse run that the budget of steps allows."""
+        return max(2, MOST_STEPS // self.lowered.steps_per_period())
+
+    @property
+    def affordable(self) -> bool:
+        """Whether the budget of steps allows another long look."""
+        return self.run + MOST_PERIODS < self.affordable_periods
+
+    def fine_result(self, block: Batch, lane: int) -> SteadyState:
+        """The result of the finer run."""
+        assert self.coarse is not None
+        regime, before = self.coarse
+        assert regime.period is not None and regime.distance is not None
+        y, distance = block.state.y[:, lane], float(block.state.seen[lane, 2])
+        tops, jumps = block.tops(lane, regime.period), block.jumps(lane, regime.period)
+        errors = CAUTION * relative_changes(tops, before)
+        at_jump = np.append(jumps > AT_A_JUMP * tops[:2], False)
+        if at_jump.any():
+            located, moved = self._located_tops(y, regime)
+            tops, errors = np.where(at_jump, located, tops), np.where(at_jump, moved, errors)
+        # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
+        errors += 1.5 * max(distance, regime.distance)
+        tops = tops * self.lowered.scales.force
+        return SteadyState(self.scene, tops, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
+                          number=self.number)
+
+    def _located_tops(self, y: np.ndarray, regime: Regime) -> tuple[np.ndarray, np.ndarray]:
+        """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
+
+        Lanes take their steps across events: what they see of a jump is off by an order of the step. A second orbit
+        shows by how much the forces still change on the way from the lanes' orbit to this method's.
+        """
+        assert regime.period is not None
+        engine = Engine(self.scene, _LOCATED, 1, lowered=self.lowered)
+        engine.start_scaled(self.lowered.beads_of(y))
+        first = engine.largest_forces(regime.period)
+        tops = engine.largest_forces(regime.period)
+        moved = relative_changes(tops, first) / (1.0 - regime.slowness)
+        return tops, moved + jump_errors(_LOCATED, self.lowered, 1, engine.jumps, tops)
+
+
+def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:
+    """What the coarse run alone has come to."""
+    run = int(block.state.periods[lane])
+    period = block.state.seen[lane, 0]
+    if period <= 0:
+        return unsettled(job, block, lane, run)
+    regime = _periodic(block, lane, run)
+    tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
+    return SteadyState(job.scene, tops, regime, None, job.lowered.unscaled(block.state.y[:, lane]), number=job.number)
+
+
+def check_coarse(job: Job, block: Batch, lane: int) -> SteadyState | Job | None:
+    """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
+    here = int(block.state.periods[lane])
+    run = job.run + here
+    period = block.state.seen[lane, 0]
+    if period > 0:
+        regime = _periodic(block, lane, run)
+        settled = (regime, block.settled_tops(lane, int(period)))
+        return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, settled, number=job.number)
+    if run >= job.affordable_periods:
+        return unsettled(job, block, lane, run)
+    record = block.strobes(lane)
+    if run >= SLOW_PERIODS or (len(record) >= SLOW_RECORD and not shrinking(record)):
+        return _in_doubt(job, block, lane, run, record.copy())
+    block.state.look[lane] = min(here + max(MOST_PERIODS // 4, SLOW_RECORD - len(record)),
+                                 job.affordable_periods - job.run)
+    return None
+
+
+def _periodic(block: Batch, lane: int, run: int) -> Regime:
+    """The periodic regime that a coarse lane has come to; followed where extrapolations brought it there."""
+    period, rate, distance = block.state.seen[lane]
+    return Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run,
+                  followed=bool(block.state.slowest[lane] > 0.0))
+
+
+def _in_doubt(job: Job, block: Batch, lane: int, run: int, record: np.ndarray) -> Job:
+    """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
+    tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
+    return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, in_doubt=True, record=record, tops=tops,
+               number=job.number)
+
+
+def unsettled(job: Job, block: Batch, lane: int, run: int) -> SteadyState:
+    """What a lane has come to when its budget of steps is spent."""
+    tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
+    state = job.lowered.unscaled(block.state.y[:, lane])
+    return SteadyState(job.scene, tops, Regime.unsettled(run), None, state,
+                      number=job.number)
+
+
+def failed(job: Job) -> SteadyState:
+    """A lane whose numbers stopped being finite."""
+    sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping or ask for higher accuracy."
+    return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(0), None, rest(job.scene), sentence,
+                       "not-finite", job.number)

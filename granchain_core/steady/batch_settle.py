@@ -1,0 +1,188 @@
+"""Many steady states in batches: settle with coarse steps, then with fine ones; the difference is the error.
+
+Every scene starts in a lane with coarse steps. Once its regime is decided, the next scene takes its lane. A
+periodic scene is run again from its settled state with a third of the step, until the difference from the coarse orbit
+has decayed; the forces of this finer run are reported, with their change as error estimate. Slow approaches are
+extrapolated in both runs (kernels/strobes/extrapolation.py). Motions that are not periodic within the
+budget are classified by their Lyapunov exponents, four scenes at a time. Results that are still undecided are marked
+and left to `settle`, which takes one chain at a time (curve.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ..integrate.batch import NEVER, Batch
+from ..kernels.batch.run import LANES
+from ..lower import lower
+from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
+from .batch_job import Job, Start, check_coarse, draft_result, failed
+from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
+from .lyapunov import MOST_APART, exponents_in_pairs
+from .nearby_orbit import MOST_BEADS, seen_modulus
+from .regime import agree, clearly_chaotic, find_period, irregular
+from .steady_state import SteadyState
+
+#: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
+#: which is what is claimed.
+_FINER = 3
+#: Periods after which a draft gives up.
+_DRAFT = 300
+#: Decay per orbit above which an orbit that was extrapolated to needs its multipliers, and largest |μ|, as seen by
+#: coarse differences, that settles it.
+_SLOW, _SURE = 0.998, 0.995
+#: Scenes whose exponents are found at once.
+_PAIRS = LANES // 2
+
+
+class _Lanes:
+    """A block of lanes with the jobs in them, those waiting for a lane and those whose regime is in doubt."""
+
+    def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
+        self.block = Batch(first.scene, stop)
+        self.draft = draft
+        self.stop = stop
+        self.waiting = [_new_job(first)]
+        self.starts = starts
+        self.jobs: dict[int, Job] = {}
+        self.doubtful: list[Job] = []
+
+    def fill(self) -> None:
+        """Put jobs into all free lanes."""
+        for lane in range(LANES):
+            if lane not in self.jobs:
+                job = self.waiting.pop() if self.waiting else _job_or_none(self.starts)
+                if job is not None:
+                    self.jobs[lane] = job
+                    self._start(lane, job)
+
+    def _start(self, lane: int, job: Job) -> None:
+        """The coarse run is checked once it may have settled, the finer one once its start has decayed."""
+        if job.coarse is None:
+            look = min(_DRAFT if self.draft else MOST_PERIODS, job.affordable_periods - job.run)
+            self.block.put(lane, job.lowered, job.y, 1, look)
+            return
+        regime, tops = job.coarse
+        assert regime.period is not None
+        rate = max(1e-3, regime.slowness)
+        self.block.put_fine(lane, job.lowered, job.y, _FINER, regime.period, rate, tops)
+
+    def step(self) -> SteadyState | None:
+        """Run until a lane is due for a check, and check it."""
+        lane, finite = self.block.run()
+        job = self.jobs[lane]
+        if not finite:
+            self._free(lane)
+            return failed(job)
+        if self.draft:
+            result = draft_result(job, self.block, lane)
+            self._free(lane)
+            return result
+        outcome = check_coarse(job, self.block, lane) if job.coarse is None else job.fine_result(self.block, lane)
+        if outcome is None:
+            return None
+        self._free(lane)
+        if isinstance(outcome, SteadyState):
+            return confirmed(outcome, self.stop)
+        (self.doubtful if outcome.in_doubt else self.waiting).append(outcome)
+        return None
+
+    def _free(self, lane: int) -> None:
+        """Leave a lane at rest with nothing to look at until it is filled again."""
+        job = self.jobs.pop(lane)
+        self.block.put(lane, job.lowered, np.zeros_like(job.y), 1, NEVER, NEVER)
+
+    def undecided(self) -> list[Job]:
+        """Up to four doubtful jobs with about as many steps a period; fewer than four only if nothing else is to do."""
+        jobs = sorted(self.doubtful, key=_steps)
+        for i in range(len(jobs) - _PAIRS + 1):
+            if _steps(jobs[i + _PAIRS - 1]) <= MOST_APART * _steps(jobs[i]):
+                return jobs[i : i + _PAIRS]
+        return [] if self.jobs else [job for job in jobs if _steps(job) <= MOST_APART * _steps(jobs[0])]
+
+    def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
+        """Tell doubtful jobs apart; one whose neighbours come closer is given more time."""
+        self.doubtful = [job for job in self.doubtful if job not in jobs]
+        found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], BLOCKS, BLOCK, self.stop)
+        for job, (growth, strobes, tops, y) in zip(jobs, found, strict=True):
+            if not np.isfinite(growth).all():
+                yield failed(job)
+                continue
+            job.run += len(strobes)
+            job.y, job.in_doubt = y, False
+            regime = replace(find_period(strobes), periods_run=job.run)
+            if regime.period is not None:
+                job.coarse = (regime, tops[-regime.period :].max(axis=0))
+                self.waiting.append(job)
+                continue
+            regime, before = irregular(growth, job.record, job.run), job.measured
+            if before is None and growth.mean() > 0.01 and regime.name != "unsettled" and not clearly_chaotic(growth):
+                job.measured, job.in_doubt = regime, True
+                self.doubtful.append(job)
+            elif regime.name == "unsettled" and growth.mean() < 0.0 and job.run < SLOW_PERIODS and job.affordable:
+                self.waiting.append(job)
+            else:
+                unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
+                yield SteadyState(job.scene, job.tops, regime, None, job.lowered.unscaled(y), number=job.number,
+                                 doubtful=unclear and job.affordable)
+
+
+def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
+    """Steady states of scenes of one structure and one N, from rest, in the order in which they are decided.
+
+    See `batch_states`.
+    """
+    return batch_states((Start(scene) for scene in scenes), stop, draft)
+
+
+def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
+    """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
+
+    What is found does not depend on which starts share the lanes, but for rounding. A draft ends with the coarse run
+    and after few periods: without errors, and what is not periodic by then is called unsettled. Raises `Cancelled`.
+    """
+    first = next(starts, None)
+    if first is None:
+        return
+    lanes = _Lanes(first, starts, stop, draft)
+    while True:
+        lanes.fill()
+        undecided = lanes.undecided()
+        if undecided:
+            yield from lanes.decide(undecided)
+        elif not lanes.jobs:
+            return
+        else:
+            result = lanes.step()
+            if result is not None:
+                yield result
+
+
+def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
+    """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
+    regime, scene = result.regime, result.scene
+    if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:
+        return result
+    y = lower(scene).scaled(result.state).reshape(2, -1)
+    largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
+    return result if largest < _SURE else replace(result, doubtful=True)
+
+
+def _steps(job: Job) -> int:
+    return job.lowered.steps_per_period()
+
+
+def _new_job(start: Start) -> Job:
+    lowered = lower(start.scene)
+    state = rest(start.scene) if start.state is None else start.state
+    return Job(start.scene, lowered, lowered.scaled(state), number=start.number)
+
+
+def _job_or_none(starts: Iterator[Start]) -> Job | None:
+    start = next(starts, None)
+    return None if start is None else _new_job(start)

@@ -1,0 +1,42 @@
+"""Where a scene settles, whoever found it: a batch or one chain by itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..result import ForceErrors
+from ..scene import Scene
+from ..state import State
+from .regime import Regime
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyState:
+    """A steady state with its largest forces `tops` (3,) [N] in the order input, output, elastic output.
+
+    `errors` (3,) are their relative errors, None where none is claimed; `state` is at drive phase 0. With a `failure`,
+    a sentence, there are none of these, and `status` is its name. `number` is that of the start it was found from.
+    What is `doubtful` a batch did not decide, and `settle` has to, from `state`.
+    """
+
+    scene: Scene
+    tops: np.ndarray
+    regime: Regime
+    errors: np.ndarray | None
+    state: State
+    failure: str = ""
+    status: str = "done"
+    number: int = 0
+    doubtful: bool = False
+
+    @property
+    def force_errors(self) -> ForceErrors:
+        """The relative errors by name."""
+        return ForceErrors.of(self.errors)
+
+    @property
+    def error_estimate(self) -> float | None:
+        """Relative error of the output force, infinite where that force is zero; None where none is claimed."""
+        return None if self.errors is None else float(self.errors[1])

@@ -1,0 +1,3 @@
+"""The version that result files carry."""
+
+__version__ = "0.1.0"

@@ -1,0 +1,174 @@
+"""Who imports whom: no circle anywhere, the layers of `app`, and private attributes of libraries in one file only."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from panel.custom import JSComponent
+
+import app.page.layout  # noqa: F401  (makes every component known)
+from app.parts.component import Component
+from app.parts.drawn import Drawn
+
+ROOT = Path(__file__).parents[2]
+
+
+def module_name(path: Path) -> str:
+    """The dotted name of a file; a package is its `__init__`."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {module_name(path): path for name in ("granchain_core", "app") for path in sorted((ROOT / name).rglob("*.py"))}
+
+
+def imports(module: str) -> set[str]:
+    """The modules a file imports wherever it does: at the top, in a function, for type checking."""
+    path = MODULES[module]
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            base = ".".join([*above, *([node.module] if node.module else [])])
+            found |= {name if (name := f"{base}.{alias.name}") in MODULES else base for alias in node.names}
+    return {name for name in found if name in MODULES}
+
+
+def circles(graph: dict[str, set[str]]) -> list[list[str]]:
+    """Modules that can be reached from each other (Tarjan's strongly connected components of more than one)."""
+    number: dict[str, int] = {}
+    lowest: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(module: str) -> None:
+        number[module] = lowest[module] = len(number)
+        stack.append(module)
+        for target in graph[module]:
+            if target not in number:
+                visit(target)
+                lowest[module] = min(lowest[module], lowest[target])
+            elif target in stack:
+                lowest[module] = min(lowest[module], number[target])
+        if lowest[module] == number[module]:
+            place = stack.index(module)
+            if len(stack) - place > 1 or module in graph[module]:
+                found.append(sorted(stack[place:]))
+            del stack[place:]
+
+    for module in graph:
+        if module not in number:
+            visit(module)
+    return found
+
+
+def test_a_circle_is_found() -> None:
+    """The search itself: two circles, one of a module with itself, and a tail that belongs to none."""
+    graph = {"a": {"b"}, "b": {"c", "d"}, "c": {"a"}, "d": {"e"}, "e": set(), "f": {"f", "a"}}
+    assert circles(graph) == [["a", "b", "c"], ["f"]]
+
+
+def test_no_import_goes_in_a_circle() -> None:
+    assert circles({module: imports(module) for module in MODULES}) == []
+
+
+#: What the page computes and remembers, without a view; the rest of `app.page` puts the dashboard together.
+RULES = {"active_setting", "energy_residual", "format", "frames", "host", "job_list", "live", "session", "share", "task"}
+#: Each layer of `app` with those it may import, besides the core. A page's layer is its folder.
+ALLOWED = {
+    "cli": {"cli"},
+    "serve": {"serve"},
+    "rules": {"rules", "serve"},
+    "pictures": {"pictures", "rules"},
+    "parts": {"parts", "pictures", "rules", "serve"},
+    "page": {"page", "pages", "parts", "pictures", "rules", "serve"},
+    "start": {"page", "rules", "serve"},
+}
+#: Single imports across: the command that serves, and what is no page although it stands in a page's folder.
+ACROSS = {
+    ("app.cli.commands", "app.serve.server"), ("app.page.session", "app.pages.effects.switches"),
+    ("app.pages.effects.page", "app.cli.explain"),
+}
+
+
+def layer(module: str) -> str:
+    """The layer of a module of `app`."""
+    parts = module.split(".")[1:]
+    if module in ("app.main", "app.serve.server"):
+        return "start"
+    if module in ("app", "app.scripts"):
+        return "serve"
+    if parts[0] == "page":
+        return "rules" if parts[-1] in RULES else "page"
+    return ".".join(parts[:2]) if parts[0] == "pages" else parts[0]
+
+
+@pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app.")])
+def test_a_layer_of_the_app_imports_only_what_stands_above_it(module: str) -> None:
+    """Pages know their host and not the controller, parts know no page, the command line knows nothing of a page."""
+    mine = layer(module)
+    for name in sorted(imports(module)):
+        if not name.startswith("app.") or (module, name) in ACROSS:
+            continue
+        theirs = layer(name)
+        if mine.startswith("pages"):
+            assert theirs == mine or theirs in {"parts", "pictures", "rules", "serve"}, f"{module} imports {name}"
+        else:
+            assert theirs.split(".")[0] in ALLOWED[mine], f"{module} imports {name}"
+
+
+def test_the_core_imports_nothing_of_the_app() -> None:
+    assert [(m, name) for m in MODULES if m.startswith("granchain_core") for name in imports(m) if name.startswith("app")] == []
+
+
+def test_every_folder_says_in_one_line_what_it_is_for() -> None:
+    for path in MODULES.values():
+        init = path.parent / "__init__.py"
+        assert init.exists(), f"{path.parent} has no __init__.py"
+        purpose = ast.get_docstring(ast.parse(init.read_text(encoding="utf-8"))) or ""
+        assert purpose.split("\n")[0].endswith("."), f"{init} does not say what its folder is for"
+
+
+#: What Panel documents for components of one's own, underscore and all.
+DOCUMENTED = {"_esm", "_stylesheets", "_handle_msg", "_send_msg"}
+
+
+#: Public, whatever their names begin with.
+_OF_NAMED_TUPLES = {"_fields", "_replace", "_asdict", "_make"}
+
+
+def private_uses(module: str) -> Iterator[str]:
+    """Private attributes of other objects than a class's own, by a dot or by name."""
+    for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Attribute) and ast.unparse(node.value) not in ("self", "cls", "os"):
+            name = node.attr
+        elif isinstance(node, ast.Call) and ast.unparse(node.func) in ("getattr", "hasattr", "setattr", "delattr") \
+                and isinstance(node.args[1], ast.Constant):
+            name = str(node.args[1].value)
+        else:
+            continue
+        if name.startswith("_") and not name.startswith("__") and name not in _OF_NAMED_TUPLES:
+            yield name
+
+
+@pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app")])
+def test_private_attributes_of_others_are_used_in_one_file(module: str) -> None:
+    if module == "app.serve.websocket":
+        assert set(private_uses(module)) == {"_subscribed_connections", "_socket", "_pending_writes", "_handle_write",
+                                             "_process_event", "_process_bokeh_event"}
+    elif module != "app.cli":  # argparse has no public way to its subcommands
+        assert list(private_uses(module)) == []
+
+
+def test_parts_override_of_panel_only_what_is_documented() -> None:
+    parts = [Component, *Component.__subclasses__(), *Drawn.__subclasses__()]
+    assert len(parts) > 10
+    for part in parts:
+        own = {name for name in vars(part) if name.startswith("_") and not name.startswith(("__", "_param", "_data_model"))}
+        assert {name for name in own if hasattr(JSComponent, name)} <= DOCUMENTED

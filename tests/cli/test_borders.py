@@ -1,0 +1,207 @@
+"""Bad input beyond the common slips: odd paths, odd links, odd files. Always a sentence, never a traceback."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.cli import main
+from app.page.share import decode
+from granchain_core import BadInput, NumbersFailed, run, scene
+from granchain_core.experiment import read_measured_csv
+from granchain_core.store import load, save
+
+SHORT = ["--set", "N=2", "--periods", "0", "--record", "1", "--samples", "4", "--set", "f=3000"]
+
+
+@pytest.mark.parametrize("out", [".", "..", "/", "folder", "folder/", "/proc/granchain.h5", "a\nb/c.h5", "x" * 300])
+def test_an_out_that_is_no_writable_file_is_bad_input(out, tmp_path, monkeypatch, capsys):
+    """A folder, the root, a file system that takes no files, a name that is too long."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    assert main(["run", "sec2", *SHORT, "--out", out]) == 2
+    said = capsys.readouterr().err
+    assert "Traceback" not in said
+    assert "Cannot write" in said
+    assert os.listdir(tmp_path) == ["folder"]
+    assert os.listdir(tmp_path / "folder") == []
+
+
+def test_an_unwritable_out_is_said_before_the_work_and_not_after_it(tmp_path, monkeypatch, capsys):
+    """Hours of computing must not end with a misspelt folder: nothing is run when the file cannot be written."""
+    def computes(*_, **__):
+        pytest.fail("computed before looking at --out")
+
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "run", computes)
+    assert main(["run", "sec2", *SHORT, "--out", str(tmp_path / "none" / "a.h5")]) == 2
+    assert "Cannot write" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["--from", "nan", "--to", "9", "--points", "3"], ["--from", "1", "--to", "inf", "--points", "3"],
+                                   ["--from", "1", "--to", "9", "--points", "nan"], ["--from", "1", "--to", "9", "--points", "2.5"],
+                                   ["--from", "1", "--to", "9", "--points", "-1"], ["--from", "x", "--to", "9", "--points", "1"],
+                                   ["--from", "1e9", "--to", "2e9", "--points", "2"], ["--from", "5", "--points", "2"],
+                                   ["--from", "1", "--to", "9", "--points", "100001"]])
+def test_every_bad_number_of_a_curve_has_one_sentence(words, capsys):
+    """Not finite, not whole, not there, too large."""
+    assert main(["curve", "sec2", *words]) == 2
+    out, said = capsys.readouterr()
+    assert out == ""
+    assert len(said.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("words", [["--samples", "0"], ["--samples", "2000000"], ["--record", "10000001"],
+                                   ["--record", "100000", "--samples", "1000"], ["--periods", "10000001"]])
+def test_sizes_that_cannot_be_kept_are_refused(words, capsys):
+    """Before anything is allocated."""
+    assert main(["run", "sec2", *words]) == 2
+    assert "nearest" in (said := capsys.readouterr().err) or "at most" in said
+
+
+def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
+    """A million periods of ten thousand beads would be 160 GB of strobes."""
+    module = sys.modules["granchain_core.run.run"]
+    shown = scene("sec2").evolve(N=2, f=3000.0)
+    setting = module.method_for(1e-3)
+    kept = module._attempt(shown, setting, module.rest(shown), (3000, 1, 4), module.Stop(), None, module.Counts())
+    assert len(kept.strobes) == module._KEPT + 1
+
+
+def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, capsys):
+    """Status 3 with which bead, when and why, from `run` as well."""
+    def fails(*_, **__):
+        raise NumbersFailed("The motion of bead 3 stopped being a finite number at about 1 s.", "not-finite")
+
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "run", fails)
+    assert main(["run", "sec2", *SHORT, "--json"]) == 3
+    out, said = capsys.readouterr()
+    assert json.loads(out)["status"] == "not-finite"
+    assert said == "The motion of bead 3 stopped being a finite number at about 1 s.\n"
+
+
+def test_stdout_of_a_process_is_one_json_object_and_nothing_else():
+    """As a script sees it, --explain and all; progress and explanations go to stderr."""
+    words = [sys.executable, "-m", "app.cli", "run", "sec2", *SHORT, "--json", "--explain"]
+    done = subprocess.run(words, capture_output=True, text=True, cwd=Path(__file__).parents[2], check=False, timeout=300)
+    assert done.returncode == 0
+    assert len(done.stdout.splitlines()) == 1
+    assert json.loads(done.stdout)["status"] == "done"
+    assert "compiled in: Hertz contact" in done.stderr
+
+
+def test_explain_names_present_and_absent_effects_and_the_method(capsys):
+    """What is in, what is out, how it is computed and why."""
+    assert main(["run", "sec2", *SHORT, "--explain"]) == 0
+    said = capsys.readouterr().out
+    present, absent = said.splitlines()[:2]
+    assert "Hertz contact" in present and "contact damping (LinearDashpot)" in present and "driver" in present
+    assert all(name in absent for name in ("foundation", "preload", "tension cut"))
+    assert "method:" in said and "accuracy of 1e-06" in said
+
+
+# --- share links ----------------------------------------------------------------------------------------------
+
+
+def test_a_bad_kappa_does_not_take_a_good_k_with_it():
+    """Each bad field is refused by itself: with kappa unreadable, k counts."""
+    found, _, refused = decode("v=1&scene=sec2&k=5000&kappa=abc")
+    assert found.k == 5000.0
+    assert len(refused) == 1
+
+
+def test_k_and_a_good_kappa_together_are_said():
+    """kappa is used and k is refused with its sentence."""
+    found, _, refused = decode("v=1&scene=sec2&kappa=0.001&k=5000")
+    assert found.kappa == pytest.approx(0.001, rel=1e-12)  # k = κK√A0 and back
+    assert len(refused) == 1 and "kappa was used" in refused[0]
+
+
+@pytest.mark.parametrize("query", ["kappa=0.002&A0=1e-5", "A0=1e-5&kappa=0.002"])
+def test_kappa_in_a_link_means_the_links_own_amplitude(query):
+    """In whatever order the fields come."""
+    found, _, refused = decode("v=1&scene=rig&" + query)
+    assert refused == []
+    assert (found.A0, found.kappa) == (1e-5, pytest.approx(0.002, rel=1e-12))
+
+
+def test_a_field_that_comes_twice_is_said():
+    """The command line refuses a knob set twice; a link must not choose in silence."""
+    _, _, refused = decode("v=1&scene=sec2&f=300&f=400")
+    assert len(refused) == 1
+
+
+@pytest.mark.parametrize("field", ["f=", "f=1e400", "f=-inf", "f=0x10", "N=1e1000", "N=3.5", "wall=", "wall=-1", "tension=",
+                                   "dissipation=LINEAR", "k=%00", "A0=%F0%9F%98%80", "accuracy=0", "F0=1,5"])
+def test_every_bad_field_of_a_link_has_its_sentence(field):
+    """And the scene stays what it was, f = 500 Hz included."""
+    found, _, refused = decode(f"v=1&scene=sec2&{field}&D=77")
+    assert len(refused) == 1
+    assert found == scene("sec2").evolve(D=77.0)
+
+
+# --- files ----------------------------------------------------------------------------------------------------
+
+
+@given(st.one_of(st.text(max_size=300), st.binary(max_size=300),
+                 st.lists(st.tuples(st.floats(), st.floats()), max_size=5).map(
+                     lambda rows: "\n".join(f"{a},{b}" for a, b in rows))))
+def test_any_csv_is_measured_or_bad_input(text):
+    """No other exception, and what was read is finite, ascending and not negative."""
+    try:
+        found = read_measured_csv(text)
+    except BadInput as problem:
+        assert str(problem)
+        return
+    assert np.isfinite(found.frequency).all() and np.isfinite(found.force).all()
+    assert (np.diff(found.frequency) >= 0).all() and (found.force >= 0).all() and (found.frequency > 0).all()
+
+
+@pytest.mark.parametrize(("text", "force"), [("0,5;1,5e-6\n1;2", [1.5e-6, 2.0]), ("1;0,5\n2;1,5", [0.5, 1.5])])
+def test_decimal_commas_mean_what_they_say(text, force):
+    """DESIGN: `0,5;1,5e-6` is 1.5e-6 N at 0.5 Hz."""
+    np.testing.assert_array_equal(read_measured_csv(text).force, force)
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    """A small run in a file."""
+    path = tmp_path_factory.mktemp("stored") / "a.h5"
+    return save(run(scene("sec2").evolve(N=2, f=3000.0), periods=0, record=1, samples=4), path)
+
+
+@pytest.mark.parametrize("harm", ["no scene", "scene no json", "scene other", "no regime", "cost no json", "schema word",
+                                  "time group", "displacement short"])
+def test_a_harmed_file_is_bad_input(harm, stored, tmp_path):
+    """Whatever is missing or wrong in it, `load` says that it is not a run written by granchain."""
+    path = tmp_path / "b.h5"
+    path.write_bytes(stored.read_bytes())
+    with h5py.File(path, "a") as file:
+        if harm == "no scene":
+            del file.attrs["scene"]
+        elif harm == "scene no json":
+            file.attrs["scene"] = "{"
+        elif harm == "scene other":
+            file.attrs["scene"] = "{}"
+        elif harm == "no regime":
+            del file.attrs["regime"]
+        elif harm == "cost no json":
+            file.attrs["cost"] = "[1]"
+        elif harm == "schema word":
+            file.attrs["granchain_schema"] = "one"
+        elif harm == "time group":
+            del file["run/time"]
+            file.create_group("run/time")
+        else:
+            del file["run/displacement"]
+            file["run/displacement"] = np.zeros(3)
+    with pytest.raises(BadInput):
+        load(path)

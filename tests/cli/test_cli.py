@@ -1,0 +1,152 @@
+"""The command line: exact JSON keys, exit statuses, and one clear sentence for every wrong input."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import pytest
+
+from app.cli import main
+
+RUN_KEYS = {"scene", "knobs", "effects", "status", "regime", "period", "max_output_force", "max_output_force_elastic",
+            "max_input_force", "error_estimate", "error_estimate_input", "error_estimate_output",
+            "error_estimate_elastic", "energy_residual", "cost"}
+CURVE_KEYS = {"frequency", "max_output_force", "max_output_force_elastic", "max_input_force", "regime", "period",
+              "error_estimate", "error_estimate_input", "error_estimate_elastic", "wall_s"}
+SHORT = ["--periods", "2", "--record", "1", "--samples", "8"]
+
+
+def test_run_prints_one_json_object_with_the_contracts_keys(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "sec2", "--periods", "60", "--record", "2", "--json", "--explain"]) == 0
+    out, err = capsys.readouterr()
+    data = json.loads(out)
+    assert set(data) == RUN_KEYS
+    assert set(data["cost"]) == {"wall_s", "steps", "rhs", "events", "method"}
+    assert data["regime"] == "periodic" and data["period"] == 1 and data["status"] == "done"
+    assert data["max_output_force_elastic"] == pytest.approx(0.62, rel=0.01)  # PHYSICS, section 3
+    assert "absent, with no code and no array: tension cut, foundation, preload" in err
+
+
+def test_curve_prints_the_contracts_keys_and_writes_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "curve.h5"
+    words = ["curve", "sec2", "--from", "300", "--to", "400", "--points", "3", "--json", "--out", str(file)]
+    assert main(words) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert set(data) == CURVE_KEYS
+    assert data["frequency"] == [300.0, 350.0, 400.0]
+    with h5py.File(file) as written:
+        assert list(written["curve/max_output_force"][()]) == data["max_output_force"]
+
+
+def test_run_writes_r_times_s_plus_one_rows(tmp_path: Path) -> None:
+    file = tmp_path / "a.h5"
+    assert main(["run", "sec2", "--periods", "0", "--record", "3", "--samples", "8", "--out", str(file)]) == 0
+    with h5py.File(file) as written:
+        assert written["run/displacement"].shape == (25, 11) and written["run/force"].shape == (25, 12)
+        assert written["run/time"][0] == 0.0
+        assert written["run/time"][-1] == pytest.approx(3 / 340.0, rel=1e-15)
+
+
+def test_scenes_lists_every_preset_of_the_contract(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scenes", "--json"]) == 0
+    names = {one["name"] for one in json.loads(capsys.readouterr().out)["scenes"]}
+    assert {"sec2", "fig3a", "fig3b", "rig", "fig12-60", "fig12-90", "fig12-100", "fig11-free", "fig11-founded"} <= names
+
+
+def test_orbit_prints_the_contracts_keys(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["orbit", "fig11-free", "--observer", "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert set(data) == {"period", "residual", "newton_residuals", "multipliers", "stable", "observer_multipliers",
+                         "observer_stable"}
+    assert data["stable"] and not data["observer_stable"]
+    moduli = [abs(complex(*mu)) for mu in data["multipliers"]]
+    assert moduli == sorted(moduli, reverse=True) and len(moduli) == 22
+
+
+@pytest.mark.parametrize(("words", "sentence"), [
+    (["rnu"], "nearest is 'run'"),
+    (["run", "sec22"], "nearest is 'sec2'"),
+    (["run", "sec2", "--set", "freq=3"], "Unknown knob 'freq'"),
+    (["run", "sec2", "--set", "f=nan"], "from 0.1 to 1e+06 Hz, not 'nan'"),
+    (["run", "sec2", "--set", "f=inf"], "from 0.1 to 1e+06 Hz"),
+    (["run", "sec2", "--set", "f=ten"], "not 'ten'"),
+    (["run", "sec2", "--set", "A0=1"], "nearest valid value is 0.0001"),
+    (["run", "sec2", "--set", "D=-1"], "nearest valid value is 0"),
+    (["run", "sec2", "--set", "N=2.5"], "whole number"),
+    (["run", "sec2", "--set", "N=0"], "nearest valid value is 1"),
+    (["run", "sec2", "--set", "wall=wood"], "bead, same-material, rigid, or a number"),
+    (["run", "sec2", "--set", "dissipation=linaer"], "nearest is 'linear'"),
+    (["run", "sec2", "--set", "tension=3"], "nearest is"),
+    (["run", "sec2", "--set", "k=1", "--set", "kappa=0.1"], "give one of them"),
+    (["run", "sec2", "--set", "f=3", "--set", "f=4"], "set twice"),
+    (["run", "sec2", "--set", "f"], "NAME=VALUE"),
+    (["run", "sec2", "--accuracy", "2"], "nearest valid value is 0.1"),
+    (["run", "sec2", "--method", "euler"], "Unknown method 'euler'"),
+    (["run", "sec2", "--periods", "-1"], "nearest valid value is 0"),
+    (["run", "sec2", "--record", "0"], "nearest valid value is 1"),
+    (["run", "sec2", "--samples", "x"], "invalid int value"),
+    (["run", "sec2", *SHORT, "--out", "/no/such/folder/a.h5"], "Cannot write /no/such/folder/a.h5"),
+    (["run"], "SCENE"),
+    (["run", "sec2", "--colour"], "unrecognized arguments"),
+    (["curve", "sec2", "--from", "500", "--to", "400", "--points", "3"], "exchange them"),
+    (["curve", "sec2", "--from", "500", "--to", "600", "--points", "0"], "nearest valid value is 1"),
+    (["curve", "sec2", "--from", "500", "--to", "600", "--points", "3", "--start", "left"], "Unknown start 'left'"),
+    (["curve", "sec2", "--from", "0", "--to", "600", "--points", "3"], "nearest valid value is 0.1"),
+    (["orbit", "sec2", "--period", "0"], "nearest valid value is 1"),
+    (["serve", "--port", "70000"], "outside 0 to 65535"),
+])
+def test_wrong_input_gets_one_sentence_and_status_2(words: list[str], sentence: str,
+                                                    capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and sentence in err
+    assert len(err.strip().splitlines()) == 1 and "Traceback" not in err
+
+
+def test_numbers_that_fail_exit_with_3(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["orbit", "rig", "--set", "f=140", "--set", "k=0"]) == 3
+    assert "residuals were" in capsys.readouterr().err
+
+
+def test_help_is_no_error(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["--help"])
+    assert left.value.code == 0 and "serve" in capsys.readouterr().out
+
+
+#: The command line, which says on stderr that the kernel is about to be called.
+_ANNOUNCED = """
+import sys
+from app.cli import main
+from granchain_core.integrate import Engine
+periods = Engine.periods
+def announced(engine, count, **names):
+    if count > 0:
+        print("running", file=sys.stderr, flush=True)
+    return periods(engine, count, **names)
+Engine.periods = announced
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+def test_an_interrupt_ends_a_long_run_with_130() -> None:
+    words = [sys.executable, "-c", _ANNOUNCED, "run", "rig", "--periods", "1000000", "--record", "1"]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               cwd=Path(__file__).parents[2], preexec_fn=_interruptible)
+    try:
+        assert process.stderr is not None and process.stderr.readline() == "running\n"
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+    assert process.returncode == 130 and out == "" and "Traceback" not in err
+
+
+def _interruptible() -> None:
+    """A shell's background jobs ignore interrupts, and their children inherit that."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,0 +1,64 @@
+"""What is asked of the law that docs/add-a-damping-law.md adds; run by pytest in a tree in which it has been added."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import LiveChain, resonance_curve, run, scene, settled
+from granchain_core.integrate import Engine, Setting
+from granchain_core.kernels.dop853.force_kinks import scaled_force
+from granchain_core.laws import LAWS
+from granchain_core.orbits.flow import StroboscopicMap
+
+CHAIN = scene("sec2").evolve(N=3, f=600.0, D=400.0, accuracy=1e-4, dissipation="three-quarters")
+REFINED = (1, 2, 4, 8, 16)
+
+
+def test_every_way_to_the_steady_state_gives_the_same_state() -> None:
+    """The certified method, a batch, and the live method after 200 periods; displacements at phase 0."""
+    orbit = settled(CHAIN).state.displacement
+    live = LiveChain(CHAIN)
+    near = {"rtol": 0.0, "atol": 1e-4 * CHAIN.A0}
+    np.testing.assert_allclose(live.advance(200 * live.samples).displacement[-1], orbit, **near)
+    np.testing.assert_allclose(resonance_curve(CHAIN, [CHAIN.f]).points[0].state.displacement, orbit, **near)
+
+
+def test_energy_is_accounted_for() -> None:
+    """Work of the driver = lost in contacts + stored, to the accuracy of the motion."""
+    assert run(CHAIN, periods=0, record=10).energy_residual < 1e-4
+
+
+def motion(f: float, setting: Setting) -> np.ndarray:
+    """Displacements over three periods from rest, eight a period."""
+    return Engine(scene("sec2").evolve(f=f, dissipation="three-quarters"), setting, 8).record(24).displacement
+
+
+@pytest.mark.parametrize(("method", "least", "most"), [("rk4-split", 3.3, 5.0), ("rk4", 2.0, 3.0)])
+def test_split_steps_keep_their_order_across_contact_events(method: str, least: float, most: float) -> None:
+    """3.5, because what Simpson's rule gives too much of G is known; steps across events have 2.5."""
+    errors = []
+    for f in (340.0, 615.0, 1130.0):
+        true = motion(f, Setting("dop853", tolerance=1e-13))
+        errors.append([np.abs(motion(f, Setting(method, refine=r)) - true).max() for r in REFINED])
+    assert least < -np.polyfit(np.log(REFINED), np.log(errors).mean(axis=0), 1)[0] < most
+
+
+def test_tangent_is_the_derivative_of_the_map() -> None:
+    """Every column against central differences, whose own error is about h² = 1e-10 over the kinks of the contacts."""
+    strobe, h = StroboscopicMap(CHAIN, 1), 1e-5
+    here = np.concatenate([np.linspace(0.3, 0.1, 3), np.zeros(3)])
+    flow = strobe(here)
+    for column, unit in enumerate(np.eye(6)):
+        difference = (strobe(here + h * unit).end - strobe(here - h * unit).end) / (2 * h)
+        np.testing.assert_allclose(flow.derivative[:, column], difference, atol=1e-4)
+    sign, logarithm = np.linalg.slogdet(flow.derivative)
+    assert sign > 0.0 and logarithm == pytest.approx(flow.log_determinant, rel=1e-9)
+
+
+def test_a_cut_contact_stops_pushing_where_its_force_is_zero() -> None:
+    """The sign that is followed is that of F/g, F = K δ^{3/2} + c δ^{3/4} δ̇."""
+    for d, rate in ((0.3, -0.7), (1e-4, -1e-4), (2.0, 1.0)):
+        damping = 0.4 * d**0.75
+        assert scaled_force(LAWS["three-quarters"].slot(0.4), 1.4, d, rate) == pytest.approx(
+            (1.4 * d**1.5 + damping * rate) / damping, rel=1e-13)

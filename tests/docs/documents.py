@@ -1,0 +1,63 @@
+"""Reading the project's pages: fenced blocks, the file each belongs to, commands."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+_FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its language, its text, and the paragraph before it."""
+
+    language: str
+    text: str
+    before: str
+
+    @property
+    def path(self) -> str:
+        """The file named last in the paragraph before the block."""
+        names = re.findall(r"`([\w./-]+\.\w+)`", self.before)
+        assert names, f"no file is named before the block that begins {self.text[:60]!r}"
+        return names[-1]
+
+    @property
+    def is_new_file(self) -> bool:
+        """Whether the block is a whole file."""
+        return self.before.startswith("New file")
+
+
+def blocks(page: Path) -> list[Block]:
+    """All fenced blocks of a page, in order."""
+    text = page.read_text(encoding="utf-8")
+    found = []
+    for match in _FENCE.finditer(text):
+        paragraphs = [p for p in text[: match.start()].split("\n\n") if p.strip()]
+        found.append(Block(match[1], match[2], " ".join(paragraphs[-1].split()) if paragraphs else ""))
+    return found
+
+
+def edited(text: str, edit: str) -> str:
+    """`text` after the edits of a diff block: each must fit at exactly one place."""
+    for hunk in edit.split("@@\n"):
+        lines = hunk.splitlines()
+        old = "".join(line[1:] + "\n" for line in lines if line[:1] in (" ", "-", ""))
+        new = "".join(line[1:] + "\n" for line in lines if line[:1] in (" ", "+", ""))
+        assert text.count(old) == 1, f"these lines are there {text.count(old)} times, not once:\n{old}"
+        text = text.replace(old, new)
+    return text
+
+
+def commands(page: Path) -> list[str]:
+    """Every granchain command of a page: in console blocks behind "$", and in the text in backquotes."""
+    text = page.read_text(encoding="utf-8")
+    shown = [line[2:] for block in blocks(page) if block.language == "console"
+             for line in block.text.splitlines() if line.startswith("$ granchain ")]
+    spoken = re.findall(r"`(granchain \w+ [^`\n]+)`", _FENCE.sub("", text))
+    return [c for c in shown + spoken if not re.search(r"\[|SCENE", c)]  # those say what a command takes

@@ -1,0 +1,49 @@
+"""A copy of the repository in which a page's edits are made, and commands run in it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from documents import ROOT, blocks, edited
+
+_PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml")
+
+
+def files_of(page: Path) -> tuple[set[str], set[str]]:
+    """The files a page edits, and those it writes."""
+    found = [block for block in blocks(page) if block.language != "console"]
+    return {block.path for block in found if not block.is_new_file}, {block.path for block in found if block.is_new_file}
+
+
+def edited_copy(page: Path, copy: Path) -> Path:
+    """A copy of the repository with the page's edits made, each of which must fit at exactly one place."""
+    for part in _PARTS:
+        source, target = ROOT / part, copy / part
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_dir():
+            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(source, target)
+    for block in blocks(page):
+        if block.language == "console":
+            continue
+        file = copy / block.path
+        if block.is_new_file:
+            assert not file.exists(), f"{block.path} is there already"
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(block.text, encoding="utf-8")
+        else:
+            file.write_text(edited(file.read_text(encoding="utf-8"), block.text), encoding="utf-8")
+    return copy
+
+
+def follow(tree: Path, *arguments: str) -> str:
+    """What a command prints in the edited tree."""
+    done = subprocess.run([sys.executable, *arguments], cwd=tree, capture_output=True, text=True, timeout=900,
+                          env={**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(tree / "cache"), "NUMBA_OPT": "1"})
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    return done.stdout

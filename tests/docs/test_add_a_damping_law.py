@@ -1,0 +1,72 @@
+"""docs/add-a-damping-law.md is followed to the letter in a copy of the repository."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from documents import ROOT
+from edited_tree import edited_copy, files_of, follow
+
+PAGE = ROOT / "docs" / "add-a-damping-law.md"
+_CHECKS = Path(__file__).parent / "added_law.py"
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the repository with the page's edits made."""
+    copy = edited_copy(PAGE, tmp_path_factory.mktemp("law") / "tree")
+    shutil.copy(_CHECKS, copy / "tests" / "test_added_law.py")
+    return copy
+
+
+def test_the_page_edits_two_files_and_writes_none() -> None:
+    edits, new = files_of(PAGE)
+    assert (len(edits), len(new)) == (2, 0)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a damping law: edit 2 files"
+
+
+def test_the_new_law_is_right_in_every_kernel(tree: Path) -> None:
+    """Energy, order of the split steps, tangents, the kink of a cut, and one state from every way to the steady state."""
+    assert "6 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "test_added_law.py")))
+
+
+def test_the_new_law_is_seen(tree: Path) -> None:
+    """A choice of the knob on the page, a term of the equation, a name among the effects and in the kernel's name."""
+    told = follow(tree, "-c", """
+from app.cli.explain import explanation
+from app.parts.knobs import knob_state
+from granchain_core import scene
+from granchain_core.warm import structure
+one = scene("sec2").evolve(dissipation="three-quarters")
+print(one.effects[-1], one.equation_latex(), structure(one), sep="|")
+print([spec["choices"] for spec in knob_state(one)["specs"] if spec["name"] == "dissipation"])
+print(explanation(one, None))
+""")
+    first, choices, *explained = told.splitlines()
+    name, equation, kernels = first.split("|")
+    assert name == "damping with δ^(3/4)" and r"D\,(\delta_j/\delta_r)_+^{3/4}\,\dot\delta_j" in equation
+    assert kernels == "three-quarters, 16 lanes" and "'three-quarters'" in choices
+    assert "contact damping (ThreeQuarters)" in explained[0]
+
+
+@pytest.mark.parametrize(("path", "right", "wrong", "sentence"), [
+    ("kernels/effects/dissipation.py", "@power.of(ThreeQuarters)\n", "",
+     "ThreeQuarters (granchain_core.kernels.effects.dissipation) has no `power`"),
+    ("kernels/effects/dissipation.py", "@exponent.of(ThreeQuarters)\n", "",
+     "ThreeQuarters (granchain_core.kernels.effects.dissipation) has no `exponent`"),
+    ("kernels/effects/dissipation.py", "return r * root(r)", "return root(r)", "damping law ThreeQuarters: `power` is not δ^0.75"),
+    ("laws.py", '    Law("three-quarters"', '    # Law("three-quarters"', "damping law ThreeQuarters has no line in laws.py"),
+])
+def test_what_the_law_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
+    file = tree / "granchain_core" / path
+    text = file.read_text(encoding="utf-8")
+    assert text.count(right) == 1
+    file.write_text(text.replace(right, wrong), encoding="utf-8")
+    try:
+        with pytest.raises(AssertionError) as told:
+            follow(tree, "-c", "import granchain_core")
+    finally:
+        file.write_text(text, encoding="utf-8")
+    assert f"TypeError: {sentence}" in str(told.value)

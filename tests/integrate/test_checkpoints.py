@@ -1,0 +1,13 @@
+"""An engine that goes on from a checkpoint does what it would have done, bit by bit."""
+
+from __future__ import annotations
+
+import pytest
+
+from granchain_core.hard.long_runs import cut_and_gone_on, uninterrupted
+
+
+@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
+def test_cuts_change_no_number(method: str) -> None:
+    assert cut_and_gone_on(method, 8, 5) == 0.0
+    assert uninterrupted(method, 8, 5) == 0.0

@@ -1,0 +1,137 @@
+"""Time goes on without a seam: across a stop, a restart, a shift by a period, and very many periods."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from granchain_core import Cancelled, State, run, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.stop import Stop
+
+METHODS = [("rk4", 2e-6), ("rk4-split", 2e-6), ("dop853", 1e-9)]
+
+
+def engine(method: str, samples: int = 8, **knobs) -> Engine:
+    """sec2 at a fine setting of the method."""
+    return Engine(scene("sec2").evolve(**knobs), Setting(method, refine=4, tolerance=1e-11), samples)
+
+
+@pytest.mark.parametrize(("method", "_"), METHODS)
+def test_two_halves_are_the_whole_bit_by_bit(method, _):
+    """An engine that records twice does what one that records once does, and nothing else."""
+    whole, halves = engine(method), engine(method)
+    together = whole.record(32)
+    first, second = halves.record(16), halves.record(16)
+    if method == "dop853":
+        # a certified step ends at the record's end, so its steps differ; a hundred tolerances of 1e-11 between them
+        near = {"rtol": 0.0, "atol": 1e-9}
+        np.testing.assert_allclose(np.vstack([first.displacement, second.displacement[1:]]), together.displacement, **near)
+    else:
+        np.testing.assert_array_equal(np.vstack([first.displacement, second.displacement[1:]]), together.displacement)
+        np.testing.assert_array_equal(np.vstack([first.force, second.force[1:]]), together.force)
+
+
+@pytest.mark.parametrize(("method", "error"), METHODS)
+@pytest.mark.parametrize("rows", [16, 13])
+def test_a_new_engine_started_from_a_state_goes_on_the_same_way(method, error, rows):
+    """State out, state in, at phase 0 and in the middle of a period: the same motion, to the method's own error."""
+    whole, before, after = engine(method), engine(method), engine(method)
+    together = whole.record(rows + 16)
+    before.record(rows)
+    after.start(before.state)
+    assert before.state.phase == pytest.approx((rows % 8) / 8)
+    kept = after.record(16)
+    # the state passes through SI and back (1e-16 relative); an adaptive method chooses new steps
+    np.testing.assert_allclose(kept.displacement, together.displacement[rows:], atol=10 * error)
+
+
+def test_run_from_a_state_at_phase_zero_is_the_later_part_of_one_run():
+    """`run(start=…)` after two periods is `run` with two periods discarded, shifted by two periods in time."""
+    chain = scene("sec2").evolve(accuracy=1e-9)
+    long = run(chain, periods=0, record=4, samples=8)
+    state = State(long.displacement[16], long.velocity[16])
+    late = run(chain, periods=0, record=2, samples=8, start=state)
+    # each is within 1e-9 of the truth; the motion's sensitivity is 3 (reference.npz)
+    scale = np.abs(long.displacement).max()
+    np.testing.assert_allclose(late.displacement, long.displacement[16:], atol=1e-8 * scale)
+    discarded = run(chain, periods=2, record=2, samples=8)
+    np.testing.assert_allclose(discarded.displacement, long.displacement[16:], atol=1e-8 * scale)
+    np.testing.assert_allclose(discarded.time, long.time[16:], rtol=1e-14)
+
+
+@pytest.mark.parametrize("periods", [0, 1])
+def test_run_from_a_state_in_the_middle_of_a_period_keeps_the_drive_in_step(periods):
+    """A start at phase 1/4 is the later part of a run from rest, drive and time included; or it is refused."""
+    chain = scene("sec2").evolve(accuracy=1e-9)
+    long = run(chain, periods=0, record=5, samples=8)
+    state = State(long.displacement[10], long.velocity[10], phase=0.25)
+    late = run(chain, periods=periods, record=2, samples=8, start=state)
+    there = slice(10 + 8 * periods, 27 + 8 * periods)
+    np.testing.assert_allclose(late.drive_displacement, long.drive_displacement[there], atol=1e-14 * chain.A0)
+    np.testing.assert_allclose(late.displacement, long.displacement[there], atol=1e-8 * np.abs(long.displacement).max())
+
+
+@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
+def test_drive_phase_is_exact_after_many_periods(method):
+    """Ten thousand periods later the driver is where sin(2π·whole + …) has it, to the last bit: no phase is summed up."""
+    chain = scene("sec2").evolve(N=1, f=3000.0, D=300.0)
+    runner = Engine(chain, Setting(method, tolerance=1e-4), 4)
+    runner.periods(10_000, watch=False)
+    kept = runner.record(8)
+    assert runner.grid_index == 0
+    runner.place()
+    assert runner.y[0] == 0.0
+    # the settled motion has the drive's period exactly, so both recorded periods are one to the settling's rounding
+    np.testing.assert_allclose(kept.displacement[4:], kept.displacement[:5], atol=1e-3 if method == "dop853" else 1e-9)
+
+
+def test_drive_displacement_column_is_exact_at_any_time():
+    """A late record's driver is sampled at whole sample numbers, not at t·f."""
+    result = run(scene("sec2").evolve(f=1234.5678, accuracy=1e-3, N=1, D=300.0), periods=5000, record=1, samples=8)
+    expected = result.scene.A0 * np.sin(2 * np.pi * np.arange(9) / 8)
+    expected[-1] = 0.0
+    np.testing.assert_allclose(result.drive_displacement, expected, atol=1e-15 * result.scene.A0)
+    assert result.time[0] == 5000 / result.scene.f
+
+
+@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
+@pytest.mark.parametrize("recording", [False, True])
+def test_stop_flag_ends_a_long_run_soon(method, recording):
+    """A flag raised from another thread, once the kernel counts steps, ends it in the middle of a long period: it is asked
+    every 4096 steps at least, two of which may be left when it is raised."""
+    stop = Stop()
+    quick = Engine(scene("sec2").evolve(f=1e5, N=300), Setting(method, tolerance=1e-3), 1)
+    quick.record(1) if recording else quick.periods(1)  # compiling asks no flag
+    slow = Engine(scene("sec2").evolve(f=0.5, N=300), Setting(method, refine=16, tolerance=1e-11), 1, stop=stop)
+    steps: list[int] = []
+
+    def raise_flag() -> None:
+        while slow.counts.rhs == 0:
+            time.sleep(0.001)
+        steps.append(slow.counts.steps)
+        stop.set()
+
+    threading.Thread(target=raise_flag, daemon=True).start()
+    with pytest.raises(Cancelled):
+        slow.record(20) if recording else slow.periods(20)
+    assert slow.counts.steps - steps[0] <= 2 * 4096
+
+
+def test_run_passes_its_stop_flag_on():
+    """A flag that is up from the start ends `run` with Cancelled, not with a result."""
+    stop = Stop()
+    stop.set()
+    with pytest.raises(Cancelled):
+        run(scene("sec2"), periods=5, record=5, stop=stop)
+
+
+def test_progress_grows_to_one():
+    """Fractions of the present computation, each ending at 1."""
+    told: list[float] = []
+    run(scene("sec2").evolve(accuracy=1e-4), periods=20, record=2, progress=told.append)
+    assert told[-1] == 1.0
+    assert all(0.0 < x <= 1.0 for x in told)

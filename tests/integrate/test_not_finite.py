@@ -1,0 +1,43 @@
+"""Whether a number is finite is asked by compiled code that must not be told that all of them are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import NumbersFailed, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.failure import not_finite
+from granchain_core.kernels.samples import first_not_finite
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("bead", [1, 3, 5])
+@pytest.mark.parametrize("row", [0, 7])
+def test_the_first_bead_that_is_not_finite(value: float, bead: int, row: int) -> None:
+    """In displacements and in w, in the kernel and where the failure is looked for again."""
+    y = np.ones(14)
+    assert (first_not_finite(y, 7), not_finite(y, 7)) == (0, 0)
+    y[bead + row] = value
+    assert (first_not_finite(y, 7), not_finite(y, 7)) == (bead, bead)
+
+
+@pytest.mark.parametrize("method", ["rk4", "dop853"])
+def test_a_contact_that_is_not_a_number_is_said_by_the_kernel(method: str) -> None:
+    """The state is finite when the call begins; what begins in a step ends the run with its sentence."""
+    engine = Engine(scene("sec2").evolve(N=3), Setting(method, tolerance=1e-6), 4)
+    engine.record(8)
+    engine.lowered.slots.chain.stiffness[1] = np.nan
+    with pytest.raises(NumbersFailed, match=r"bead [12] ") as caught:
+        engine.record(4)
+    assert caught.value.status == "not-finite"
+
+
+def test_the_time_of_a_failure_inside_a_call_counts_from_the_start() -> None:
+    """A drive that fails in the twenty-first period, the first one of the present call."""
+    engine = Engine(scene("sec2").evolve(N=3), Setting("rk4"), 1)
+    engine.periods(20)
+    engine.stepper.drive[40] = np.nan
+    with pytest.raises(NumbersFailed, match=r"\(20 drive periods\)") as caught:
+        engine.periods(2)
+    assert caught.value.time == pytest.approx(20.0 * engine.lowered.scene.period, rel=1e-12)

@@ -1,0 +1,127 @@
+"""The right-hand side in w is the (u, v) equation of the paper, for every law, tension, foundation, preload and wall."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+import uv_equations as equations
+from chains import LAWS
+
+from granchain_core import scene
+from granchain_core.kernels.equations.motion import contact_force, motion, place
+from granchain_core.lower import lower
+
+#: law, tension, kappa, preload, wall: all structures, each wall often enough
+CASES = [(law, tension, kappa, preload, wall)
+         for (law, tension, kappa, preload), wall in zip(
+             itertools.product(LAWS, ("allowed", "cut"), (0.0, 0.002), (0.0, 3.0)),
+             itertools.cycle(("rigid", "bead", "same-material", 0.3)), strict=False)]
+
+
+def code(kernel, compiled: bool):
+    """The compiled kernel, or the same source run by Python: dozens of structures would take a minute to compile."""
+    return kernel if compiled else kernel.py_func
+
+
+def evaluated(chosen, u, v, time, compiled=True):
+    """(lowered, θ, state, slope, total forces) of the kernel in scaled units for SI displacements and velocities (N,)."""
+    lowered = lower(chosen)
+    row, scales, slots = lowered.row, lowered.scales, lowered.slots
+    y, dy, space = np.zeros(2 * row), np.zeros(2 * row), lowered.forces()
+    y[1 : row - 1], y[row + 1 : -1] = u / scales.length, v / scales.velocity
+    theta = 2 * np.pi * chosen.f * time
+    drive = np.sin(theta), lowered.beta * np.cos(theta)
+    code(motion, compiled)(slots, *drive, y, dy, space)
+    if space.G is not None:  # w = v − (G_left − G_right)/m
+        y[row + 1 : -1] -= slots.chain.inverse_mass[1:-1] * (space.G[:-1] - space.G[1:])
+    code(motion, compiled)(slots, *drive, y, dy, space)
+    force = code(contact_force, compiled)
+    return lowered, theta, y, dy, np.array([force(slots, y, dy, space.e, c) for c in range(row - 1)])
+
+
+def random_state(chosen, seed: int):
+    """Displacements and velocities with open and closed contacts among them."""
+    rng = np.random.default_rng(seed)
+    length = 2 * chosen.A0 + float(chosen.static_overlap().max())
+    speed = 3e-2 * np.sqrt(length / 1e-6)  # fast enough for a dashpot to pull
+    return rng.uniform(-1, 1, chosen.N) * length, rng.uniform(-1, 1, chosen.N) * speed
+
+
+@pytest.mark.parametrize(("law", "tension", "kappa", "preload", "wall"), CASES)
+def test_forces_velocities_and_accelerations_are_those_of_the_paper(law, tension, kappa, preload, wall):
+    """Same contact forces, du/dt = v, and d²u/dt² as the (u, v) equations give; the w-slope sums elastic forces only."""
+    chosen = scene("sec2").evolve(N=5, dissipation=law, tension=tension, kappa=kappa, F0=preload, wall=wall, f=400.0)
+    for seed in range(6):
+        u, v = random_state(chosen, seed)
+        time = 0.13 / chosen.f
+        compiled = tension == "allowed" and kappa == 0.0
+        lowered, theta, y, dy, total = evaluated(chosen, u, v, time, compiled)
+        scales = lowered.scales
+        expected, elastic = equations.forces(chosen, u, v, time)
+        # formulas in double precision either way; differences of displacements lose a digit or two
+        near = {"rtol": 1e-11, "atol": 1e-11 * max(np.abs(expected))}
+        np.testing.assert_allclose(total * scales.force, expected, **near)
+        np.testing.assert_allclose(dy[1 : chosen.N + 1] * scales.velocity, v, rtol=1e-12, atol=1e-12 * np.abs(v).max())
+        m = chosen.bead(1).mass
+        slope = dy[chosen.N + 3 : -1] * scales.length * scales.rate**2
+        if tension == "allowed":
+            only_elastic = [(elastic[i] - elastic[i + 1] - chosen.k * u[i]) / m for i in range(chosen.N)]
+            np.testing.assert_allclose(slope, only_elastic, rtol=1e-11, atol=1e-11 * np.abs(only_elastic).max())
+        assert acceleration_from_w(lowered, theta, y, compiled) * scales.length * scales.rate**2 == pytest.approx(
+            equations.acceleration(chosen, u, v, time), rel=2e-5, abs=2e-5 * max(np.abs(expected)) / m)
+
+
+def acceleration_from_w(lowered, theta, y, compiled, step=1e-6):
+    """d²u/dτ² as the change of du/dτ along the flow itself: a central difference of the kernel's own velocities.
+
+    Its error is (step·rate)² and rounding/step, with the kinks of the contacts further away than the step: about 1e-6.
+    """
+    row, space = lowered.row, lowered.forces()
+    slope = np.zeros_like(y)
+    slope_of = code(motion, compiled)
+    slope_of(lowered.slots, y[0], lowered.slots.driver.beta * np.cos(theta), y.copy(), slope, space)
+    velocities = []
+    for sign in (1.0, -1.0):
+        moved, there = y + sign * step * slope, np.zeros_like(y)
+        angle = theta + sign * step * lowered.slots.driver.beta
+        slope_of(lowered.slots, np.sin(angle), lowered.slots.driver.beta * np.cos(angle), moved, there, space)
+        velocities.append(there[1 : row - 1])
+    return (velocities[0] - velocities[1]) / (2 * step)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("preload", [0.0, 3.0])
+@pytest.mark.parametrize("where", [1, 3, 5])
+def test_a_nan_in_a_bead_is_seen_in_both_its_contacts(law, preload, where):
+    """A NaN displacement gives NaN forces and slopes at its neighbours: it never just cuts the chain there."""
+    chosen = scene("sec2").evolve(N=5, dissipation=law, F0=preload)
+    u, v = random_state(chosen, 0)
+    u[where - 1] = np.nan
+    _, _, _, dy, total = evaluated(chosen, u, v, 0.1 / chosen.f)
+    assert np.isnan(total[where - 1])
+    assert np.isnan(total[where])
+    assert np.isnan(dy[chosen.N + 2 + where])
+
+
+def test_rest_without_overlap_is_an_equilibrium_and_preload_keeps_it_one():
+    """With the driver in its middle position nothing moves: no force without preload, F0 everywhere with it."""
+    for preload in (0.0, 7.0):
+        chosen = scene("sec2").evolve(F0=preload, D=0.0, wall="rigid")
+        lowered, _, _, dy, total = evaluated(chosen, np.zeros(11), np.zeros(11), 0.0)
+        np.testing.assert_allclose(total * lowered.scales.force, preload, rtol=1e-14)  # rounding of (F0/K)^{2/3·3/2}
+        np.testing.assert_allclose(dy[lowered.row + 1 : -1], 0.0, atol=1e-13)  # of forces of order one
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_velocity_goes_into_w_and_comes_back(law):
+    """`place` turns v into w = v − (G_left − G_right)/m, and the slope's first half is v again."""
+    chosen = scene("sec2").evolve(N=5, dissipation=law)
+    u, v = random_state(chosen, 1)
+    lowered, theta, expected, _, _ = evaluated(chosen, u, v, 0.2 / chosen.f)
+    y, dy = expected.copy(), np.zeros_like(expected)
+    y[lowered.row + 1 : -1] = v / lowered.scales.velocity
+    place(lowered.slots, theta, y, dy, lowered.forces(), True)
+    np.testing.assert_allclose(y, expected, atol=1e-14 * np.abs(expected).max())  # the same sums, rounded
+    np.testing.assert_allclose(dy[1:6], v / lowered.scales.velocity, atol=1e-14 * np.abs(expected).max())

@@ -1,0 +1,118 @@
+"""Events inside a fixed step: the cubic's roots and turns, the first of several, and what Simpson's rule misses."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from granchain_core.kernels.dop853 import located as certified
+from granchain_core.kernels.effects.balance import Balance
+from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from granchain_core.kernels.rk4 import contact_events as events
+from granchain_core.kernels.rk4 import step as fixed_step
+from granchain_core.kernels.rk4.contact_events import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END
+
+
+def ends_of(*roots: float, sign: float = 1.0) -> tuple[float, float, float, float]:
+    """Values and slopes at 0 and 1 of sign·Π(x − root), a polynomial of degree three at most."""
+    p = sign * np.poly1d(np.poly(roots))
+    return p(0.0), p.deriv()(0.0), p(1.0), p.deriv()(1.0)
+
+
+@pytest.mark.parametrize(("roots", "sign", "first"), [
+    ((0.3, -2.0, 4.0), 1.0, 0.3), ((0.3, -2.0, 4.0), -1.0, 0.3), ((0.9,), 1.0, 0.9),
+    ((0.2, 0.7), 1.0, 0.2), ((0.2, 0.7), -1.0, 0.2), ((0.5, 0.6, 3.0), -1.0, 0.5),  # there and back inside the step
+    ((1.2, 1.7), 1.0, 2.0), ((-0.2, 1.5), -1.0, 2.0), ((0.5 + 0.2j, 0.5 - 0.2j), 1.0, 2.0), ((0.5 + 0.2j, 0.5 - 0.2j), -1.0, 2.0),
+])
+def test_a_contact_changes_at_the_cubics_first_root(roots, sign, first) -> None:  # type: ignore[no-untyped-def]
+    """Contacts that open, close, do both, and neither; 2 means not in this step."""
+    found = events.contact_root.py_func(*(float(np.real(x)) for x in ends_of(*roots, sign=sign)))
+    assert found == pytest.approx(first, abs=1e-11)  # the iteration ends at 1e-12
+
+
+@pytest.mark.parametrize(("s0", "d1", "root"), [(1.0, 0.5, 0.0), (-1.0, -0.5, 2.0), (1.0, -0.5, 2.0)])
+def test_beads_that_touch_close_where_they_are_pushed_together(s0: float, d1: float, root: float) -> None:
+    assert events.contact_root.py_func(0.0, s0, d1, s0) == root
+
+
+def test_the_turn_is_where_the_slope_is_zero() -> None:
+    for roots, sign in (((0.2, 0.7), 1.0), ((0.2, 0.7), -1.0), ((0.1, 0.4, 2.0), 1.0)):
+        turns = np.roots(np.poly1d(np.poly(roots)).deriv())
+        inside = [x for x in turns if 0.0 < x < 1.0]
+        assert events.hermite_turn.py_func(*ends_of(*roots, sign=sign)) == pytest.approx(inside[0], rel=1e-12)
+
+
+def test_the_first_of_several_contacts_is_taken() -> None:
+    ends = np.zeros((events.ENDS, 3))
+    for c, root in enumerate((0.6, 0.25, 0.8)):
+        ends[GAP, c], ends[RATE, c], ends[GAP_END, c], ends[RATE_END, c] = ends_of(root)
+    ends[[RATE, RATE_END]] /= 0.5  # rates are in time, for a step of 0.5
+    found, contact = events.first_event.py_func(ends, 3, 0.5)
+    assert (found, contact) == (pytest.approx(0.25, rel=1e-11), 1)
+
+
+def excess(power: float, r: float) -> float:
+    """Simpson's rule for s^p on [0, r], [r, r + 1] and [r + 1, r + 2] less the integral, by the definition."""
+    pieces = [(0.0, r), (r, r + 1.0), (r + 1.0, r + 2.0)]
+    simpson = sum((b - a) / 6.0 * (a**power + 4.0 * (0.5 * (a + b)) ** power + b**power) for a, b in pieces)
+    return simpson - (r + 2.0) ** (power + 1.0) / (power + 1.0)
+
+
+@pytest.mark.parametrize("r", [0.0, 0.1, 0.5, 0.99, 1.0])
+def test_what_simpsons_rule_gives_too_much(r: float) -> None:
+    assert events.three_halves_excess.py_func(r) == pytest.approx(excess(1.5, r), abs=1e-14)
+    assert events.primitive_excess.py_func(Tsuji(1.0), r) == pytest.approx(excess(1.25, r), abs=1e-14)
+    assert events.primitive_excess.py_func(KuwabaraKono(1.0), r) == pytest.approx(excess(1.5, r), abs=1e-14)
+
+
+@pytest.mark.parametrize(("rate", "part"), [(0.7, 0.75), (-0.7, 0.25)])
+@pytest.mark.parametrize(("law", "scale", "power"), [
+    (LinearDashpot(0.3), 0.0, 1.25), (Tsuji(0.3), 0.8 * 0.3, 1.25), (KuwabaraKono(0.3), 2.0 / 3.0 * 0.3, 1.5)])
+def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None:  # type: ignore[no-untyped-def]
+    """K v^{3/2} h^{5/2} and c v^p h^{p+1} times the excess over the closed side: behind an onset, before a release."""
+    ends, h = np.zeros((events.ENDS, 2)), 0.2
+    ends[RATE, 1] = rate
+    events.add_quadrature_errors.py_func(law, 1.4, ends, 1, h, 0.25)
+    assert ends[MOMENTUM_ERROR, 1] == pytest.approx(1.4 * 0.7**1.5 * h**2.5 * excess(1.5, part), rel=1e-9)
+    assert ends[DISPLACEMENT_ERROR, 1] == pytest.approx(scale * 0.7**power * h ** (power + 1.0) * excess(power, part), rel=1e-9)
+    assert ends[GAP, 1] * rate > 0.0 and not ends[[MOMENTUM_ERROR, DISPLACEMENT_ERROR], 0].any()
+
+
+@pytest.mark.parametrize(("before", "after", "rising", "risen", "seen"), [
+    (-1.0, -1.0, 1.0, -1.0, True), (1.0, 1.0, -1.0, 1.0, True), (-1.0, 1.0, 1.0, 1.0, True),
+    (-1.0, -1.0, -1.0, 1.0, False), (1.0, 1.0, 1.0, -1.0, False), (-1.0, -1.0, 1.0, 1.0, False),
+])
+def test_a_contact_that_turned_may_have_changed_in_between(before, after, rising, risen, seen) -> None:  # type: ignore[no-untyped-def]
+    """Overlap and rate at both ends of a step: towards zero first and away last is looked into."""
+    slots = SimpleNamespace(preload=None, chain=SimpleNamespace(stiffness=np.ones(1)))
+    state, slope = (lambda d: np.array([d, 0.0])), (lambda v: np.array([v, 0.0]))
+    assert fixed_step.may_change.py_func(slots, state(before), slope(rising), state(after), slope(risen)) == seen
+
+
+def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None:
+    """Contact c pushed its beads apart too much by ends[MOMENTUM_ERROR, c]; the driver did that of contact 0 at its speed."""
+    inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((events.ENDS, 3))
+    ends[MOMENTUM_ERROR], ends[DISPLACEMENT_ERROR] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)
+    slots = SimpleNamespace(chain=SimpleNamespace(inverse_mass=inverse), balance=Balance(1))
+    y = np.zeros(10)
+    fixed_step.correct_state.py_func(slots, ends, 0.25, y)
+    # bead i is pushed forward by contact i − 1 and back by contact i
+    assert y == pytest.approx([0.0, 0.3, 0.25, 0.0, 0.0, 2.0, 1.5, 0.0, -3.0 * 0.25, 0.0], abs=1e-15)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_where_the_cubic_through_a_steps_ends_crosses_a_touch_is_looked_for(sign: float) -> None:
+    """A contact of the same sign at both ends of a certified step: open ones that may close, closed ones that may open."""
+    rng, crossed = np.random.default_rng(1), 0
+    x = np.linspace(0.0, 1.0, 401)
+    for _ in range(400):
+        d0, d1 = -(10.0 ** rng.uniform(-4.0, 0.0, 2))
+        s0, s1 = 10.0 ** rng.uniform(-3.0, 0.7), -(10.0 ** rng.uniform(-3.0, 0.7))
+        cubic = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
+        if cubic.max() > 0.0:
+            crossed += 1
+            assert certified.may_turn.py_func(sign * d0, sign * s0, sign * d1, sign * s1, sign)
+        assert not certified.may_turn.py_func(sign * d0, -sign * s0, sign * d1, sign * s1, sign)  # moves away at first
+    assert 100 < crossed < 300

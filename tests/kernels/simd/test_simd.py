@@ -1,0 +1,79 @@
+"""SIMD along the chain agrees with the scalar method, law by law; a batch, with each of its scenes alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import Scene, iter_curve, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import Batch, can_share_batch
+from granchain_core.lower import lower
+from granchain_core.state import rest
+from granchain_core.steady.batch_settle import batch_results
+from granchain_core.steady.curve import CurvePoint, steady_state
+from granchain_core.stop import Stop
+
+CHAINS: list[dict[str, object]] = [
+    {}, {"N": 1}, {"N": 2}, {"N": 6}, {"N": 7}, {"N": 14}, {"N": 100}, {"kappa": 0.001}, {"F0": 0.5}, {"F0": 5.0},
+    {"dissipation": "tsuji"}, {"dissipation": "kuwabara-kono", "kappa": 0.001, "wall": "rigid"},
+]
+#: Eight scalar multiplications in another order, some hundred steps long, through contacts that amplify a little.
+ROUNDING = 1e-12
+
+
+@pytest.mark.parametrize("changes", CHAINS)
+def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) -> None:
+    shown = scene("sec2").evolve(**changes)
+    fast, slow = (Engine(shown, Setting("rk4-split"), 8) for _ in range(2))
+    slow.stepper.work = slow.stepper.work._replace(along=None)
+    assert fast.stepper.work.along is not None
+    a, b = fast.record(24), slow.record(24)
+    assert np.abs(a.displacement - b.displacement).max() < ROUNDING
+    assert np.abs(a.force - b.force).max() < ROUNDING
+    # the fast steps follow forces by a quartic through values 0.2 apart, across the kinks of neighbours' events too: off by
+    # some 0.07 h of a slope's change λ² v there, with λ = 0.22, h = 0.2 and λ v as large as the force: 7e-4
+    assert fast.tops == pytest.approx(slow.tops, rel=1e-3, abs=ROUNDING)
+    np.testing.assert_allclose(fast.closings, slow.closings, atol=1e-9)
+    assert (fast.counts.array == slow.counts.array).all()
+
+
+def test_a_curve_by_lanes_is_what_each_frequency_gives_by_itself() -> None:
+    frequencies = np.array([340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0])
+    for point in iter_curve(scene("sec2"), frequencies):
+        alone = CurvePoint.of(steady_state(scene("sec2").evolve(f=point.frequency), None, Stop()))
+        assert point.regime.period == alone.regime.period
+        assert point.error_estimate is not None and alone.error_estimate is not None
+        allowed = point.error_estimate + alone.error_estimate
+        assert point.max_output_force == pytest.approx(alone.max_output_force, rel=allowed)
+        assert allowed < 2e-3  # the coarse lane steps differ from the finer ones by some 1e-4
+
+
+def test_a_lane_that_is_not_finite_does_not_lose_the_others() -> None:
+    # Far more damping than the lane's explicit step can follow is refused by a smaller step, so poison one instead.
+    scenes = [scene("sec2").evolve(f=f) for f in (1000.0, 1130.0)]
+    block = Batch(scenes[0], Stop())
+    for lane, one in enumerate(scenes):
+        y = lower(one).scaled(rest(one))
+        block.put(lane, lower(one), y * (np.nan if lane == 0 else 1.0), 1, look=5, earliest=5)
+    block.state.y[1, 0] = np.nan
+    lane, finite = block.run()
+    assert lane == 0 and not finite
+    assert np.isfinite(block.state.y[:, 1]).all()
+
+
+def test_a_scene_with_a_tension_cut_is_not_given_to_lanes() -> None:
+    cut: Scene = scene("sec2").evolve(tension="cut")
+    assert not can_share_batch(cut) and can_share_batch(scene("sec2"))
+    points = list(iter_curve(cut, [340.0, 400.0]))
+    assert sorted(p.frequency for p in points) == [340.0, 400.0]
+    assert all(p.max_output_force > 0.0 for p in points)
+
+
+def test_raising_the_stop_flag_ends_the_lanes() -> None:
+    from granchain_core import Cancelled
+
+    stop = Stop()
+    stop.set()
+    with pytest.raises(Cancelled):
+        list(batch_results(iter([scene("sec2")]), stop))

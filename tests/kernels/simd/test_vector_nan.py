@@ -1,0 +1,43 @@
+"""A NaN goes through what closes contacts, in every lane as in scalar code: it is never taken for an open contact."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from granchain_core.kernels.effects.contact import positive_part
+from granchain_core.kernels.jit import kernel
+from granchain_core.kernels.simd.functions import above_zero, gate
+from granchain_core.kernels.simd.vector import aligned, load, store
+
+VALUES = np.array([-1.0, 0.0, 2.0, np.nan, np.inf, -np.inf, 3.0, np.nan])
+
+
+@kernel
+def in_vectors(values, chosen, out):
+    """positive_part, above_zero and gate of eight values."""
+    overlaps = load(values, 0)
+    store(out, 0, positive_part(overlaps))
+    store(out, 1, above_zero(overlaps))
+    store(out, 2, gate(overlaps, load(chosen, 0)))
+
+
+@kernel
+def in_scalars(values, out):
+    """positive_part and gate one by one."""
+    for i in range(values.size):
+        out[0, i] = positive_part(values[i])
+        out[1, i] = gate(values[i], 5.0)
+
+
+def test_nan_overlaps_stay_nan_and_pass_their_damping() -> None:
+    row, chosen, out, one_by_one = aligned(1), aligned(1), aligned(3), np.zeros((2, 8))
+    row[0], chosen[0] = VALUES, 5.0
+    in_vectors(row, chosen, out)
+    in_scalars(VALUES, one_by_one)
+    positive = np.array([0.0, 0.0, 2.0, np.nan, np.inf, 0.0, 3.0, np.nan])
+    gated = np.array([0.0, 0.0, 5.0, 5.0, 5.0, 0.0, 5.0, 5.0])
+    np.testing.assert_array_equal(out[0], positive)
+    np.testing.assert_array_equal(one_by_one[0], positive)
+    np.testing.assert_array_equal(out[2], gated)
+    np.testing.assert_array_equal(one_by_one[1], gated)
+    assert (np.isnan(out[1]) == np.isnan(VALUES)).all() and (out[1][[0, 1, 5]] > 0.0).all()

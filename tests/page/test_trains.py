@@ -1,0 +1,51 @@
+"""Force trains: a jump is drawn as a vertical rise to its top, in every copy of an orbit and as the live picture goes on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.page.frames import LiveWindow, settled_frames, with_jumps
+from granchain_core import LiveChain, scene, settled
+
+CHAIN = scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-4)
+
+
+def test_a_jump_is_two_points_at_one_time() -> None:
+    time, force = with_jumps(np.array([0.0, 1.0, 2.0]), np.array([0.0, 0.0, 3.0]), np.array([[1.4, 4.0]]))
+    assert time.tolist() == [0.0, 1.0, 1.4, 1.4, 2.0]
+    assert force.tolist() == [0.0, 0.0, 0.0, 4.0, 3.0]
+
+
+def test_a_force_without_jumps_is_its_rows() -> None:
+    time, force = with_jumps(np.arange(3.0), np.arange(3.0), np.zeros((0, 2)))
+    assert time.tolist() == force.tolist() == [0.0, 1.0, 2.0]
+
+
+def test_the_largest_value_drawn_is_the_largest_force_stated() -> None:
+    """In the settled picture every copy of the orbit has its jumps, at the same phase."""
+    run = settled(CHAIN).run
+    frames = settled_frames(run)
+    for jumps, series, largest in ((frames.input_jumps, frames.input_force, run.max_input_force),
+                                   (frames.output_jumps, frames.output_force, run.max_output_force)):
+        time, force = with_jumps(frames.time, series, jumps)
+        assert (np.diff(time) >= 0.0).all()
+        # a smooth top lies between rows, below by (spacing/2)²/2 of its curvature; a jump's is drawn itself
+        assert force.max() == pytest.approx(largest, rel=1e-12 if len(jumps) and jumps[:, 1].max() > 0.99 * largest else 1e-3)
+    copies = round(frames.time[-1] * CHAIN.f)
+    phases = np.sort((frames.output_jumps[:, 0] * CHAIN.f) % 1.0).reshape(-1, copies)
+    assert np.ptp(phases, axis=1).max() < 1e-9
+
+
+def test_live_jumps_move_with_the_picture() -> None:
+    """Times are drive periods before now: a jump seen in one part is that much older after the next."""
+    chain, samples = LiveChain(CHAIN), 96
+    window = LiveWindow(samples)
+    first = window.add(chain.advance(2 * samples))
+    second = window.add(chain.advance(samples))
+    assert len(first.input_jumps) > 0
+    newest = first.input_jumps[-1]
+    assert np.abs(second.input_jumps - (newest - [1.0, 0.0])).sum(axis=1).min() < 1e-12
+    for _ in range(6):
+        last = window.add(chain.advance(samples))
+    assert last.input_jumps[:, 0].min() >= -4.0 and last.input_jumps[:, 0].max() <= 0.0

@@ -1,0 +1,84 @@
+"""What the page "Hard cases" says and sends, without a browser, and the process in which the cases are measured."""
+
+from __future__ import annotations
+
+import json
+import math
+import threading
+
+import pytest
+
+from app.pages.check.view import described, described_cases, figure_beside, figures, summary
+from app.pages.check.work import CaseProcess, Ended, case_of
+from granchain_core import Cancelled, NumbersFailed
+from granchain_core.hard import CASES, Case, Check, Figure, run_case
+from granchain_core.stop import Stop
+
+
+def measured(*found: Figure) -> list[Check]:
+    """Rows of the case "touch and graze" with these figures in place of its own."""
+    return run_case(Case("touch and graze", "h", "n", "o", lambda _: found), quick=True)
+
+
+@pytest.mark.parametrize(("value", "bar", "told"), [
+    (7.123e-13, 1e-9, "7.1e-13"), (0.0, 0.0, "0"), (3.0, 0.0, "3"), (0.95, 1.2, "0.95"), (2e-7, 1e-6, "2e-7"),
+    (1.2001, 1.2, "1.2001"), (1.19999, 1.2, "1.2"), (1.0000001e-9, 1e-9, "1.0000001e-9"),
+    (math.nan, 1.0, "no number"), (math.inf, 1.0, "infinite")])
+def test_a_figure_is_on_the_true_side_of_its_bar(value: float, bar: float, told: str) -> None:
+    assert figure_beside(value, bar) == told
+    assert figures(1e-13, 3) == "1e-13"
+
+
+def test_a_row_that_fails_keeps_its_figure_and_one_that_is_not_computed_its_sentence() -> None:
+    shown = described("touch and graze", measured(Figure("missed", 3.0, 0.0), Figure("moment", 5e-11, 1e-9)))
+    assert [(row["what"], row["figure"], row["bar"], row["passed"]) for row in shown["rows"]] == [
+        ("missed", "3", "0", False), ("moment", "5e-11", "1e-9", True)]
+
+    def fails(quick: bool) -> list[Figure]:
+        raise NumbersFailed("It gave up.", "chatter")
+
+    (row,) = described("x", run_case(Case("x", "h", "n", "o", fails), quick=True))["rows"]
+    assert not row["passed"] and row["figure"] == "no number" and row["note"] == "It gave up."
+    json.dumps(shown, allow_nan=False)
+
+
+def test_names_with_a_colon_are_taken_off_as_a_whole() -> None:
+    name = "no damping, driven: chaos"
+    assert case_of(name) is not None
+    rows = run_case(Case(name, "h", "n", "o", lambda _: [Figure("energy: balance", 0.0, 1.0)]), quick=True)
+    assert described(name, rows)["rows"][0]["what"] == "energy: balance"
+
+
+def test_the_summary_names_what_failed() -> None:
+    assert summary({}) == ""
+    good = measured(Figure("moment", 5e-11, 1e-9))
+    assert summary({"touch and graze": good}) == "1 of 16 cases run: no figure of 1 is above its bar."
+    bad = measured(Figure("missed", 3.0, 0.0), Figure("moment", math.nan, 1e-9))
+    assert summary({"touch and graze": bad}) == (
+        "1 of 16 cases run: 2 of 2 figures FAILED: touch and graze: missed, 3 against 0, and 1 more.")
+
+
+def test_every_case_has_its_lines_and_none_is_too_long_for_one() -> None:
+    shown = described_cases()
+    assert [one["name"] for one in shown] == [case.name for case in CASES]
+    assert all(0 < len(one[line]) <= 115 for one in shown for line in ("hard", "naive", "oracle"))
+
+
+def test_the_process_answers_is_stopped_and_an_end_is_noticed() -> None:
+    long = case_of("near a bifurcation")
+    assert long is not None
+    process, stop = CaseProcess(), Stop()
+    stop.set()
+    with pytest.raises(Cancelled):
+        next(process.measure(long, stop))
+    # ended from outside: said, and the next case has a new process
+    stop = Stop()
+    answers = process.measure(Case("not in the table", "h", "n", "o", lambda _: []), stop)
+    with pytest.raises(Ended):
+        next(answers)
+    threading.Timer(1.0, stop.set).start()
+    with pytest.raises(Cancelled):
+        list(process.measure(long, stop))
+    assert process._process is not None
+    process._process.join(60.0)
+    assert process._process.exitcode is not None

@@ -1,0 +1,79 @@
+"""What the Observer page computes, without a browser: periods that go on, nudges, and predictions that hold."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from app.pages.observer.view import step_message
+from app.pages.observer.work import NUDGE, ObserverRun
+from granchain_core import scene, settled
+from granchain_core.state import rest
+from granchain_core.stop import Stop
+
+FOUNDED = scene("fig11-founded")
+
+
+def test_a_run_measures_what_its_multiplier_predicts() -> None:
+    picture = settled(FOUNDED)
+    run = ObserverRun(FOUNDED, picture, Stop(), None)
+    assert run.predicted is None and "comes with the settled" in run.sentence
+    run.predict(picture)
+    steps = [run.step() for _ in range(40)]
+    assert steps[0].distance[0] == pytest.approx(NUDGE * np.sqrt(FOUNDED.N))
+    ends, starts = ([step.distance[i] for step in steps] for i in (-1, 0))
+    assert ends[:-1] == pytest.approx(starts[1:], abs=1e-12)  # one is read off the dense output
+    # what the two-term recurrence leaves of the other multipliers (tests/observe/test_twin.py)
+    assert run.measured == pytest.approx(run.predicted, rel=5e-3)
+    assert "synchronises" in run.sentence and not run.broken
+
+
+def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
+    # sec2 from rest is of period 2 at 615 Hz (PHYSICS.md, trap 8)
+    shown = scene("sec2").evolve(f=615.0, kappa=0.001)
+    picture = settled(shown)
+    run = ObserverRun(shown, picture, Stop(), None)
+    run.predict(picture)
+    assert run.orbit is not None and run.orbit.period == 2
+    for _ in range(60):
+        run.step()
+    assert run.measured == pytest.approx(run.predicted, rel=0.02)
+
+
+def test_without_multipliers_it_says_why_and_runs() -> None:
+    cut = FOUNDED.evolve(f=340.0, dissipation="tsuji", tension="cut")
+    run = ObserverRun(cut, None, Stop(), None)
+    run.predict(SimpleNamespace(regime=SimpleNamespace(period=1), state=rest(cut)))  # type: ignore[arg-type]
+    assert run.predicted is None and "tension = cut" in run.sentence
+    assert run.step().distance[0] > 0.0
+
+
+def test_a_knob_that_is_turned_goes_on_from_where_both_are() -> None:
+    free = scene("fig11-free")
+    picture = settled(free)
+    first = ObserverRun(free, picture, Stop(), None)
+    first.predict(picture)
+    last = [first.step() for _ in range(12)][-1]
+    assert first.broken and "drifts" in first.sentence
+    second = ObserverRun(FOUNDED, None, Stop(), first)
+    step = second.step()
+    assert step.number == 12 and step.distance[0] == pytest.approx(last.distance[-1])
+    fewer = ObserverRun(FOUNDED.evolve(N=5), None, Stop(), second)
+    assert fewer.step().chain.shape[1] == 5
+
+
+def test_wishes_move_the_observer_alone_and_the_message_is_whole() -> None:
+    run = ObserverRun(FOUNDED, settled(FOUNDED), Stop(), None)
+    run.step()
+    chain = run.pair.states[0].displacement
+    run.from_rest()
+    assert np.array_equal(run.pair.states[0].displacement, chain) and not run.pair.states[1].displacement.any()
+    run.nudge()
+    assert np.sqrt(np.mean(run.pair.states[1].displacement ** 2)) == pytest.approx(NUDGE * FOUNDED.A0)
+    step = run.step()
+    message = step_message(step, FOUNDED, True)
+    n, rows = FOUNDED.N, len(step.distance)
+    assert message["values"].shape == (rows * (2 * (3 * n + 2) + 1),) and message["values"].dtype == np.float32
+    assert message["values"][-rows:] == pytest.approx(step.distance, rel=1e-6)

@@ -1,0 +1,301 @@
+"""The Stability view without a browser: its words, what it computes and when it computes nothing."""
+
+from __future__ import annotations
+
+import json
+import time
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.pages.stability import page as module
+from app.pages.stability import work
+from app.pages.stability.page import StabilityPage
+from app.pages.stability.view import (
+    described_multipliers,
+    evidence,
+    multiplier_words,
+    no_multipliers,
+    section_message,
+    section_points,
+    verdict,
+)
+from app.pages.stability.work import Analysis, Target, analyse, search, section_of, transient
+from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
+from granchain_core.steady.regime import Regime, modulus_words
+from granchain_core.stop import Stop
+
+
+@cache
+def picture(name: str = "sec2", **knobs: Any) -> Settled:
+    """A settled picture."""
+    return settled(scene(name).evolve(**knobs), samples=96)
+
+
+@cache
+def analysis(**knobs: Any) -> Analysis:
+    """The analysis of a settled picture of sec2."""
+    found = picture(**knobs)
+    assert found.regime.period is not None
+    return analyse(Target(found.run.scene, found.regime.period, found.state, True), False, 0, Stop())
+
+
+def with_leading(*leading: complex) -> Any:
+    """The orbit of sec2 with other multipliers."""
+    rest = np.full(22 - len(leading), 0.01 + 0j)
+    return replace(analysis().orbit, multipliers=np.concatenate([np.array(leading, dtype=complex), rest]))
+
+
+def test_a_stable_orbit_is_told_by_what_is_left_of_a_disturbance() -> None:
+    assert verdict(analysis().orbit) == ("Stable: a disturbance shrinks to 0.36 of itself in one period of the orbit "
+                                         "(1 drive period, 2.94 ms).")
+    assert "(3 drive periods, 2.65 ms)" in verdict(analysis(f=1130.0).orbit)
+
+
+@pytest.mark.parametrize(("leading", "words"), [
+    ((1.8,), "1.80-fold in one period of the orbit (1 drive period, 2.94 ms) and leaves to one side: a multiplier above +1, as behind a fold."),
+    ((-1.5,), "changes sides each time: a multiplier below −1, as behind a period doubling."),
+    ((1.2j, -1.2j), "turns while it grows: a pair outside the circle, as behind a Neimark–Sacker bifurcation."),
+    ((-1.5, 1.2j, -1.2j), "3 multipliers are outside the circle."),
+])
+def test_an_unstable_orbit_is_told_by_the_way_it_is_left(leading: tuple[complex, ...], words: str) -> None:
+    said = verdict(with_leading(*leading))
+    assert said.startswith("Unstable") and words in said
+    assert ("multipliers are outside" in said) == (len(leading) == 3)
+
+
+def test_the_observer_is_told_where_it_was_asked_for() -> None:
+    orbit = replace(analysis().orbit, observer_multipliers=np.array([-4.2, 0.1], dtype=complex))
+    assert verdict(orbit).endswith("Its observer is unstable, |μ| 4.20.")
+    assert [one["rank"] for one in described_multipliers(orbit, observer=True)] == [0, 1]
+    assert described_multipliers(analysis().orbit, observer=True) == []
+
+
+@pytest.mark.parametrize(("value", "words"), [(0.361, "0.36"), (0.0995, "0.10"), (0.0123, "0.012"), (3.2e-5, "3e-5"), (0.9939, "0.9939"), (1.00002, "1.000020"), (1.57, "1.57")])
+def test_moduli_are_told_from_one_and_from_zero(value: float, words: str) -> None:
+    assert modulus_words(value) == words
+
+
+def test_a_multiplier_tells_its_frequency_and_its_decay() -> None:
+    orbit = replace(analysis(f=1130.0).orbit)  # period 3: frequencies are folded into a third of the drive's
+    lines = multiplier_words(0.5j, orbit)
+    assert lines[0] == "μ = +0.0000 + 0.5000 i" and lines[1] == "|μ| = 0.50"
+    assert lines[2] == "angle/2π = 0.250 per orbit: 0.0833 of the drive frequency, 94.2 Hz"
+    periods = 3 / np.log(2.0)
+    assert lines[3] == f"dies out by e in {periods:.3g} drive periods ({1e3 * periods / 1130:.3g} ms)"
+    assert multiplier_words(2.0, orbit)[3].startswith("grows by e")
+    assert multiplier_words(0.0, orbit)[1] == "|μ| = 0e0"
+
+
+def test_motions_that_do_not_repeat_have_no_multipliers() -> None:
+    still = picture()
+    chaotic = replace(still, regime=Regime("chaotic", None, None, None, 620, (0.265, 0.023)))
+    assert "chaotic and never repeats. Neighbouring motions part 1.30-fold" in no_multipliers(chaotic)
+    assert "+0.265 ± 0.023" in no_multipliers(chaotic)
+    quasi = replace(still, regime=Regime("quasi-periodic", None, None, None, 620, (0.0001, 0.0004)))
+    assert "neither part nor meet" in no_multipliers(quasi)
+    assert "not settled after 620 periods" in no_multipliers(replace(still, regime=Regime.unsettled(620)))
+
+
+def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:
+    names = [row["name"] for row in evidence(picture(), analysis(), None)]
+    assert names == ["regime", "distance to the orbit", "|μ| largest", "Newton's residual", "settled state", "Liouville",
+                     "disturbance carried", "multipliers by", "settled by"]
+    rows = {row["name"]: row["value"] for row in evidence(picture(), analysis(), None)}
+    assert rows["|μ| largest"].startswith("0.36; decay 0.4")
+    assert " → " in rows["Newton's residual"] and float(rows["Liouville"]) < 1e-6
+    chaotic = replace(picture(), regime=Regime("chaotic", None, None, None, 620, (0.265, 0.023)))
+    assert [row["name"] for row in evidence(chaotic, None, None)] == ["regime", "Lyapunov exponent", "settled by"]
+    json.dumps(evidence(picture(), analysis(), None), allow_nan=False)
+
+
+def test_multipliers_lost_in_rounding_decide_nothing() -> None:
+    lost = replace(analysis(), orbit=replace(analysis().orbit, liouville=None))
+    rows = {row["name"]: row["value"] for row in evidence(picture(), lost, None)}
+    assert rows["Liouville"] == "the smallest multipliers are below rounding"
+
+
+def test_the_sections_points_are_the_computed_ones() -> None:
+    found = picture(f=1130.0)
+    *_, section = section_of(found, None, Stop())
+    assert section.periods == max(24, found.regime.periods_run) == transient(found, section)
+    shown = section_points(section, transient(found, section), analysis(f=1130.0).points, 3, 12)
+    assert shown.units == ("nm", "mm/s") and (len(shown.points), len(shown.own)) == (section.periods, 3)
+    assert shown.points == pytest.approx(section.points(3, 12) * [1e9, 1e3], rel=1e-5)
+    # the orbit's own points are those of the certified picture a quarter of a period on
+    expected = np.stack([found.run.displacement[24:-1:96, 2], found.run.velocity[24:-1:96, 2]], axis=1) * [1e9, 1e3]
+    assert np.abs(shown.own - expected).max() < 1e-4 * np.abs(expected).max()
+
+
+def test_multipliers_that_contradict_the_motion_are_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = replace(analysis().mode, closure=0.06)
+    monkeypatch.setattr(work, "mode", lambda *_: found)
+    with pytest.raises(NumbersFailed, match=r"a small disturbance comes back 0\.06 of itself away from what they say"):
+        analyse(analysis().target, False, 0, Stop())
+
+
+def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
+    shown = picture()
+    far = replace(shown.state, displacement=1.01 * shown.state.displacement)
+    with pytest.raises(NumbersFailed, match="ended 1e-02 away"):
+        analyse(Target(shown.run.scene, 1, far, True), False, 0, Stop())
+
+
+class Page:
+    """The host of the page: what is asked to be done later is done when the test says so."""
+
+    busy = unsettled = curve_computing = False
+
+    def __init__(self, mode: str = "settled") -> None:
+        self.session = SimpleNamespace(mode=mode, began=None, scene=scene("sec2"))
+        self.told: list[dict[str, Any]] = []
+        self.queue: list[Any] = []
+        self.failures: list[Exception] = []
+        view = SimpleNamespace(
+            state={}, display=lambda **changes: view.state.update(changes),
+            tell=lambda **message: self.told.append(message),
+            section=lambda shown: self.told.append(section_message(shown)))
+        self.view = view
+
+    def later(self, action: Any, *arguments: Any) -> None:
+        """From any thread."""
+        self.queue.append((action, arguments))
+
+    def after(self, seconds: float, action: Any, *arguments: Any) -> None:
+        """The quiet time passes when the queue is worked off."""
+        self.later(action, *arguments)
+
+    def failed(self, error: Exception) -> None:
+        """Nothing may fail."""
+        self.failures.append(error)
+
+    def work(self, until: Any, seconds: float = 60.0) -> None:
+        """Do what is due until something holds."""
+        end = time.monotonic() + seconds
+        while not until():
+            assert time.monotonic() < end, "did not come"
+            while self.queue:
+                action, arguments = self.queue.pop(0)
+                action(*arguments)
+            time.sleep(0.005)
+        assert self.failures == []
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What the view shows."""
+        return dict(self.view.state)
+
+
+@pytest.fixture
+def page() -> Page:
+    """A page with nothing on it."""
+    return Page()
+
+
+def opened(page: Page) -> StabilityPage:
+    """The view, on the screen."""
+    view = StabilityPage(page, page.view)  # type: ignore[arg-type]
+    view.actions["stability-visible"]({"value": True})
+    return view
+
+
+def test_nothing_is_computed_while_nobody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "analyse", lambda *_: pytest.fail("computed"))
+    view = StabilityPage(page, page.view)  # type: ignore[arg-type]
+    view.arrived(picture())
+    page.work(lambda: not page.queue)
+    assert view.activity[1] == "off" and "marks" not in page.state
+
+
+def test_a_picture_that_stays_is_analysed(page: Page) -> None:
+    view = opened(page)
+    view.arrived(picture())
+    page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.told))
+    assert page.state["sentence"].startswith("Stable") and len(page.state["marks"]) == 22
+    assert not page.state["stale"] and not page.state["searched"] and page.state["observer_marks"] == []
+    mode = next(m for m in page.told if m["type"] == "mode")
+    assert mode["values"].dtype == np.float32 and len(mode["values"]) == 2 * 49 * 11
+    assert view.activity[1] == "there"
+    # the same picture with its energy account changes nothing
+    count = len(page.told)
+    view.arrived(replace(picture()))
+    page.work(lambda: not page.queue)
+    assert len(page.told) == count
+    view.close()
+
+
+def test_a_moved_knob_gives_up_and_greys(page: Page) -> None:
+    view = opened(page)
+    view.arrived(picture())
+    page.work(lambda: page.state.get("status") == "done")
+    view.arrived(replace(picture(), state=replace(picture().state)))
+    view.moved()
+    assert page.state["stale"]
+    page.work(lambda: not page.queue)
+    assert page.state["stale"], "what was asked for before the knob moved is not computed"
+    view.close()
+
+
+def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
+    view = opened(page)
+    view.arrived(picture())
+    page.work(lambda: page.state.get("status") == "done")
+    view.actions["stability-observer"]({"value": True})
+    page.work(lambda: len(page.state["observer_marks"]) == 22)
+    view.actions["stability-mode"]({"value": 2})
+    page.work(lambda: page.state.get("rank") == 2)
+    view.close()
+
+
+def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
+    view = opened(page)
+    view.arrived(picture(f=1576.0))
+    page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.told))
+    assert page.state["period"] == 4
+    view.actions["stability-search"]({"value": 1})
+    page.work(lambda: page.state["searched"])
+    assert page.state["period"] == 1 and page.state["sentence"].startswith("Unstable")
+    view.actions["stability-back"]({})
+    page.work(lambda: not page.state["searched"])
+    assert page.state["period"] == 4
+    view.close()
+
+
+def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> None:
+    page.session.scene = picture(tension="cut").run.scene
+    view = opened(page)
+    view.arrived(picture(tension="cut"))
+    page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.told))
+    assert "multipliers are not computed" in page.state["sentence"] and page.state["marks"] == []
+    view.close()
+
+
+def test_the_followed_orbit_is_not_called_another_one() -> None:
+    for found, period in ((picture(), 1), (picture(f=1130.0), 3)):
+        *_, section = section_of(found, None, Stop())
+        with pytest.raises(NumbersFailed, match=f"the orbit that the chain follows, of {period} drive period"):
+            search(found, section, period, Stop())
+
+
+def test_a_live_run_has_no_multipliers() -> None:
+    page = Page(mode="live")
+    opened(page)
+    assert "live run is on its way" in page.state["sentence"] and page.state["marks"] == []
+
+
+@pytest.mark.parametrize(("action", "message"), [
+    ("stability-search", {"value": 99}), ("stability-search", {"value": 1.5}), ("stability-search", {"value": "one"}), ("stability-mode", {"value": True}),
+    ("stability-section", {"bead": 0, "phase": 0}), ("stability-section", {"bead": 1, "phase": 48}), ("stability-section", {}),
+])
+def test_wrong_requests_get_their_sentence(page: Page, action: str, message: dict[str, Any]) -> None:
+    with pytest.raises(BadInput, match="is not a whole number from"):
+        opened(page).actions[action](message)
+
+
+def test_a_search_before_there_is_a_picture_is_refused(page: Page) -> None:
+    with pytest.raises(BadInput, match="no settled picture"):
+        opened(page).actions["stability-search"]({"value": 1})

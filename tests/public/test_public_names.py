@@ -1,0 +1,80 @@
+"""The public names: what each docstring says is there, and every example in it runs and gives what it shows."""
+
+from __future__ import annotations
+
+import doctest
+import inspect
+import re
+import subprocess
+import sys
+
+import pytest
+
+import granchain
+import granchain_core
+
+#: Names that are another name's second one.
+SECOND = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch"}
+NAMES = [name for name in granchain_core.__all__ if name not in SECOND]
+FUNCTIONS = [name for name in NAMES if not isinstance(getattr(granchain_core, name), type)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_examples_of_a_public_name_run(name: str) -> None:
+    subject = getattr(granchain_core, name)
+    found = doctest.DocTestParser().get_doctest(inspect.cleandoc(subject.__doc__), {}, name, None, None)
+    assert found.examples, f"{name} has no example"
+    output: list[str] = []
+    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
+    assert runner.run(found, out=output.append).failed == 0, "".join(output)
+
+
+def section(name: str, title: str) -> str:
+    """The text under a heading of a docstring; empty where there is none."""
+    text = inspect.cleandoc(getattr(granchain_core, name).__doc__)
+    found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w+\n-+$|\Z)", text, re.MULTILINE | re.DOTALL)
+    return found[1] if found else ""
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_public_function_documents_every_parameter_and_what_it_returns(name: str) -> None:
+    documented = {one.strip() for line in re.findall(r"^(\w[\w, ]*) :", section(name, "Parameters"), re.MULTILINE)
+                  for one in line.split(",")}
+    assert documented == set(inspect.signature(getattr(granchain_core, name)).parameters)
+    assert section(name, "Returns") or section(name, "Yields")
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name not in FUNCTIONS])
+def test_a_public_class_documents_its_fields(name: str) -> None:
+    subject = getattr(granchain_core, name)
+    written = section(name, "Attributes") + section(name, "Parameters")
+    for field in getattr(subject, "__dataclass_fields__", {}):
+        assert re.search(rf"^[\w, ]*\b{field}\b[\w, ]* :", written, re.MULTILINE), f"{name}.{field}"
+
+
+def test_both_packages_have_the_same_names() -> None:
+    assert granchain.__all__ == granchain_core.__all__ and granchain.__version__ == granchain_core.__version__
+    assert all(getattr(granchain, name) is getattr(granchain_core, name) for name in granchain_core.__all__)
+    assert set(granchain.__all__) <= set(dir(granchain))
+    with pytest.raises(AttributeError, match="no attribute 'sceen'"):
+        granchain.sceen  # noqa: B018
+
+
+@pytest.mark.parametrize(("second", "name"), SECOND.items())
+def test_the_longer_names_are_the_same_functions(second: str, name: str) -> None:
+    assert getattr(granchain_core, second) is getattr(granchain_core, name)
+
+
+def alone(program: str) -> str:
+    """What a program prints in a process of its own."""
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=120).stdout
+
+
+def test_importing_loads_no_compiler_and_no_file_library() -> None:
+    """They take most of a second, and a page or `granchain scenes` needs neither at once."""
+    assert alone("import sys, granchain; print([m for m in ('numba', 'scipy', 'h5py', 'panel') if m in sys.modules])") == "[]\n"
+
+
+def test_a_function_keeps_its_name_beside_a_folder_of_the_same_name() -> None:
+    assert alone("import granchain_core, granchain_core.run.live, granchain_core.diagram.grid, granchain_core.observe.record\n"
+                 "print(*(getattr(granchain_core, name).__name__ for name in ('run', 'diagram', 'observe')))") == "run diagram observe\n"

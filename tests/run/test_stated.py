@@ -1,0 +1,116 @@
+"""What is stated of the finest of several computations: never less than all of them together show, and compiling is no
+part of what a computation takes."""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import replace
+
+import numba
+import numpy as np
+import pytest
+
+from granchain_core import run, scene
+from granchain_core.integrate import Setting
+from granchain_core.integrate.methods import typical_error
+from granchain_core.run.budget import Stopwatch
+from granchain_core.run.stated import Computations
+from tests.numerics.forces.located import located
+
+REFINES = (4.0, 8.0, 16.0, 32.0)
+STEPS = 10_000
+
+
+def shown(differences: list[float], refines: tuple[float, ...] = REFINES) -> Computations:
+    """Computations of the live method with these differences, one after another."""
+    found = Computations(False)
+    found.begin(Setting("rk4-split", refines[0]))
+    for refine, difference in zip(refines[1:], differences, strict=False):
+        setting = Setting("rk4-split", refine)
+        found.add(setting, STEPS, np.array([difference]), np.array([typical_error(setting)]))
+    return found
+
+
+def test_two_computations_that_agree_by_chance_do_not_decide() -> None:
+    """Order 3.9 leaves a fifteenth of an error when the step is halved: a difference 1e-9 times the last is chance."""
+    assert shown([1e-5, 1e-14]).stated[0] >= 1.5 * 1e-5 / 16.0
+
+
+def test_where_the_order_is_seen_the_last_difference_decides() -> None:
+    """Differences that fall by 16 are a fourth-order method's: little more than the last one is stated then."""
+    last = 1e-3 / 16.0
+    assert 1.5 * last <= shown([1e-3, last]).stated[0] <= 1.1 * 1.5 * last
+
+
+def test_no_less_is_stated_than_is_typical_of_the_steps() -> None:
+    setting = Setting("rk4-split", REFINES[1])
+    assert shown([0.0]).stated[0] == typical_error(setting) > 0.0
+
+
+def test_rounding_grows_as_errors_grow() -> None:
+    """A motion that magnifies the errors of its steps a millionfold does so with their roundings, some 1e-16 each: 1e-10 at
+    least is stated however well two computations agree, and finer ones are of no use."""
+    growth = 1e6
+    found = shown([growth * typical_error(Setting("rk4-split", r)) for r in REFINES[:-1]])
+    assert not found.rounded
+    fine = shown([growth * typical_error(Setting("rk4-split", 8.0)), 1e-15, 1e-15], (8.0, 64.0, 512.0, 4096.0))
+    assert fine.stated[0] >= growth * np.finfo(float).eps
+    assert fine.rounded
+
+
+def test_a_gentle_motion_is_not_charged_with_rounding() -> None:
+    """Errors that do not grow leave the rounding of 1e4 steps below 1e-12."""
+    assert shown([typical_error(Setting("rk4-split", r)) for r in REFINES[:-1]]).rounding < 1e-12
+
+
+def test_an_error_of_a_tenth_is_none_worth_the_name_unless_it_was_asked_for() -> None:
+    found = shown([0.1])
+    assert found.final(done=False)[0] == 2.0
+    assert found.final(done=True)[0] == pytest.approx(0.15)
+
+
+#: Scenes of `python -m tests.numerics.honesty --seed 101` whose stated error was below the true one: two computations in
+#: which the same contact event happened to lie alike in its step.
+CHANCE = [
+    ({"f": 145.0107398227187, "A0": 5.420547110388205e-06, "D": 187.64768194099608, "N": 1, "F0": 0.0718184022107687,
+      "accuracy": 9.005855842342343e-08}, ()),
+    ({"f": 139.46763538663726, "A0": 3.662854372970868e-08, "D": 120.48700047211636, "N": 7, "dissipation": "kuwabara-kono",
+      "accuracy": 2.0256437815148858e-05}, ((1, -0.00020996051320894545),)),
+]
+
+
+@pytest.mark.parametrize(("knobs", "thrown"), CHANCE, ids=["pressed", "thrown"])
+def test_scenes_in_which_two_computations_agreed_by_chance_are_bounded(knobs, thrown) -> None:
+    chosen = replace(scene("sec2").evolve(**knobs), start_velocity=thrown)
+    found, true = run(chosen, periods=0, record=3, samples=16), located(chosen, 0, 3, 16).displacement
+    assert np.abs(found.displacement - true).max() <= found.error_estimate * np.abs(true).max()
+
+
+def test_compiling_is_no_part_of_what_a_computation_takes() -> None:
+    began, spent = time.perf_counter(), Stopwatch()
+    numba.njit(lambda x: np.linalg.norm(x) + np.sort(x)[0])(np.ones(3))
+    assert spent.seconds < 0.2 * (time.perf_counter() - began)
+    began, spent = time.perf_counter(), Stopwatch()
+    while time.perf_counter() < began + 0.01:
+        pass
+    assert spent.seconds >= 0.01
+
+
+def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Section 2's run needs three computations (tests/hard/test_outcomes.py); each compiles something for longer than the
+    budget, which is a hundred times what they take."""
+    module = sys.modules["granchain_core.run.run"]
+    computes, compiled, budget = module._attempt, [], 1.0
+
+    def compiling(*words):
+        began = time.perf_counter()
+        while time.perf_counter() < began + budget:
+            numba.njit(lambda x: np.sort(x)[0])(np.ones(3))
+        compiled.append(time.perf_counter() - began)
+        return computes(*words)
+
+    run(scene("sec2"), periods=20, record=1, samples=8)  # its own kernels are there
+    monkeypatch.setattr(module, "_attempt", compiling)
+    assert run(scene("sec2"), periods=20, record=1, samples=8, budget=budget).status == "done"
+    assert len(compiled) >= 3

@@ -1,0 +1,82 @@
+"""Curves by batches: extrapolation does not change the attractor that is reached from rest; drafts claim less."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import scene
+from granchain_core.kernels.batch import period_end
+from granchain_core.steady import batch_settle
+from granchain_core.steady.curve import draft_curve, resonance_curve
+from granchain_core.steady.settle import settle
+from granchain_core.steady.steady_state import SteadyState
+from granchain_core.stop import Stop
+
+#: Between 1580 and 1640 Hz two attractors stand side by side; below 1000 Hz and on the peaks approaches are slow.
+FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620.0, 1640.0, 1900.0]
+
+
+def results(frequencies: list[float]) -> dict[float, SteadyState]:
+    """What lanes find at these frequencies of section 2."""
+    scenes = (scene("sec2").evolve(f=f) for f in frequencies)
+    return {found.scene.f: found for found in batch_settle.batch_results(scenes, Stop())}
+
+
+def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
+    """Lanes, which follow slow approaches, and the live method, which runs on until it is there, from rest."""
+    by_lanes = results(FREQUENCIES)
+    for f in FREQUENCIES:
+        way = settle(scene("sec2").evolve(f=f), None, None)
+        found = by_lanes[f]
+        assert found.regime.name == way.regime.name
+        if found.regime.period is None:
+            continue
+        assert found.regime.period == way.regime.period
+        top = way.engine.periods(found.regime.period)[1][:, 1].max() * way.engine.lowered.scales.force
+        # the live method's own error at these steps is a few 1e-5 of the displacement, more on steep flanks
+        assert found.tops[1] == pytest.approx(top, rel=2e-3)
+
+
+def test_up_and_down_really_differ_there() -> None:
+    """So the test above could fail: the attractor at 1600 Hz depends on the start."""
+    frequencies = np.array([1560.0, 1580.0, 1600.0, 1620.0, 1640.0, 1660.0])
+    up = resonance_curve(scene("sec2"), frequencies, start="up").points[2]
+    down = resonance_curve(scene("sec2"), frequencies, start="down").points[2]
+    assert up.max_output_force > 2.0 * down.max_output_force
+
+
+def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
+    """The rig between 134 and 160 Hz: what lanes call periodic is stable, what the live method shows to be so."""
+    found = [point for point in resonance_curve(scene("rig"), np.linspace(134.0, 160.0, 14)).points
+             if point.regime.name == "periodic"]
+    for point in found:
+        kick = 1e-3 * np.abs(point.state.displacement).max() * np.where(np.arange(11) % 2, 1.0, -1.0)
+        start = type(point.state)(point.state.displacement + kick, point.state.velocity)
+        way = settle(scene("rig").evolve(f=point.frequency), start, None)
+        assert way.regime.period == point.regime.period
+
+
+def test_a_draft_claims_no_errors_and_agrees_where_it_is_periodic() -> None:
+    """A draft is drawn while a knob moves: coarse steps, a few hundred periods, unsettled where that was too short."""
+    frequencies = np.linspace(200.0, 2000.0, 19)
+    whole = {point.frequency: point for point in resonance_curve(scene("sec2"), frequencies).points}
+    drafted = draft_curve(scene("sec2"), frequencies, Stop())
+    assert sorted(point.frequency for point in drafted) == sorted(whole)
+    periodic = [point for point in drafted if point.regime.name == "periodic"]
+    assert len(periodic) > 8
+    for point in drafted:
+        assert point.error_estimate is None
+        assert point.regime.name in ("periodic", "unsettled")
+    for point in periodic:
+        assert whole[point.frequency].regime.period == point.regime.period
+        assert point.max_output_force == pytest.approx(whole[point.frequency].max_output_force, rel=1e-2)
+
+
+def test_scenes_that_lanes_cannot_run_have_no_draft() -> None:
+    assert draft_curve(scene("sec2").evolve(tension="cut"), np.array([340.0]), Stop()) == []
+
+
+def test_constants_of_the_disturbance_leave_room() -> None:
+    """A disturbance is far above what counts as settled and far below what changes the sequence of contacts."""
+    assert 10.0 * period_end.SETTLED_DISTANCE < period_end._DISTURBANCE < 1e-2

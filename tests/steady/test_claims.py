@@ -1,0 +1,105 @@
+"""What the regime rests on, number by number: rates, distances, the shortest period, and what is none of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import State, run, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.kernels.strobes import periodicity as section
+from granchain_core.steady import regime, settle
+
+
+def turning(rate: float, count: int = 420) -> np.ndarray:
+    """States (count + 1, 2, 2) of a rotation by the golden angle that shrinks by `rate` a period."""
+    turn = (rate * np.exp(2j * np.pi * 0.6180339887498949)) ** np.arange(count + 1)
+    return np.stack([np.stack([turn.real, turn.imag], 1), np.stack([turn.imag, -turn.real], 1)], 1)
+
+
+def test_of_two_halves_the_slower_one_tells_the_rate() -> None:
+    """Nine changes that fall by 0.8 and then by 0.95 fall by 0.95: what is slow stays."""
+    changes = np.cumprod([1.0, *[0.8] * 4, *[0.95] * 4])
+    assert section.decay_rate(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
+
+
+def test_the_shortest_period_is_told() -> None:
+    """States that alternate repeat after four periods too; their period is two."""
+    states = np.zeros((9, 2, 1))
+    states[1::2] = 1.0
+    assert section.shortest(states, np.ones(2), 4, 1e-9) == 2
+
+
+def test_changes_lost_in_rounding_leave_a_distance() -> None:
+    """A decay by 0.97 that went below a rounding of 1e-7: what is left to go may be 1e-7·0.97/0.03, and is told."""
+    states = 1.0 + 0.97 ** np.arange(600)[:, None, None] * np.ones((1, 2, 3))
+    found = regime.find_period(states, rounding=1e-7)
+    assert found.name == "periodic" and found.decay == pytest.approx(0.97, abs=0.01)
+    assert found.distance is not None and found.distance >= 1e-7 * 0.96 / 0.04
+
+
+def test_growth_within_its_error_is_no_chaos() -> None:
+    """A mean exponent of 0.004 ± 0.006 on a closed curve is no evidence of chaos."""
+    exponents = np.array([0.03, -0.02, 0.01, -0.01, 0.02, -0.006])
+    assert regime.irregular(exponents, turning(1.0), 420).name == "quasi-periodic"
+
+
+def test_a_spiral_that_creeps_inwards_is_no_closed_curve() -> None:
+    """0.03 % a period: neighbours hardly approach, and yet it is on its way."""
+    exponents = np.array([-2e-4, -4e-4, -3e-4, -3e-4])
+    assert regime.irregular(exponents, turning(0.9997), 420).name == "unsettled"
+    assert regime.irregular(exponents, turning(1.0), 420).name == "quasi-periodic"
+
+
+def test_a_drift_is_no_closed_curve() -> None:
+    """A section that goes on and on never comes back near itself, whatever its exponent."""
+    drifting = turning(1.0) + 0.05 * np.arange(421)[:, None, None]
+    assert regime.irregular(np.array([1e-4, -1e-4, 2e-4, -2e-4]), drifting, 420).name == "unsettled"
+
+
+def test_largest_forces_are_those_of_the_recorded_periods() -> None:
+    """A chain that is hit hard at first: the one period that is discarded has larger forces than those asked for."""
+    hit = State(np.zeros(3), np.array([1.0, 0.0, 0.0]))
+    chain = scene("sec2").evolve(N=3, accuracy=1e-3)
+    whole = run(chain, periods=0, record=1, samples=256, start=hit)
+    later = run(chain, periods=1, record=2, samples=256, start=hit)
+    assert whole.max_output_force > 2.0 * later.output_force.max()
+    assert later.max_output_force == pytest.approx(later.output_force.max(), rel=0.02)
+
+
+def test_the_times_of_samples_are_counted_and_not_summed() -> None:
+    """Every seventh of seven thousand samples is at a whole number of drive periods, to the last bit."""
+    chain = scene("sec2").evolve(N=1, f=3000.0, D=300.0, accuracy=1e-2)
+    found = run(chain, periods=3, record=1000, samples=7)
+    assert (found.time[::7] == (3 + np.arange(1001)) * chain.period).all()
+
+
+def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a tenth of a distance is left after an orbit the settled error is e/(1 − 1/10), where nine tenths are, 10 e."""
+    way = settle.settle(scene("sec2"), None, None)
+    engine = Engine(way.scene, Setting("rk4-split"), 16)
+    engine.start(way.engine.state)
+    monkeypatch.setattr(settle, "relax", lambda *words: (engine, 0.0))
+    stated = []
+    for decay in (0.1, 0.9):
+        monkeypatch.setattr(settle, "slowness", lambda regime, decay=decay: decay)
+        stated.append(settle.certified_picture(way, 16, 0.0, "rest").run.error_estimate)
+    assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
+
+
+def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
+    way, seen = settle.settle(scene("sec2"), None, None), []
+    real = settle.changes
+    monkeypatch.setattr(settle, "slowness", lambda regime: 0.99)
+    monkeypatch.setattr(settle, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
+    _, bound = settle.relax(way, 1e-6)
+    assert bound <= 0.3e-6
+    assert bound == pytest.approx(99.0 * float(seen[-1][0]), rel=1e-12)
+
+
+def test_the_largest_elastic_force_is_the_walls() -> None:
+    """A rigid wall's contact is stiffer than one between beads; its samples come near the largest value, from below."""
+    found = run(scene("sec2").evolve(N=3, wall="rigid", accuracy=1e-4), periods=2, record=3, samples=256)
+    assert found.output_force_elastic.max() <= found.max_output_force_elastic * (1.0 + 1e-12)
+    assert found.output_force_elastic.max() == pytest.approx(found.max_output_force_elastic, rel=1e-3)

@@ -1,0 +1,73 @@
+"""Lyapunov exponents by the shadow against an independent way: products of the certified map's derivatives with QR."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import Scene, State, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.lower import lower
+from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
+from granchain_core.steady.settle import settle
+from granchain_core.stop import Stop
+
+CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # PHYSICS, trap 8: irregular everywhere with κ = 0
+QUASI = scene("sec2").evolve(f=1640.0)
+
+
+def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int = 2) -> tuple[np.ndarray, np.ndarray]:
+    """The `count` largest exponents per period and their standard errors, by the certified motion and its tangents."""
+    strobe = StroboscopicMap(shown, 1)
+    x = strobe.inner(strobe.engine.lowered.scaled(state))
+    frame, _ = np.linalg.qr(np.random.default_rng(3).standard_normal((len(x), count)))
+    growth = []
+    for _ in range((blocks + 1) * block):
+        flow = strobe(x)
+        frame, triangle = np.linalg.qr(flow.derivative @ frame)
+        x = flow.end
+        growth.append(np.log(np.abs(np.diag(triangle))))
+    means = np.array(growth)[block:].reshape(blocks, block, count).mean(axis=1)
+    return means.mean(axis=0), means.std(axis=0, ddof=1) / np.sqrt(blocks)
+
+
+def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
+    """Mean and standard error by the one-scene shadow and by the one in lanes."""
+    engine = Engine(shown, Setting("rk4-split"), 1)
+    engine.start(state)
+    lowered = lower(shown)
+    found = exponents(engine, 10, 20)[0], exponents_in_pairs([(lowered, lowered.scaled(state))], 10, 20,
+                                                             Stop())[0][0]
+    return [(float(growth.mean()), float(growth.std(ddof=1) / np.sqrt(10))) for growth in found]
+
+
+def test_a_chaotic_chain_has_the_exponent_of_its_tangent_flow() -> None:
+    way = settle(CHAOTIC, None, None)
+    assert way.regime.name == "chaotic"
+    exact, error = by_tangents(CHAOTIC, way.engine.state, 10, 12)
+    assert exact[0] > 0.5
+    for mean, spread in by_shadow(CHAOTIC, way.engine.state):
+        assert abs(mean - exact[0]) <= 3.0 * np.hypot(spread, error[0])
+
+
+def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> None:
+    way = settle(QUASI, None, None)
+    assert way.regime.name == "quasi-periodic"
+    exact, error = by_tangents(QUASI, way.engine.state, 10, 30)
+    # on a closed curve tangents turn into it within the first block; what is left of that dies as 1/periods
+    assert abs(exact[0]) <= 3.0 * error[0] + 0.01 and exact[1] < -3.0 * error[1]
+    for mean, spread in by_shadow(QUASI, way.engine.state):
+        assert abs(mean - exact[0]) <= 3.0 * np.hypot(spread, error[0]) and abs(mean) < 0.01
+
+
+def test_exponents_of_a_scene_do_not_depend_on_those_beside_it() -> None:
+    lowered = lower(QUASI)
+    y = lowered.scaled(settle(QUASI, None, None).engine.state)
+    slower = lower(QUASI.evolve(f=QUASI.f / 2.2))
+    alone = exponents_in_pairs([(lowered, y)], 5, 20, Stop())[0]
+    beside = exponents_in_pairs([(slower, 0.5 * y), (lowered, y)], 5, 20, Stop())[1]
+    for first, second in zip(alone, beside, strict=True):
+        assert (first == second).all()
+    with pytest.raises(ValueError, match="differ by more than a factor"):
+        exponents_in_pairs([(lowered, y), (lower(QUASI.evolve(f=QUASI.f / 9.0)), y)], 5, 20, Stop())

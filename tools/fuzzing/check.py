@@ -1,0 +1,225 @@
+"""One drawn scene, and the verdict: an outcome with a sentence or a motion, and everything that did not hold."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from granchain_core import BadInput, Cancelled, NumbersFailed, Run, Scene, run
+from granchain_core.errors import OverBudget
+from granchain_core.integrate import Engine, Setting, method_for
+from granchain_core.state import rest
+from granchain_core.stop import Stop
+
+from . import oracle, properties
+from .properties import SAMPLES, distance
+from .scenes import Draw
+
+PERIODS = 2
+#: Seconds a run may take; beyond twice that and the floor it hangs, and its stop flag is raised.
+BUDGET, FLOOR = 5.0, 5.0
+#: A wrong displacement that matters, relative.
+SILENT = 1e-3
+#: What rounding alone may change, and how far it may be magnified beyond what a change of tolerance shows.
+_ROUNDING, _MAGNIFIED = 1e-10, 1e3
+#: An account is a quadrature along the way: it was seen to close to 17 times the error of the displacements.
+_ENERGY = 50.0
+#: Seconds SciPy takes, in both its runs, for one step of the certified method: a scene it has no time for is not begun.
+_SCIPY_STEP = 2.5e-4
+#: A motion less well known than this is chaos: nothing but outcome, time and symmetries is judged.
+_CHAOS = 1e-4
+
+
+@dataclass
+class Verdict:
+    """What came of a draw. Errors are relative to the largest displacement; `known` is how well the truth is, `steps`
+    how many the certified method took.
+
+    `faults` are (name, figure) of what did not hold. `others` are error and refusal of what a user would have had.
+    """
+
+    draw: Draw
+    outcome: str
+    sentence: str = ""
+    seconds: float = 0.0
+    error: float = np.nan
+    stated: float = np.nan
+    known: float = np.nan
+    steps: int = 0
+    against_scipy: bool = False
+    faults: list[tuple[str, float]] = field(default_factory=list)
+    others: dict[str, tuple[str, float]] = field(default_factory=dict)
+
+    @property
+    def judged(self) -> bool:
+        """Whether the truth is known better than what is stated about it."""
+        return bool(self.known < 0.3 * self.stated)
+
+
+def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, others: float = 0.0,
+          budget: float = BUDGET) -> Verdict:
+    """The verdict on one draw; `compute` takes the place of `run`.
+
+    For at most `scipy` seconds each the independent solver of oracle.py is a second judge (where tension is cut `run`
+    itself is certified, and it is the only independent one), and for at most `others` seconds each naive RK4 and
+    LSODA are judged too.
+    """
+    try:
+        chosen = draw.scene()
+    except BadInput as refusal:
+        fault = [] if draw.spoiled and str(refusal).endswith(".") else [("refused without need or sentence", 1.0)]
+        return Verdict(draw, "refused: BadInput", str(refusal), faults=fault)
+    except Exception as problem:  # any other is a failure without a type: the very thing looked for
+        return Verdict(draw, "untyped", repr(problem), faults=[("untyped failure", 1.0)])
+    verdict, found = _outcome(draw, chosen, compute, budget)
+    if draw.spoiled:
+        verdict.faults.append(("a spoiled knob was taken", 1.0))
+    if found is None:
+        return verdict
+    _finite(verdict, found)
+    try:
+        with limit(2.0 * budget) as stop:
+            truth = _judge(verdict, found, stop)
+            _properties(verdict, chosen, stop)
+    except Cancelled:  # the certified method at its finest takes longer than the run: not judged, and counted so
+        return verdict
+    except NumbersFailed as problem:
+        verdict.sentence = f"the judge failed: {problem}"
+        return verdict
+    if scipy > _SCIPY_STEP * verdict.steps:
+        _second_judge(verdict, found, scipy)
+    if others > 0.0:
+        _others(verdict, chosen, truth, others)
+    return verdict
+
+
+@contextlib.contextmanager
+def limit(seconds: float) -> Iterator[np.ndarray]:
+    """A stop flag that is raised after so many seconds."""
+    stop = Stop()
+
+    def over() -> None:
+        stop.set()
+
+    timer = threading.Timer(seconds, over)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield stop
+    finally:
+        timer.cancel()
+
+
+def _outcome(draw: Draw, chosen: Scene, compute: Callable[..., Run], budget: float) -> tuple[Verdict, Run | None]:
+    began, found, fault = time.perf_counter(), None, ""
+    try:
+        with limit(2.0 * budget + FLOOR) as stop:
+            found = compute(chosen, periods=0, record=PERIODS, samples=SAMPLES, stop=stop, budget=budget)
+        outcome, sentence = found.status, ""
+    except OverBudget as refusal:
+        outcome, sentence = "refused: over budget", str(refusal)
+    except BadInput as refusal:
+        outcome, sentence = "refused: BadInput", str(refusal)
+    except NumbersFailed as failure:
+        outcome, sentence = f"failed: {failure.status}", failure.sentence
+    except Cancelled:
+        outcome, sentence, fault = "hang", f"stopped after {2.0 * budget + FLOOR:g} s", "hang"
+    except Exception as problem:  # as above
+        outcome, sentence, fault = "untyped", repr(problem), "untyped failure"
+    seconds = time.perf_counter() - began
+    verdict = Verdict(draw, outcome, sentence, seconds)
+    if fault or seconds > 2.0 * budget + FLOOR:
+        verdict.faults.append((fault or "hang", seconds))
+    elif found is None and not sentence.endswith("."):
+        verdict.faults.append(("no sentence", 1.0))
+    return verdict, found
+
+
+def _finite(verdict: Verdict, found: Run) -> None:
+    for name in ("displacement", "velocity", "force", "max_output_force", "error_estimate", "energy_residual"):
+        value: Any = getattr(found, name)
+        if value is None or not np.isfinite(value).all():
+            verdict.faults.append((f"{name} is not finite", 1.0))
+
+
+def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
+    """Hold the run against the certified method at its finest, and its energy; returns the true displacements [m]."""
+    chosen, kept = found.scene, []
+    for tolerance in (3e-14, 3e-15):
+        engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, balance=True, stop=stop)
+        engine.start(rest(chosen))
+        kept.append(engine.record(PERIODS * SAMPLES))
+        verdict.steps = engine.counts.steps
+    true = kept[1].displacement * chosen.A0
+    verdict.known = distance(kept[0].displacement, kept[1].displacement)
+    verdict.stated = float("nan") if found.error_estimate is None else found.error_estimate
+    verdict.error = distance(found.displacement, true)
+    _bounded(verdict, "", verdict.error, verdict.known)
+    if found.status == "done" and not verdict.stated <= chosen.accuracy:
+        verdict.faults.append(("done, and stated above what was asked", verdict.stated / chosen.accuracy))
+    if verdict.known < _CHAOS:
+        limits = 1e-9 + 100.0 * verdict.known, 1e-9 + _ENERGY * max(verdict.stated, chosen.accuracy)
+        figures = properties.energy(engine.lowered, kept[1]), found.energy_residual
+        for name, figure, bar in zip(("energy of the certified method", "energy"), figures, limits, strict=True):
+            if figure is None or not figure <= bar:
+                verdict.faults.append((name, np.nan if figure is None else figure / bar))
+    return true
+
+
+def _bounded(verdict: Verdict, by: str, error: float, known: float) -> None:
+    """Faults where the stated error is below the true one; a silent one where by more than what matters."""
+    sure = error - 3.0 * known
+    if not sure <= verdict.stated:
+        verdict.faults.append((f"bound{by}", error / (verdict.stated + 3.0 * known)))
+    if not sure <= max(SILENT, verdict.stated):
+        verdict.faults.append((f"silent error{by}", error))
+
+
+def _properties(verdict: Verdict, chosen: Scene, stop: Stop) -> None:
+    rng = np.random.default_rng([verdict.draw.seed, verdict.draw.index, 1])
+    bar = _ROUNDING + _MAGNIFIED * verdict.known
+    power = int(rng.choice([-2, -1, 1, 2]))
+    *figures, own = properties.mirrored(chosen, rng, stop)
+    found = [("symmetric start", _ROUNDING + own), ("mirrored start", _ROUNDING + own)]
+    if verdict.known < _CHAOS:
+        found += [("scaling", bar), ("shift by a period", bar)]
+        figures += [properties.scaling(chosen, power, stop), properties.shifted(chosen, stop)]
+    verdict.faults += [(name, figure) for (name, most), figure in zip(found, figures, strict=True) if not figure <= most]
+
+
+def _second_judge(verdict: Verdict, found: Run, seconds: float) -> None:
+    """Hold the run against SciPy's DOP853 in (u, v), started anew at every event, as far as it is sure of itself."""
+    try:
+        nearly, true = (oracle.located(found.scene, PERIODS, SAMPLES, rtol, seconds) for rtol in (1e-9, 1e-11))
+    except (oracle.TooLong, NumbersFailed):
+        return
+    known = distance(nearly, true)
+    if known < 0.3 * max(verdict.stated, SILENT):
+        verdict.against_scipy = True
+        _bounded(verdict, " (SciPy)", distance(found.displacement, true), known)
+
+
+def _others(verdict: Verdict, chosen: Scene, true: np.ndarray, seconds: float) -> None:
+    """What naive RK4 at the steps of our own fixed-step method and LSODA as it comes would have given."""
+    refine = 2.0 * method_for(max(chosen.accuracy, 1e-9)).refine
+
+    def naive() -> np.ndarray:
+        with limit(seconds) as stop:
+            engine = Engine(chosen, Setting("rk4-naive", refine), SAMPLES, stop=stop)
+            engine.start(rest(chosen))
+            return engine.record(PERIODS * SAMPLES).displacement * chosen.A0
+
+    for name, compute in (("naive RK4", naive), ("LSODA", lambda: oracle.as_a_user(chosen, PERIODS, SAMPLES, seconds))):
+        try:
+            verdict.others[name] = "returned", distance(compute(), true)
+        except NumbersFailed as failure:
+            verdict.others[name] = "failed, and said so", np.nan
+            del failure
+        except (Cancelled, oracle.TooLong):
+            verdict.others[name] = "took too long", np.nan

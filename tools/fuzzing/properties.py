@@ -1,0 +1,99 @@
+"""What must hold for a scene whatever its motion is: each returns by how much it does not, in largest displacements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from granchain_core import Scene
+from granchain_core.integrate import Engine, Setting, State
+from granchain_core.kernels.effects.contact import Chain
+from granchain_core.kernels.effects.driver import Harmonic
+from granchain_core.kernels.effects.preload import Preload
+from granchain_core.kernels.samples import Samples
+from granchain_core.lower import Lowered, lower
+from granchain_core.state import rest
+from granchain_core.stop import Stop
+
+SAMPLES = 16
+_FIXED = Setting("rk4-split", 1.0)
+#: Scaled time of the mirrored motions: long enough for dozens of contacts, too short for chaos to magnify rounding.
+_TIME = 20.0
+
+
+def distance(one: np.ndarray, two: np.ndarray) -> float:
+    """Largest difference over the largest value of the second; NaN where either has one."""
+    largest = float(np.abs(two).max())
+    return float(np.abs(one - two).max()) / largest if largest > 0.0 else float(np.abs(one).max())
+
+
+def energy(lowered: Lowered, kept: Samples) -> float:
+    """How far work − lost is from the energy by the book, ½mv² + ⅖Kδ^{5/2} + ½ku², over the largest of the three."""
+    slots = lowered.slots
+    masses, theta = 1.0 / slots.chain.inverse_mass[1:-1], 2.0 * np.pi * np.arange(len(kept.velocity)) / SAMPLES
+    ends = np.zeros((len(theta), 1))
+    bodies = np.hstack([np.sin(theta)[:, None], kept.displacement, ends])
+    pressed = np.maximum(bodies[:, :-1] - bodies[:, 1:] + (0.0 if slots.preload is None else slots.preload.static), 0.0)
+    stored = (0.5 * (kept.velocity**2) @ masses + 0.4 * pressed**2.5 @ slots.chain.stiffness[: len(masses) + 1]
+              + (0.0 if slots.foundation is None else 0.5 * slots.foundation.stiffness * (kept.displacement**2).sum(axis=1)))
+    assert kept.energy is not None
+    _, work, lost = (kept.energy - kept.energy[0]).T
+    largest = max(np.abs(work).max(), np.abs(lost).max(), stored.max())
+    return float(np.abs(work - lost - (stored - stored[0])).max() / largest)
+
+
+def scaling(scene: Scene, power: int, stop: Stop) -> float:
+    """(sA0, s^{1/4} f, s^{1/4} D), s = 16^power: the same scaled motion over a period."""
+    root = 2.0**power
+    s = root**4
+    other = replace(scene, A0=s * scene.A0, f=root * scene.f, D=root * scene.D, k=root**2 * scene.k, F0=root**6 * scene.F0,
+                    reference_overlap=s * scene.reference_overlap,
+                    start_velocity=tuple((i, root**5 * v) for i, v in scene.start_velocity))
+    return distance(_period(other, rest(other), stop), _period(scene, rest(scene), stop))
+
+
+def _period(scene: Scene, start: State, stop: Stop) -> np.ndarray:
+    engine = Engine(scene, _FIXED, SAMPLES, balance=True, stop=stop)
+    engine.start(start)
+    return engine.record(SAMPLES).displacement
+
+
+def shifted(scene: Scene, stop: Stop) -> float:
+    """The second period gone on with, against the second period started from the state after the first."""
+    engine = Engine(scene, _FIXED, SAMPLES, balance=True, stop=stop)
+    engine.start(rest(scene))
+    engine.record(SAMPLES)
+    again = engine.state
+    return distance(_period(scene, again, stop), engine.record(SAMPLES).displacement)
+
+
+def mirrored(scene: Scene, rng: np.random.Generator, stop: Stop) -> tuple[float, float, float]:
+    """The scene made its own mirror image, its driver at rest: how far a symmetric start leads from symmetry, how far
+    a start and its mirror image do from one another, and what the method's own error makes of the latter motion."""
+    symmetric = _symmetric(scene)
+    thrown = rng.uniform(-1.0, 1.0, scene.N)
+    even = _thrown(symmetric, thrown - thrown[::-1], 1e-15, stop)
+    one, two = (_thrown(symmetric, v, 1e-15, stop) for v in (thrown, -thrown[::-1]))
+    return distance(-even[:, ::-1], even), distance(-two[:, ::-1], one), distance(_thrown(symmetric, thrown, 1e-13, stop), one)
+
+
+def _symmetric(scene: Scene) -> Lowered:
+    lowered = lower(scene, balance=True)
+    slots = lowered.slots
+
+    def both(values: np.ndarray) -> np.ndarray:
+        return 0.5 * (values + values[::-1])
+
+    beta = 2.0 * np.pi / _TIME
+    preload = None if slots.preload is None else Preload(both(slots.preload.static))
+    stiffness = slots.chain.stiffness.copy()
+    stiffness[: scene.N + 1] = both(stiffness[: scene.N + 1])
+    return replace(lowered, beta=beta, slots=slots._replace(
+        chain=Chain(both(slots.chain.inverse_mass), stiffness), driver=Harmonic(0.0, beta), preload=preload))
+
+
+def _thrown(lowered: Lowered, velocity: np.ndarray, tolerance: float, stop: Stop) -> np.ndarray:
+    engine = Engine(lowered.scene, Setting("dop853", tolerance=tolerance), SAMPLES, stop=stop, lowered=lowered)
+    engine.start(State(np.zeros(len(velocity)), velocity * lowered.scales.velocity))
+    return engine.record(SAMPLES).displacement

@@ -1,0 +1,107 @@
+"""Program: change the core in one place at a time and see whether a test notices.
+
+    python -m tools.mutation [--only PART_OF_A_NAME ...] [--list | --check] [--minutes M] [--seed S]
+                             [--work FOLDER] [--named]
+
+The tests named in the table are run unchanged first, once each list; then with each mutant. One that survives them is
+run against all tests of the core before it counts as survived. With --seed the order is drawn, so that --minutes gives
+a sample of the table. --check runs nothing and lists the entries that no longer fit the source; where there are any,
+nothing else is begun either. --work keeps the copy and the compiled kernels of the unchanged core for the next time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import random
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from .bench import Bench, Outcome
+from .in_step import problems
+from .mutant import Mutant
+from .table import BROAD, DEMANDED, MUTANTS
+
+#: Seconds the named tests and all tests may take. A mutant that hangs is killed by the clock and listed so.
+_LIMIT, _BROAD_LIMIT = 150.0, 3600.0
+
+
+def main() -> int:
+    """Print the table and the share that died; 1 if one survived or the unchanged core does not pass its tests."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="*", default=[], help="mutants with one of these words in their name")
+    parser.add_argument("--list", action="store_true", help="the table without running anything")
+    parser.add_argument("--check", action="store_true", help="whether the table is in step with the source, in a second")
+    parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after this")
+    parser.add_argument("--seed", type=int, help="draw the order")
+    parser.add_argument("--work", type=Path, help="folder for the copy, kept")
+    parser.add_argument("--named", action="store_true", help="leave it at the named tests")
+    words = parser.parse_args()
+    chosen = [m for m in MUTANTS if not words.only or any(word in m.name for word in words.only)]
+    if words.seed is not None:
+        random.Random(words.seed).shuffle(chosen)
+    if words.list:
+        for one in chosen:
+            print(f"{one.name}: {one.breaks} ({one.path})")
+        return 0
+    if found := problems():
+        print("The table is out of step with the source:", *found, sep="\n  ")
+        return 1
+    if words.check:
+        print(f"{len(MUTANTS)} mutants in step with the source")
+        return 0
+    with Bench(words.work) as bench:
+        return _run(bench, chosen, time.perf_counter() + 60.0 * words.minutes, words.named)
+
+
+def _run(bench: Bench, chosen: list[Mutant], end: float, named_only: bool) -> int:
+    sound: set[tuple[str, ...]] = set()
+    ended: list[tuple[Mutant, Outcome]] = []
+    for one in chosen:
+        if time.perf_counter() > end:
+            break
+        for words in filter(None, (one.killers, one.blind)):
+            if words not in sound and not _passes(bench, words, _LIMIT, one.optimised):
+                return 1
+            sound.add(words)
+        found = bench.mutated(one, one.killers, _LIMIT)
+        if one.blind and (seen := bench.mutated(one, one.blind, _LIMIT)).verdict != "passed":
+            print(f"{one.name} was to go unseen by {' '.join(one.blind)}: {seen.verdict} {seen.by}\n{seen.tail}")
+            return 1
+        if found.verdict == "passed" and not named_only:
+            if BROAD not in sound and not _passes(bench, BROAD, _BROAD_LIMIT, False):
+                return 1
+            sound.add(BROAD)
+            found = bench.mutated(one, BROAD, _BROAD_LIMIT)
+            if found.verdict == "timed out":  # of so many tests that is no evidence
+                found = replace(found, verdict="passed")
+        ended.append((one, found))
+        print(_row(one, found), flush=True)
+    alive = [one.name for one, found in ended if found.verdict in ("passed", "stillborn")]
+    died = len(ended) - len(alive)
+    late = sum(found.verdict == "timed out" for _, found in ended)
+    print(f"\n{died} of {len(ended)} mutants died ({100.0 * died / max(1, len(ended)):.1f} %), {late} of them by the clock")
+    for words, names in DEMANDED.items():
+        if set(names) <= {one.name for one, _ in ended}:
+            print(f"{words}: {'survived' if set(names) & set(alive) else 'dead'} ({', '.join(names)})")
+    for name in alive:
+        print(f"survived or stillborn: {name}")
+    return 1 if alive else 0
+
+
+def _passes(bench: Bench, words: tuple[str, ...], limit: float, optimised: bool) -> bool:
+    """Whether the unchanged core passes; else why not is told."""
+    found = bench.plainly(words, limit, optimised)
+    if found.verdict != "passed":
+        print(f"the unchanged core does not pass {' '.join(words)}: {found.verdict} {found.by}\n{found.tail}")
+    return found.verdict == "passed"
+
+
+def _row(one: Mutant, found: Outcome) -> str:
+    by = {"passed": "SURVIVED", "stillborn": "STILLBORN", "timed out": "the clock", "crashed": "a crash"}.get(found.verdict, found.by or "import")
+    return f"{one.name:34s} {by:110s} {found.seconds:6.1f} s"
+
+
+if __name__ == "__main__":
+    sys.exit(main())

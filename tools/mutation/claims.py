@@ -1,0 +1,103 @@
+"""Mutants of what is claimed: regimes, settling, stated errors, failures, restarts, budgets, observers, compiler."""
+
+from __future__ import annotations
+
+from . import killers as k
+from .mutant import Mutant
+
+_SECTION, _REGIME, _SETTLE = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settle.py"
+_RUN, _STATED, _METHODS = "run/run.py", "run/stated.py", "integrate/methods.py"
+
+STEADY = (
+    Mutant("change-taken-for-distance", _SECTION, "distance = recent * rate / (1.0 - rate)", "distance = recent",
+           "a slow approach is called settled", k.REGIMES),
+    Mutant("faster-half-counts", _SECTION, "rate = max(early, late)", "rate = min(early, late)",
+           "the decay is taken from the half of the record in which it is faster", k.CLAIMS),
+    Mutant("lost-in-rounding-is-there", _REGIME, "distance = max(distance, rounding * rate / (1.0 - rate))", "distance = 0.0",
+           "a change lost in rounding is no distance at all", k.CLAIMS),
+    Mutant("longest-period-told", _SECTION, "if n % q == 0 and largest <= nothing:\n            return q",
+           "if n % q == 0 and largest <= nothing:\n            return n", "an orbit of period 1 is told as one of period 2",
+           k.CLAIMS),
+    Mutant("any-growth-is-chaos", _REGIME, "if mean > max(3.0 * error, 0.01):", "if mean > 0.0:",
+           "an exponent within its error is called chaos", k.CLAIMS),
+    Mutant("creeping-is-quasi-periodic", _REGIME, "and stays(strobes) and", "and",
+           "a slow approach with an exponent near zero is called quasi-periodic", k.CLAIMS),
+    Mutant("drift-is-quasi-periodic", _REGIME, "and returns_near(strobes)", "",
+           "a section that never comes back is called a closed curve", k.CLAIMS),
+    Mutant("settled-error-without-distance", _SETTLE, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",
+           "a settled picture states no error of its integration", k.SETTLED),
+    Mutant("settled-error-not-amplified", _SETTLE, "    integration *= still\n", "",
+           "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
+    Mutant("relaxed-by-change", _SETTLE, "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
+           "the certified orbit is left too early", k.CLAIMS_SETTLED),
+    Mutant("shadow-not-pulled-back", "kernels/rk4/lyapunov.py", "* (start / now)", "* 1.0",
+           "the exponent is that of a distance long since large", k.LYAPUNOV),
+)
+
+STATED = (
+    Mutant("error-factor", _STATED, "_CAUTION, _UNEVEN = 1.5, 3.0", "_CAUTION, _UNEVEN = 0.015, 0.03",
+           "the stated error is a hundredth of what was seen", k.HONESTY),
+    Mutant("same-steps-compared", _METHODS,
+           "while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):",
+           "while finer.steps_per_period(lowered, samples) < self.steps_per_period(lowered, samples):",
+           "two computations by the same steps are compared", k.SAME_STEPS),
+    Mutant("error-without-floor", _STATED, "np.maximum(least, self.rounding))", "self.rounding)",
+           "an error of exactly nothing is stated", k.SAME_STEPS),
+    Mutant("error-of-last-sample", _RUN, "np.abs(now.samples.displacement - before.samples.displacement).max()) / largest",
+           "np.abs(now.samples.displacement - before.samples.displacement)[0].max()) / largest",
+           "the first sample's difference is stated for all", k.HONESTY),
+    Mutant("done-too-early", _RUN, "if error <= scene.accuracy:\n", "if error <= 1e4 * scene.accuracy:\n",
+           "a run is called done that is not as accurate as asked for",
+           ("tests/hard/test_outcomes.py", "-k", "accuracy_not_reached or files_carry or not_begun")),
+    Mutant("finer-is-the-same", _METHODS, "min(max(self.tolerance / 64.0, _SMALLEST), self.tolerance / 8.0)",
+           "self.tolerance",
+           "the finer of two computations is the same one", k.HONESTY),
+    Mutant("sample-index-without-phase", _RUN, "first = periods * samples + round(begin.phase * samples)", "first = periods * samples",
+           "time and driver of a run from a given phase are those of phase 0", k.CONTINUATION),
+    Mutant("peaks-of-the-transient", _RUN, "    engine.forget_peaks()\n", "", "largest forces are those of the discarded periods too",
+           k.CLAIMS_RUN),
+    Mutant("energy-residual-of-work", "result.py", "abs(work - lost - stored) / largest", "abs(work - lost) / largest",
+           "the energy account does not count what is stored", k.ENERGY_PLAIN),
+)
+
+FAILING = (
+    Mutant("failed-step-of-its-end", "integrate/fixed.py", "if b), 1), low % n", "if b), 1), high % n",
+           "the step after the one that failed is named", ("tests/hard/test_outcomes.py", "-k", "middle_of_a_long_call")),
+    Mutant("failed-time-since-call", "integrate/engine.py", "Failure(status, self.elapsed + done, bead,", "Failure(status, done, bead,",
+           "the time of a failure is counted from the present call", k.FAILURES_T),
+    Mutant("nan-of-velocity-unseen", "integrate/failure.py",
+           "np.isfinite(state[1 : row - 1]) & np.isfinite(state[row + 1 : 2 * row - 1])",
+           "np.isfinite(state[1 : row - 1])", "a NaN velocity is seen when it has reached a displacement, in another bead",
+           k.FAILURES_W),
+    Mutant("checkpoint-without-scale", "integrate/checkpoint.py", "engine.stepper.clock[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
+           "engine.stepper.clock[0] = kept.control[0]", "error control goes on with another unit after a restart", k.CHECKPOINTS),
+    Mutant("checkpoint-without-clock", "integrate/checkpoint.py", "engine.stepper.clock[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
+           "engine.stepper.work.scale[:] = kept.control[1:]", "error control goes on with another step after a restart", k.CHECKPOINTS),
+    Mutant("checkpoint-at-phase-0", "integrate/checkpoint.py", "engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed",
+           "engine.elapsed = kept.elapsed", "a run that was cut inside a period goes on at its beginning", k.CHECKPOINTS),
+    Mutant("budget-of-one-computation", "run/budget.py", "steps, seconds = steps * often, seconds * often", "steps, seconds = 0.25 * steps, 0.25 * seconds",
+           "the estimate of a run is a fraction of it", ("tests/hard/test_outcomes.py", "-k", "within_a_factor_of_two and (knobs0 or knobs3 or knobs6)")),
+    Mutant("budget-not-kept", "run/budget.py", "if found.seconds <= budget:", "if found.seconds <= 1e30 * budget:",
+           "a run of years is begun", ("tests/hard/test_outcomes.py", "-k", "command_line_refuses or would_fit_fits")),
+)
+
+OBSERVED = (
+    Mutant("force-overshoots", "observe/record.py", "from scipy.interpolate import PchipInterpolator  #",
+           "from scipy.interpolate import CubicSpline as PchipInterpolator  #",
+           "between samples a measured force is above both, or below 0", k.SAMPLING),
+    Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.rate ** np.arange(4)", "/ scales.rate ** np.zeros(4)",
+           "the slopes of a measured force are not scaled", k.SAMPLING),
+    Mutant("loss-between-samples", "observe/observation.py", "_UNEVEN = 3.0", "_UNEVEN = 0.003",
+           "what is lost between samples is stated a thousand times too small", k.SAMPLING),
+)
+
+COMPILED = (
+    Mutant("fastmath", "kernels/jit.py", '{"fastmath": {"nsz", "arcp", "contract", "reassoc"}', '{"fastmath": True',
+           "the compiler may take it that there is no NaN and no infinity", k.FASTMATH, optimised=True),
+    Mutant("fastmath-nnan", "kernels/jit.py", '{"nsz", "arcp", "contract", "reassoc"}', '{"nsz", "arcp", "contract", "reassoc", "nnan"}',
+           "the compiler may take it that there is no NaN", k.FASTMATH, optimised=True),
+    Mutant("fastmath-ninf", "kernels/jit.py", '{"nsz", "arcp", "contract", "reassoc"}', '{"nsz", "arcp", "contract", "reassoc", "ninf"}',
+           "the compiler may take it that there is no infinity", k.FASTMATH, optimised=True),
+)
+
+CLAIMS = STEADY + STATED + FAILING + OBSERVED + COMPILED

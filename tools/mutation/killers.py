@@ -1,0 +1,89 @@
+"""The tests that ought to notice, those that compile least; words for pytest."""
+
+from __future__ import annotations
+
+#: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where beads
+#: are not alike; NaN in every lane; what is not finite.
+MOTION = ("tests/kernels/equations/test_motion.py",)
+UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py",)
+VECTORS = ("tests/kernels/simd/test_vector_nan.py",)
+FAILURES_W = ("tests/integrate/test_not_finite.py", "-k", "first_bead")
+FASTMATH = ("tests/integrate/test_not_finite.py", "tests/kernels/equations/test_motion.py", "-k",
+            "not_finite or not_a_number or a_nan_in_a_bead and none")
+
+#: The energy account of one combination of effects; samples against the stored extended-precision solution.
+ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-allowed-0.002-0.0")
+ENERGY_PLAIN = ("tests/physics/test_energy.py", "-k", "account_closes and linear-allowed-0.0-0.0")
+ENERGY_WORK = ("tests/physics/test_energy.py", "-k", "work_and_loss and linear-allowed-0.0-0.0")
+ON_THE_WAY = ("tests/physics/test_work_on_the_way.py",)
+REFERENCE = ("tests/physics/test_reference.py::test_displacements_agree_to_1e_8_at_every_sample[sec2-340]",)
+
+#: What happens inside one fixed step, run by Python; a whole touch inside one.
+STEP_EVENTS = ("tests/kernels/rk4/test_step_events.py",)
+STEP_TOUCH = ("tests/numerics/test_fixed_step_touches.py", "-k", "1e-06-True")
+
+#: Brief touches and certified steps.
+TOUCHES = ("tests/numerics/test_touches.py", "-k", "none_is_invented and True or moment_of_a_touch or two_touches")
+GRAZING = ("tests/numerics/test_events.py", "-k", "brief_touch")
+
+#: Coefficients and orders of convergence.
+TABLEAU = ("tests/kernels/dop853/test_tableau.py",)
+RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-closed")
+CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
+CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
+CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cut")
+CUT_LAWS = ("tests/physics/test_energy.py", "-k", "account_closes and kuwabara-kono-cut")
+SLACK = ("tests/numerics/test_slack.py", "-k", "not linear")
+CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
+
+#: A short chain in a vector, and a long one in blocks, against the scalar method.
+SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (changes8 or changes9)")
+SIMD_LAWS = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (changes10 or changes11)")
+SIMD_PLAIN = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and changes0")
+SIMD_LONG = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and changes6")
+
+#: Eight chains at once: their order, their forces, unlike beads, the drive's phase, what they believe.
+LANES = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and sec2")
+LANES_ONE = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and one")
+LANES_KK = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and Kuwabara")
+LANES_PRESSED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and pressed")
+LANES_FOUNDED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and founded")
+LANE_FORCES = ("tests/kernels/batch/test_batch_steps.py", "-k", "largest_forces and sec2")
+UNLIKE_LANES = ("tests/kernels/batch/test_unlike_beads.py", "-k", "unlike_beads")
+LANE_PHASE = ("tests/kernels/batch/test_unlike_beads.py", "-k", "phase")
+LANE_LOOKS = ("tests/kernels/batch/test_period_end.py",)
+LYAPUNOV = ("tests/steady/test_lyapunov.py", "-k", "chaotic_chain")
+
+#: Tangents: their columns, and their determinant, which does not see a missing saltation.
+ROUTES = ("tests/orbits/test_tangents.py", "-k", "missing_saltation or one_derivative and changes4")
+COLUMNS = ("tests/orbits/test_orbits.py", "-k", "every_column and changes0 or liouvilles and changes0")
+LIOUVILLE = ("tests/orbits/test_orbits.py", "-k", "liouvilles and changes0")
+FOUNDED_COLUMNS = ("tests/orbits/test_orbits.py", "-k", "every_column and changes1")
+MONODROMY = ("tests/orbits/test_multipliers.py", "-k", "sec2-340 or dashpot")
+MONODROMY_TSUJI = ("tests/orbits/test_multipliers.py", "-k", "tsuji")
+SAME_EVENTS = ("tests/orbits/test_tangents.py", "-k", "same_events")
+TWO_PERIODS = ("tests/orbits/test_orbits.py", "-k", "twice_its_period")
+FLOW_TOUCH = ("tests/orbits/test_flow_touches.py",)
+ORBIT_CLAIMS = ("tests/orbits/test_orbit_claims.py",)
+
+#: Observers.
+OBSERVER_ORBIT = ("tests/observe/test_twin.py", "-k", "multipliers_are_finite")
+TWIN = ("tests/observe/test_twin.py", "-k", "starts_where")
+SAMPLING = ("tests/observe/test_sampling.py", "-k", "follows_its_chain and smooth or monotone")
+
+#: Time, restarts, failures.
+CONTINUATION = ("tests/integrate/test_continuation.py", "-k", "not stop_flag")
+MANY_PERIODS = ("tests/integrate/test_long_records.py",)
+CHECKPOINTS = ("tests/integrate/test_checkpoints.py",)
+FAILURES_T = ("tests/integrate/test_not_finite.py", "-k", "counts_from_the_start")
+STIFFEST = ("tests/integrate/test_failures.py", "-k", "stiffest")
+
+#: What is claimed of a motion.
+HONESTY = ("tests/numerics/test_honesty.py", "-k", "not curve")
+SAME_STEPS = ("tests/numerics/test_honesty.py", "-k", "same_steps")
+REGIMES = ("tests/steady/test_regimes.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
+SETTLED = ("tests/steady/test_regimes.py", "-k", "section_2_from_rest")
+CLAIMS = ("tests/steady/test_claims.py", "-k", "not largest and not summed and not fixed_point and not relaxing")
+CLAIMS_TIME = ("tests/steady/test_claims.py", "-k", "counted_and_not_summed")
+CLAIMS_RUN = ("tests/steady/test_claims.py", "-k", "largest_forces or largest_elastic")
+CLAIMS_SETTLED = ("tests/steady/test_claims.py", "-k", "fixed_point or relaxing")

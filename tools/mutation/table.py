@@ -1,0 +1,42 @@
+"""The table of mutants.
+
+How they were chosen: the numerical core was gone through file by file, and wherever a line states a law, a tangent, an
+event, a tolerance that a claim rests on, a clock or a claim, one wrong version of it was written that a person could
+have written: a factor, a sign, an exponent, a forgotten term, contact or check, one of several copies of an equation.
+Where an equation stands in several copies (scalar, lanes, vectors, blocks, flow) each has mutants of its own. The eight
+that the issue demands are among them. Left out is what changes no answer: safety factors and growth of steps, sizes of
+workspaces, patience with the stop flag, sentences. None was left out because a test did not
+see it; tests that were missing were written.
+"""
+
+from __future__ import annotations
+
+from .claims import CLAIMS
+from .laws import LAWS
+from .mutant import Mutant
+from .slack import SLACK
+from .steps import STEPS
+from .tangents import TANGENT_FLOW
+from .vectors import VECTORS
+
+MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + SLACK + TANGENT_FLOW + VECTORS + CLAIMS
+
+#: The mutants that the issue wants dead whatever the share: its eight words and who stands for each.
+DEMANDED: dict[str, tuple[str, ...]] = {
+    "no saltation": ("no-saltation", "no-saltation-in-second-route", "saltation-at-onset-only"),
+    "determinant-only check": ("determinant-only-check", "determinant-only-comparison"),
+    "missing last contact": ("missing-last-contact", "motion-without-last-contact", "flow-without-last-contact",
+                             "lane-without-last-contact", "tangent-without-last-contact"),
+    "t += dt": ("t-plus-dt", "lane-t-plus-dt"),
+    "absolute coordinates": ("absolute-coordinates",),
+    "`if d > 0` hiding NaN": ("if-d-above-0-hides-nan", "nan-hidden-in-vectors", "nan-hidden-in-lanes"),
+    "fastmath": ("fastmath", "fastmath-nnan"),
+    "step over a touch": ("step-over-a-touch", "flow-steps-over-a-touch", "wide-steps-over-touch"),
+}
+
+#: All tests of the core, what compiles least first: a mutant that survives its own tests is given these.
+BROAD: tuple[str, ...] = ("tests/kernels", "tests/scene", "tests/physics", "tests/integrate", "tests/run", "tests/numerics",
+                          "tests/steady", "tests/orbits", "tests/observe", "tests/diagram", "tests/hard/test_outcomes.py", "tests/hard/test_broken.py",
+                          "tests/hard/test_cases.py", "tests/hard/test_fuzz.py",
+                          "--deselect", "tests/kernels/test_machine_code.py", "--deselect", "tests/kernels/test_cache.py",
+                          "-k", "not timings and not stop_flag")

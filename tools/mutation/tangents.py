@@ -1,0 +1,106 @@
+"""Mutants of the flow, its tangents in both forms, orbits and multipliers."""
+
+from __future__ import annotations
+
+from . import killers as k
+from .mutant import Mutant
+
+_TIME, _STEP, _LANDING = "kernels/dop853/time_map.py", "kernels/dop853/event_step.py", "kernels/dop853/event_location.py"
+_FLOW, _TANGENT, _SALTATION = "kernels/dop853/flow.py", "kernels/equations/tangent.py", "kernels/saltation.py"
+_MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
+
+#: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.
+_WITHOUT_SALTATION = """from .effects.dissipation import damping
+
+
+@jump.of(Tangent)
+def _(tangent, slots, c, closes):
+    n = tangent.state.shape[0] // 2
+    shear = damping(slots.dissipation, 1.0) if closes else -damping(slots.dissipation, 1.0)
+    for first in range(0, tangent.matrix.shape[0], 2 * n):
+        for q in range(8):
+            d = (tangent.matrix[first + c - 1, q] if c > 0 else 0.0) - (tangent.matrix[first + c, q] if c < n else 0.0)
+            if c > 0:
+                tangent.matrix[first + n + c - 1, q] += shear * slots.chain.inverse_mass[c] * d
+            if c < n:
+                tangent.matrix[first + n + c, q] -= shear * slots.chain.inverse_mass[c + 1] * d
+"""
+
+FLOW = (
+    Mutant("tsuji-in-square-root-time", _TIME, "return 2 if twice == int(twice) else 4", "return 2",
+           "beside an event of Tsuji's law nothing is smooth in the flow's time", k.MONODROMY_TSUJI),
+    Mutant("rate-of-root-time", _TIME, "return 2.0 * s if time.power == 2", "return 1.9 * s if time.power == 2",
+           "dt/ds is not the derivative of t(s)", k.ROUTES),
+    Mutant("flow-without-last-contact", "kernels/effects/contact.py", "if held.closed[c] != 0 else 0.0",
+           "if c < held.closed.size - 1 and held.closed[c] != 0 else 0.0",
+           "the flow does not feel the wall", k.MONODROMY),
+    Mutant("open-contacts-close-by-themselves", "kernels/effects/contact.py", "if held.closed[c] != 0 else 0.0", "if held.closed[c] < 2 else 0.0",
+           "the flow's slope has a kink inside its steps", k.MONODROMY),
+    Mutant("flow-steps-over-a-touch", _STEP, "if not (crossed or may_turn(d0, s0, d1, s1, sign)):", "if not crossed:",
+           "a touch inside a step of the flow is not seen, nor is its share of the derivative", k.FLOW_TOUCH),
+    Mutant("flow-driver-stands", _STEP, "beta * time_at(time, x * h)", "beta * time_at(time, h)",
+           "the driver stands still while its contact is looked for", k.MONODROMY),
+    Mutant("flow-event_tolerance-loose", _LANDING, "_LANDED = 1e-14", "_LANDED = 1e-7",
+           "the flow's events are located to 1e-7", k.MONODROMY),
+    Mutant("onset-of-last-period-kept", _FLOW, "onset -= period", "onset -= 0.0",
+           "time behind an onset is counted from the wrong period", k.TWO_PERIODS),
+    Mutant("events-logged-in-their-period", _FLOW, "change(slots, path, tangent, contact, p * period + t)",
+           "change(slots, path, tangent, contact, t)", "the log's times begin anew each period", k.SAME_EVENTS),
+    Mutant("onset-not-remembered", _FLOW, "                    onset = t\n", "                    onset = -np.inf\n",
+           "a step behind an onset is taken in plain time, where nothing is smooth", k.MONODROMY),
+)
+
+TANGENTS = (
+    Mutant("no-saltation", _FLOW, "@jump.of(Tangent)\ndef _(tangent, slots, c, closes):\n    pass\n", _WITHOUT_SALTATION,
+           "tangents go on across an event as if the dashpot's force did not jump there", k.COLUMNS, blind=k.LIOUVILLE),
+    Mutant("no-saltation-in-second-route", _SALTATION, "shear = tangent.jumps * damping(slots.dissipation, 1.0)",
+           "shear = 0.0 * tangent.jumps", "the (u, v) form without its jumps", k.ROUTES),
+    Mutant("saltation-at-onset-only", _SALTATION, "        shear = -shear\n", "        shear = 0.0\n",
+           "tangents do not jump at release", k.ROUTES),
+    Mutant("saltation-of-one-side", _SALTATION, "if c > 0:\n            T[n + c - 1, q] -= shear",
+           "if c > n:\n            T[n + c - 1, q] -= shear", "only the bead behind a contact feels its jump", k.ROUTES),
+    Mutant("determinant-only-check", "tests/orbits/test_multipliers.py",
+           "return float((np.abs(found - exact).max(axis=0) / np.abs(exact).max(axis=0)).max())",
+           "return float(abs(np.prod(np.linalg.svd(found)[1]) / np.prod(np.linalg.svd(exact)[1]) - 1.0))",
+           "a derivative is held against the reference by its determinant, not column by column", ("tests/orbits/test_multipliers.py", "-k", "dashpot")),
+    Mutant("determinant-only-comparison", "tests/orbits/test_tangents.py",
+           "assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()",
+           "assert abs(np.linalg.det(wrong) / np.linalg.det(right.derivative) - 1.0) > 0.05",
+           "a missing saltation is looked for in the determinant", k.ROUTES),
+    Mutant("tangent-stiffness", _TANGENT, "s = rate * 1.5 * slots", "s = rate * slots", "K √δ in place of (3/2) K √δ", k.COLUMNS),
+    Mutant("tangent-without-damping", _TANGENT, "g = rate * damping(slots.dissipation, d + 1e-300)", "g = 0.0 * d",
+           "neighbours are not damped", k.COLUMNS),
+    Mutant("trace-of-one-bead", _TANGENT, "(inverse_mass[c] + inverse_mass[c + 1])", "inverse_mass[c]",
+           "∫ trace counts one of a contact's two beads", k.LIOUVILLE),
+    Mutant("tangent-without-last-contact", _TANGENT, "if path.closed[c] != 0 and c >= tangent.first_contact:",
+           "if path.closed[c] != 0 and tangent.first_contact <= c < tangent.gaps.shape[1] - 1:",
+           "neighbours do not feel the wall", k.COLUMNS),
+    Mutant("observer-held-by-the-driver", _TANGENT, "and c >= tangent.first_contact:", "and c >= 0:",
+           "an observer's multipliers are those of its chain", k.OBSERVER_ORBIT),
+    Mutant("tangent-foundation-in-plain-time", _TANGENT, "pull = rate * foundation_pull", "pull = foundation_pull",
+           "the foundation's share of the tangents is not taken in the step's own time", k.FOUNDED_COLUMNS),
+    Mutant("tangent-stage-weight", _TANGENT, "weights[stage, earlier] = h * A[stage, earlier]",
+           "weights[stage, earlier] = h * A[STAGES, earlier] if stage > 6 else h * A[stage, earlier]",
+           "tangents are taken with weights of other stages than the motion", k.COLUMNS),
+)
+
+ORBITS = (
+    Mutant("velocity-of-one-contact", _MAP, "= -inverse * (gate[:-1] + gate[1:])", "= -inverse * gate[1:]",
+           "∂v/∂u leaves out the contact on a bead's left", k.ROUTES),
+    Mutant("newton-ends-early", _ORBIT, "CONVERGED, MOST_ITERATIONS = 1e-11, 12", "CONVERGED, MOST_ITERATIONS = 1e-7, 12",
+           "an orbit is called found four digits too early",
+           k.ORBIT_CLAIMS),
+    Mutant("multipliers-by-real-part", _ORBIT, "np.argsort(-np.abs(found), kind", "np.argsort(-found.real, kind",
+           "the leading multiplier is the rightmost, not the largest", ("tests/orbits/test_tangents.py", "-k", "sorted_by_modulus")),
+    Mutant("stable-by-real-part", _ORBIT, "return bool(np.abs(self.multipliers).max() < 1.0)",
+           "return bool(self.multipliers.real.max() < 1.0)", "an orbit that alternates away is called stable",
+           ("tests/orbits/test_modes.py", "-k", "doubling_left_unstable")),
+    Mutant("residual-of-displacements", _ORBIT, "for part in (slice(0, half), slice(half, None)))", "for part in (slice(0, half),))",
+           "an orbit's velocities need not come back", k.ORBIT_CLAIMS),
+    Mutant("liouville-of-leading", _ORBIT, "float(np.sum(np.log(sizes))) - log_determinant", "float(np.log(sizes[0])) - log_determinant",
+           "Liouville's formula is held against one multiplier", k.ORBIT_CLAIMS),
+    Mutant("map-tolerance-loose", _MAP, "TOLERANCE = 1e-13", "TOLERANCE = 1e-9",
+           "the map is ten thousand times less exact than is said", k.MONODROMY),
+)
+
+TANGENT_FLOW = FLOW + TANGENTS + ORBITS
