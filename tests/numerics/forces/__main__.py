@@ -53,6 +53,13 @@ def _part(true: list) -> str:
     return f"{np.mean(true):9.2%}" if true else "        –"
 
 
+def _summary(words: argparse.Namespace, found: list[Verdict], others: Counter[str], began: float) -> str:
+    """What was judged so far, in one line and a table."""
+    apart = "; ".join(f"{count} {name}" for name, count in others.items())
+    return (f"{words.kind}, seed {words.seed}: {len(found)} scenes in {time.perf_counter() - began:.0f} s"
+            f"{'; ' if apart else ''}{apart}\n{table(found)}")
+
+
 def main() -> None:
     """Print the table and what is not bounded."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -73,11 +80,11 @@ def main() -> None:
         faults = verdict.judged & ~np.isnan(verdict.stated) & (~verdict.bounded | verdict.silent)
         if faults.any() or words.only is not None:
             print(describe(verdict), flush=True)
+        if len(found) % 100 == 0:
+            print(_summary(words, found, others, began), flush=True)
         if time.perf_counter() > began + 60.0 * words.minutes:
             break
-    print(f"{words.kind}, seed {words.seed}, draws {first} to at most {first + count - 1}: {len(found)} scenes in {time.perf_counter() - began:.0f} s; "
-          + "; ".join(f"{count} {name}" for name, count in others.items()))
-    print(table(found))
+    print(_summary(words, found, others, began))
 
 
 if __name__ == "__main__":
