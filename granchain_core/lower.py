@@ -28,8 +28,8 @@ from .scene import Scene
 from .scene.effects import EFFECTS, effects_of
 from .state import State
 
-#: Step of the live method in scaled time where overlaps are about one drive amplitude; RK4 in w is then good to
-#: a few 1e-5 of the displacement with its steps split at contact events, at half the step to a few 1e-6.
+#: Step of the live method in scaled time where overlaps are about one drive amplitude. Its usual error is
+#: `_LIVE_ERROR` in integrate/methods.py.
 _STEP = 0.2
 #: The same for the oscillation of a bead on its foundation, in radians of it.
 _FOUNDATION_STEP = 0.1
@@ -125,7 +125,10 @@ class Lowered:
         return y
 
     def unscaled(self, y: np.ndarray) -> State:
-        """The state in SI of a scaled (u, w) array at phase 0."""
+        """The state in SI of a scaled (u, w) array at phase 0.
+
+        The second half of y is w, not velocity; v is recovered from w and the overlaps.
+        """
         slope = np.zeros_like(y)
         place(self.slots, 0.0, y.copy(), slope, self.forces(), False)
         return State(self.rows(y)[0] * self.scales.length, self.rows(slope)[0] * self.scales.velocity)

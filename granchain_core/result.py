@@ -132,9 +132,11 @@ class Run:
     max_input_force, max_output_force, max_output_force_elastic : float
         Suprema over the recorded time [N]: what is between the samples counts, and the right limits of `jumps`.
     force_errors : ForceErrors
-        Their relative errors `input`, `output`, `elastic`; None where none is claimed.
+        Stated relative errors of these three suprema, `input`, `output`, `elastic`: numerical error only, an empirical
+        bound (docs/design.md), not a proof; None where none is claimed.
     error_estimate : float or None
-        Largest error of any displacement over the largest displacement; None where none is claimed.
+        Stated largest error of any displacement over the largest displacement: numerical error only, an empirical
+        bound (docs/design.md), not a proof; None where none is claimed.
     energy_residual : float or None
         (work − lost − stored) over the largest of the three; None where no account was kept.
     regime : Regime
@@ -142,7 +144,7 @@ class Run:
     status : str
         "done", "accuracy-not-reached" or "over-budget".
     start : str
-        Where the motion began: "rest", "thrown beads" or "given state".
+        Where the motion began: "rest", "initial velocity" or "given state".
     cost : Cost
         What it took.
     jumps : Jumps

@@ -16,7 +16,8 @@ class State:
     Attributes
     ----------
     displacement : numpy.ndarray, shape (N,)
-        Displacements from the places of first touch [m].
+        Of each bead from its rest position [m]: under preload from the compressed rest, else from where neighbours
+        first touch.
     velocity : numpy.ndarray, shape (N,)
         [m/s]
     phase : float

@@ -24,7 +24,7 @@ LIVE, CERTIFIED = "rk4-split", "dop853"
 _LIVE_IS_CHEAPER = 1e-10
 #: The live method's relative error at the live step is about that; it falls with the fourth power of the step.
 _LIVE_ERROR = 7e-6
-#: How much larger than as a rule the error is in one random scene of some thousand (`python -m
+#: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
 #: tests.numerics.honesty`).
 _SPREAD = 8.0
 #: Smallest tolerance of a step that is still followed by a finer one.
@@ -69,10 +69,10 @@ class Setting:
 
 @dataclass(frozen=True)
 class StepCost:
-    """Seconds of a step: so much, and so much for each contact; of an accepted one with those it rejects.
+    """Seconds per accepted step: `fixed`, plus `each` for every contact, rejected steps included.
 
-    With error control also steps in a unit of scaled time at a tolerance of 1e-8, and the power of the tolerance by
-    which there are more. Measured on section 2's chain and the rig (docs/hard-cases.md).
+    For error control: `rate` steps per unit of scaled time at tolerance 1e-8, growing with tolerance^(−`power`).
+    Measured on `sec2` and `rig`.
     """
 
     fixed: float
@@ -88,9 +88,10 @@ class Method:
     `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
     for, `order_with_cut` where tension is cut: only the certified method ends its steps at the force's kink, F = 0. All
     are measured, the least of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
-    `stepper` makes what the engine steps with. `usual_error` is the relative error at the live step, or over the
-    tolerance, 0 where none is known; with `even` it falls evenly with the step, contact events or not. `variables` are
-    "uw" or "uv".
+    With `events` steps end at contact events or are split there; with `adaptive` an error control sets them;
+    `symplectic` holds without damping. `stepper` makes what the engine steps with. `usual_error` is the relative error
+    at the live step, or over the tolerance, 0 where none is known. `even`: the error falls by the method's order at
+    every refinement, contact events or not. `variables` are "uw" or "uv".
     """
 
     name: str
@@ -175,7 +176,7 @@ def certified(tolerance: float = 0.0) -> Setting:
 
 def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
-    if accuracy >= _LIVE_IS_CHEAPER and not tension_cut:  # with a cut it is of order 1
+    if accuracy >= _LIVE_IS_CHEAPER and not tension_cut:  # where tension is cut the live method has order 1
         return live(max(_COARSEST, (_LIVE_ERROR / accuracy) ** 0.25))
     return certified(min(1e-3, 0.1 * accuracy))
 
@@ -192,8 +193,8 @@ def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndar
     """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,) [scaled].
 
     The quadrature error behind an onset is subtracted at the end of the split step and of the next two steps. If
-    another contact closes in between, its rate is off by a part of K v^{3/2} h^{5/2} (contact_events.py), with v the
-    approach speeds. Its sign changes with the step size, so the difference of two computations does not bound it.
+    another contact closes in between, its momentum is off by a part of K v^{3/2} h^{5/2} (contact_events.py), hence its
+    rate v by that part of K √v h^{5/2}/m, relative to v. Its sign changes with the step size, so the difference of two computations does not bound it.
     """
     least = np.zeros(3)
     if setting.method == LIVE and lowered.slots.dissipation is not None:

@@ -1,8 +1,8 @@
 """What a run will cost, before it is run, and a refusal with what would fit.
 
 The number of steps of a fixed-step method is known; that of a method with error control, and the time of a step, are
-from measurements on section 2's chain and the rig (docs/hard-cases.md), brought to this machine by the speed of its
-square roots. A run is computed at least twice, the second time finer, and about as often a third time: the estimate
+measured on `sec2` and `rig` (`StepCost` in integrate/methods.py) and scaled to this machine by the speed of its square
+roots. A run is computed at least twice, the second time finer, and about as often a third time: the estimate
 lies half way between on a logarithmic scale.
 """
 

@@ -1,8 +1,8 @@
 """`run`: a chain from its start through discarded and recorded periods, to the accuracy asked for.
 
-The motion is computed twice, the second time finer; their largest difference bounds the finer one's error. While it
-is above the accuracy asked for, a still finer one is computed: every accuracy is reached by comparison, none by
-trust in a tolerance.
+The motion is computed twice, the second time finer; their largest difference is the starting point of the stated error
+(stated.py). While that is above the accuracy asked for, a still finer one is computed: every accuracy is reached by
+comparison, none by trust in a tolerance.
 """
 
 from __future__ import annotations
@@ -55,9 +55,9 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         progress: Callable[[float], None] | None = None, budget: float = BUDGET) -> Run:
     """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
 
-    The motion is computed twice, the second time finer; their largest difference bounds the finer one's error. While
-    it is above the accuracy asked for, a still finer one follows (docs/design.md, "Accuracy is measured, not
-    trusted").
+    The motion is computed twice, the second time finer; their largest difference is the starting point of the stated
+    error (stated.py). While that is above the accuracy asked for, a still finer one follows (docs/design.md, "Accuracy
+    is measured, not trusted").
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     method : str, optional
         "rk4-split", "dop853", "rk4", "rk4-naive" or "verlet-naive" in place of the one chosen from the accuracy.
     start : State, optional
-        Where the motion begins; at rest, or with the scene's thrown beads, if not given.
+        Where the motion begins; if not given, at rest, or with the initial velocities of the scene.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional
@@ -142,7 +142,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
 def _origin(scene: Scene, start: State | None) -> str:
     if start is not None:
         return "given state"
-    return "thrown beads" if scene.start_velocity else "rest"
+    return "initial velocity" if scene.start_velocity else "rest"
 
 
 def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
@@ -206,7 +206,7 @@ def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
 
 
 def _least(now: _Attempt, setting: Setting) -> np.ndarray:
-    """What the errors of the same are at least, whatever the differences."""
+    """Lower limits of the stated errors (4,): typical for this step, and for forces at jumps `jump_errors`."""
     engine = now.engine
     jumps = jump_errors(setting, engine.lowered, engine.samples, engine.jumps, engine.tops)
     return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])

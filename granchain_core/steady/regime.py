@@ -1,7 +1,8 @@
 """What kind of motion it is, with the evidence: periodic n, quasi-periodic, chaotic, or unsettled.
 
-A state that hardly changes from one period to the next need not be near the attractor: with the multiplier μ of
-the stroboscopic map its distance is change·|μ|/(1 − |μ|). Only that bound decides.
+A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by r per
+orbit, the distance left is change·r/(1 − r). Only that bound makes a motion a candidate; its multipliers then confirm
+it.
 """
 
 from __future__ import annotations
@@ -148,7 +149,7 @@ def in_words(seen: Sequence[float] | np.ndarray, run: int,
     """The six numbers of section.find after `run` periods as a regime and what is approached.
 
     Changes that are lost in rounding may still be those of a slow approach: the distance is no better known than
-    rounding·|μ|/(1 − |μ|).
+    rounding·r/(1 − r) with the decay r.
     """
     period, rate, distance, approached, its_rate, its_change = seen
     if period > 0:

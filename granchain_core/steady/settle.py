@@ -313,9 +313,10 @@ def certified_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
 def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
     """The certified method on its own orbit, and the bound on what is left to go.
 
-    The orbit of the live method differs from the true one by its error; a few more periods take that away, and the
-    change from one n-period map to the next over 1 − |μ| says how much is left. What is left behind an extrapolation is
-    known from the changes after it, and a jump after which they are not smaller is undone.
+    The orbit of the live method differs from the true one by its error; a few more periods remove it. With r the
+    slowness of the regime (|μ| where it was computed, else the decay) and `change` from one n-period map to the next,
+    the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; a jump after
+    which they are not smaller is undone.
     """
     scene, n = way.scene, way.regime.period
     assert n is not None

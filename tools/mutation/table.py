@@ -4,9 +4,9 @@ How they were chosen: the numerical core was gone through file by file, and wher
 event, a tolerance that a claim rests on, a clock or a claim, one wrong version of it was written that a person could
 have written: a factor, a sign, an exponent, a forgotten term, contact or check, one of several copies of an equation.
 Where an equation stands in several copies (scalar, lanes, vectors, blocks, flow) each has mutants of its own. The eight
-that the issue demands are among them. Left out is what changes no answer: safety factors and growth of steps, sizes of
-workspaces, patience with the stop flag, sentences. None was left out because a test did not
-see it; tests that were missing were written.
+kinds of mistake that must always be noticed (docs/mutation.md) are among them. Left out is what changes no answer: safety factors and growth of steps, sizes of
+workspaces, how often the stop flag is read, sentences. None was left out because a test did not notice it; missing
+tests were written.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from .vectors import VECTORS
 
 MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + SLACK + TANGENT_FLOW + VECTORS + CLAIMS
 
-#: The mutants that the issue wants dead whatever the share: its eight words and who stands for each.
+#: The eight kinds of mistake that must always be noticed (docs/mutation.md), and the mutants of each.
 DEMANDED: dict[str, tuple[str, ...]] = {
     "no saltation": ("no-saltation", "no-saltation-in-second-route", "saltation-at-onset-only"),
     "determinant-only check": ("determinant-only-check", "determinant-only-comparison"),
@@ -30,7 +30,7 @@ DEMANDED: dict[str, tuple[str, ...]] = {
     "t += dt": ("t-plus-dt", "lane-t-plus-dt"),
     "absolute coordinates": ("absolute-coordinates",),
     "`if d > 0` hiding NaN": ("if-d-above-0-hides-nan", "nan-hidden-in-vectors", "nan-hidden-in-lanes"),
-    "fastmath": ("fastmath", "fastmath-nnan"),
+    "fastmath": ("fastmath", "fastmath-nnan", "fastmath-ninf"),
     "step over a touch": ("step-over-a-touch", "flow-steps-over-a-touch", "wide-steps-over-touch"),
 }
 

@@ -1,15 +1,16 @@
-"""A given force in place of the driver's contact: measured and sampled, or handed on from a chain to its observer.
+"""A given force in place of the driver's contact: measured and sampled, or that of a chain acting on its observer.
 
 Equation   m_1 ü_1 = F_in − F_1 − k u_1;  observer of a chain: F_in is the total force of the chain's own contact 0
 Source     Zhang et al. 2016, eqs. (3) and (4)
 Values     Sampled: piece (4,), the cubic of the force between two samples in the time since the first of them, constant
-           term first; whoever steps from sample to sample fills it, and the phase θ is that time. Echo: the harmonic
-           driver of the first chain and the contact that stands before the observer's first bead
-Terms      hand_on_primitive and hand_on_force put the force where contact 0 (Sampled) or the named contact (Echo) has
-           its own. An echo hands e_0 and G_0 on separately: in w-variables nothing jumps in the observer either
-Methods    Sampled: fixed steps, from sample to sample. Echo: the certified method; what steps split at events give back
-           (rk4/step.py) is not handed on
-Absent     nothing is handed on
+           term first; observe/pushed_chain.py fills it for each sample, and the phase θ is that time.
+           ObserverCoupling: the harmonic driver of the first chain, and the contact before the observer's first bead
+Terms      prescribe_primitive and prescribe_force put the force into contact 0 (Sampled) or into the contact named by
+           the coupling. Elastic force e_0 and G_0 are copied separately, so that in w-variables nothing jumps in the
+           observer either
+Methods    Sampled: fixed steps, from sample to sample. ObserverCoupling: the certified method; the quadrature errors
+           that split steps subtract (rk4/step.py) are not copied
+Absent     nothing is prescribed
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def _(driver, theta):
 
 @driver_velocity.of(Sampled)
 def _(driver, theta):
-    # a force, which hand_on_force takes from here: there is no body 0 that could have a velocity
+    # a force, which prescribe_force takes from here: there is no body 0 that could have a velocity
     p = driver.piece
     return p[0] + theta * (p[1] + theta * (p[2] + theta * p[3]))
 

@@ -236,7 +236,7 @@ class Scaled:
         return cls(law, length, float(rate), float(scene.K * length**1.5))
 
     def start(self, scene: Scene, state: State | None) -> np.ndarray:
-        """u and v (2N): those of the state, or rest with the scene's thrown beads."""
+        """u and v (2N): those of the state, or rest with the scene's initial velocities."""
         y = np.zeros(2 * scene.N)
         if state is None:
             for number, speed in scene.start_velocity:
@@ -248,7 +248,7 @@ class Scaled:
 
 def located(scene: Scene, periods: int, record: int, samples: int = 16, tolerance: float = 1e-12,
             state: State | None = None, most_steps: int = 5_000_000, gaps: np.ndarray | None = None) -> Located:
-    """The motion from rest (or thrown beads), or from `state` at phase 0: `periods` discarded, then `record` recorded.
+    """The motion from rest (or initial velocities), or from `state` at phase 0: `periods` discarded, then `record` recorded.
 
     `gaps` (N + 1,) [m] are between bodies that are at their places. Raises `TooLong`, and `FloatingPointError` where the numbers are not finite.
     """
