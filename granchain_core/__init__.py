@@ -3,7 +3,7 @@
     from granchain_core import resonance_curve, run, scene
     result = run(scene("sec2").evolve(f=340.0))
 
-This is the one door: what is listed in `__all__` is public, everything behind it may change. Names mirror the commands
+This is the public API: what is listed in `__all__` is public, everything else may change. Names mirror the commands
 of the command line. `settle`, `orbit` and `branch` are also known by their longer names `settled`, `periodic_orbit` and
 `continue_branch`.
 """
@@ -61,14 +61,14 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """The names that are imported late."""
+    """Import a public name when it is first used."""
     whole = _SHORT.get(name, name)
     if whole not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(importlib.import_module(f".{_MODULE_OF[whole]}", __name__), whole)
 
 
-class _Door(types.ModuleType):
+class _PublicPackage(types.ModuleType):
     """The package itself, in which a function keeps its name though a subpackage has the same one.
 
     Python binds a subpackage to its name here when it is first imported; `granchain_core.run` would then be the folder
@@ -81,4 +81,4 @@ class _Door(types.ModuleType):
 
 
 _PUBLIC = frozenset(__all__)
-sys.modules[__name__].__class__ = _Door
+sys.modules[__name__].__class__ = _PublicPackage

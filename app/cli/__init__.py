@@ -61,7 +61,7 @@ def _parser() -> _Parser:
                        help="host name under which browsers may reach a dashboard behind a proxy")
     scenes = command("scenes", "list the scenes and what to look at")
     scenes.add_argument("--json", action="store_true")
-    command("warm", "compile and cache what the dashboard needs")
+    command("warm", "compile the kernels of all presets, ahead of time")
     run = _scene_command(command("run", "run a scene and record it"))
     run.add_argument("--periods", type=int, default=100, metavar="P", help="periods run and discarded")
     run.add_argument("--record", type=int, default=20, metavar="R", help="periods recorded")

@@ -106,7 +106,7 @@ def scenes(arguments: argparse.Namespace) -> None:
 
 
 def warm(arguments: argparse.Namespace) -> None:
-    """Compile and cache the kernels of all presets."""
+    """Compile the kernels of all presets, ahead of time."""
     from granchain_core.warm import warm_presets
 
     for done in warm_presets():

@@ -118,7 +118,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
     scene : Scene
         The chain, ten drive periods from rest.
     stop : Stop, optional
-        A byte that another thread sets to 1 to end the measurement.
+        Ends the measurement when another thread sets it.
     progress : callable, optional
         Called with the part that is done, 0 to 1.
     report : callable, optional

@@ -1,4 +1,4 @@
-"""Subnormal numbers are zero while an engine runs, whichever kernel it runs; afterwards they are what they were."""
+"""Subnormal numbers count as zero while an engine runs; afterwards the thread's setting is restored."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ def _restore(before):  # type: ignore[no-untyped-def]
 
 
 def flushed(function: Callable[P, R]) -> Callable[P, R]:
-    """The function with subnormal numbers taken for zero in this thread: ahead of a wave they may be all there is."""
+    """The function, run with subnormal numbers taken for zero in this thread.
+
+    Ahead of a wave all numbers may be subnormal, and arithmetic with them is slow.
+    """
 
     @functools.wraps(function)
     def inner(*words: P.args, **names: P.kwargs) -> R:

@@ -194,14 +194,15 @@ def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndar
 
     The quadrature error behind an onset is subtracted at the end of the split step and of the next two steps. If
     another contact closes in between, its momentum is off by a part of K v^{3/2} h^{5/2} (contact_events.py), hence its
-    rate v by that part of K √v h^{5/2}/m, relative to v. Its sign changes with the step size, so the difference of two computations does not bound it.
+    rate v, relatively, by a part of K √v h^{5/2}/m. The sign changes with the step size, so the difference of two
+    computations does not bound it.
     """
     least = np.zeros(3)
     if setting.method == LIVE and lowered.slots.dissipation is not None:
         chain, step = lowered.slots.chain, lowered.period / setting.steps_per_period(lowered, samples)
-        speeds = np.sqrt(jumps / lowered.slots.dissipation.coefficient)
+        root_speeds = np.sqrt(jumps / lowered.slots.dissipation.coefficient)
         at_jump = jumps > AT_A_JUMP * tops[:2]
-        least[:2] = at_jump * _JUMP * step**2.5 * speeds * chain.stiffness.max() * chain.inverse_mass.max()
+        least[:2] = at_jump * _JUMP * step**2.5 * root_speeds * chain.stiffness.max() * chain.inverse_mass.max()
     return least
 
 

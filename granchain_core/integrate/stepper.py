@@ -1,4 +1,4 @@
-"""What an engine asks of a method: four things, the same for fixed steps and for error control."""
+"""What an engine asks of a method, the same for fixed steps and for error control."""
 
 from __future__ import annotations
 

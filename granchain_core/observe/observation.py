@@ -148,7 +148,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     gap : str
         What is done with a gap in the record: "refuse", "zero" or "interpolate".
     stop : Stop, optional
-        A byte that another thread sets to 1 to end the computation.
+        Ends the computation when another thread sets it.
     progress : callable, optional
         Called with the part that is done, 0 to 1.
 

@@ -106,7 +106,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     observer : bool
         Whether to compute the multipliers of the observer, model (4) of Zhang et al. 2016.
     stop : Stop, optional
-        A byte that another thread sets to 1 to end the computation.
+        Ends the computation when another thread sets it.
 
     Returns
     -------
@@ -148,7 +148,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
 
 
 def random_state(scene: Scene, seed: int) -> State:
-    """A state to start from that says nothing: normal displacements and velocities of the drive's size."""
+    """A random start: normally distributed displacements and velocities in units of A0 and A0·φ."""
     scales = scales_of(scene)
     draw = np.random.default_rng(seed).standard_normal((2, scene.N))
     return State(draw[0] * scales.length, draw[1] * scales.velocity)

@@ -11,8 +11,8 @@ from ..integrate.methods import METHODS, Setting, typical_error
 #: What the difference of two computations is multiplied by for a method whose order is even across contact events,
 #: and for others.
 _CAUTION, _UNEVEN = 1.5, 3.0
-#: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors. It is
-#: chosen so that few scenes exceed it: eight times the usual rounding.
+#: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
+#: the rounding seen as a rule; few random scenes exceed it.
 _ROUNDINGS = 32.0
 #: Where the typical error of the steps is above this, rounding is no part of the difference.
 _SMOOTH = 1e-10

@@ -14,7 +14,7 @@ from ..kernels.batch.period_end import LONGEST_JUMP
 from ..kernels.strobes import extrapolation as approach
 from ..kernels.strobes.extrapolation import ORBITS
 
-#: Successive changes used; as many slow modes less one are removed.
+#: Differences used; k differences remove k − 1 slow modes.
 ORDER = ORBITS
 
 

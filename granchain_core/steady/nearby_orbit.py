@@ -142,7 +142,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
 
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
-    """The largest |μ| at a state that is on its orbit to what is called settled, in a hurry: right to some 1e-4."""
+    """Largest |μ| at a settled state by one-sided differences: quick, good to about 1e-4."""
     matrix = StrobeMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 

@@ -97,7 +97,7 @@ class Regime:
         """The regime in words for the dashboard."""
         evidence = f" ({self.evidence})" if self.evidence else ""
         if self.name == "periodic":
-            how = "approached for" if self.followed else "settled after"
+            how = "followed to its orbit after" if self.followed else "settled within"
             return f"period {self.period}, {how} {self.periods_run} periods{evidence}"
         if self.name == "unsettled":
             towards = f", on its way to period {self.approaches}{evidence}" if self.approaches else ""
@@ -193,7 +193,7 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
 
 
 def agree(one: Regime, other: Regime) -> bool:
-    """Whether two measurements of the Lyapunov exponent say the same and differ by no more than they may."""
+    """Whether two Lyapunov measurements give the same regime and agree within 3 combined standard errors (or 1e-3)."""
     if one.name != other.name or one.name == "unsettled" or one.lyapunov is None or other.lyapunov is None:
         return False
     (a, error_a), (b, error_b) = one.lyapunov, other.lyapunov

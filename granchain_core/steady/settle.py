@@ -171,7 +171,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     samples : int
         Samples a drive period of each picture.
     stop : Stop, optional
-        A byte that another thread sets to 1 to end the computation.
+        Ends the computation when another thread sets it.
 
     Yields
     ------
@@ -220,7 +220,7 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
     samples : int
         Samples a drive period of the recorded orbit.
     stop : Stop, optional
-        A byte that another thread sets to 1 to end the computation.
+        Ends the computation when another thread sets it.
 
     Returns
     -------

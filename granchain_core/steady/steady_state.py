@@ -1,4 +1,4 @@
-"""Where a scene settles, whoever found it: a batch or one chain by itself."""
+"""The steady state of a scene, found in a batch or by settling its chain alone."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class SteadyState:
 
     `errors` (3,) are their relative errors, None where none is claimed; `state` is at drive phase 0. With a `failure`,
     a sentence, there are none of these, and `status` is its name. `number` is that of the start it was found from.
-    What is `doubtful` a batch did not decide, and `settle` has to, from `state`.
+    `doubtful`: the batch could not decide; `settle` continues from `state`.
     """
 
     scene: Scene

@@ -1,4 +1,4 @@
-"""The map in docs/design.md is the house: every folder is on it, and each imports only what it says."""
+"""The map in docs/design.md is the map of the code: every folder is on it, and each imports only what it says."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ PAGE = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
 #: Folder → the folders of its last column.
 ROWS = {row[1]: re.findall(r"`(\w+)`", row[2])
         for row in re.finditer(r"^\| `([\w/]+)` \| [^|]+ \| ([^|]+) \|$", PAGE, re.MULTILINE)}
+#: Module beside the folders → what it uses: a module, a folder, or one module of a folder.
+MODULES = {row[1]: set(re.findall(r"`([\w.]+)`", row[2]))
+           for row in re.finditer(r"^\| `(\w+)\.py` \| [^|]+ \| ([^|]+) \|$", PAGE, re.MULTILINE)}
 #: The core's folders at the top, whose imports the map orders.
 LAYERS = {folder.split("/")[1]: uses for folder, uses in ROWS.items() if re.fullmatch(r"granchain_core/\w+", folder)}
 
@@ -22,17 +25,21 @@ def allowed(layer: str) -> set[str]:
     return {layer}.union(*(allowed(one) for one in LAYERS[layer]))
 
 
-def used(layer: str) -> set[str]:
-    """The core's folders that the files of a layer import."""
-    found: set[str] = set()
-    for path in (ROOT / "granchain_core" / layer).rglob("*.py"):
-        package = path.relative_to(ROOT).parts[:-1]
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom):
-                names = [*package[: len(package) - node.level + 1]] if node.level else []
-                names += (node.module or "").split(".")
-                found |= set(names[1:2]) & set(LAYERS) if names[0] == "granchain_core" else set()
+def imported(path: Path) -> set[str]:
+    """The core's modules that a file imports, dotted, without `granchain_core`."""
+    package, found = path.relative_to(ROOT).parts[:-1], set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            names = [*package[: len(package) - node.level + 1]] if node.level else []
+            names += (node.module or "").split(".") if node.module else []
+            if names[0] == "granchain_core":
+                found |= {".".join(names[1:])} if names[1:] else {alias.name for alias in node.names}
     return found
+
+
+def used(layer: str) -> set[str]:
+    """What the files of a layer import, the first word of each."""
+    return {name.split(".")[0] for path in (ROOT / "granchain_core" / layer).rglob("*.py") for name in imported(path)}
 
 
 def test_every_folder_with_code_is_on_the_map_and_every_row_is_a_folder() -> None:
@@ -43,10 +50,26 @@ def test_every_folder_with_code_is_on_the_map_and_every_row_is_a_folder() -> Non
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_a_folder_imports_only_what_the_map_says(layer: str) -> None:
-    assert used(layer) <= allowed(layer)
+    assert used(layer) & set(LAYERS) <= allowed(layer)
 
 
 def test_the_map_has_no_circle() -> None:
     """Each layer is drawn below all it uses."""
     order = list(LAYERS)
     assert all(order.index(above) < order.index(layer) for layer, uses in LAYERS.items() for above in uses)
+
+
+def test_every_module_beside_the_folders_is_on_the_map_with_what_it_uses() -> None:
+    files = {path.stem: path for path in (ROOT / "granchain_core").glob("*.py") if path.stem != "__init__"}
+    assert set(MODULES) == set(files)
+    for module, path in files.items():
+        names = imported(path)
+        assert {name if name in MODULES[module] else name.split(".")[0] for name in names} == MODULES[module], module
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_a_folder_uses_no_module_that_uses_it(layer: str) -> None:
+    """And the kernels use none at all, nor does anything use `warm`."""
+    beside = used(layer) & set(MODULES)
+    assert "warm" not in beside and not (layer == "kernels" and beside)
+    assert not [module for module in beside if layer in MODULES[module]]

@@ -38,7 +38,7 @@ def _(law, stiffness, d, rate):
 
 @by_slot
 def enter_force_free(tension, slots, beta, t, y, work):
-    """Note which contacts are slack at the start of a step, whose account then has another slope. Absent: none is."""
+    """Mark the contacts that are slack at the start of a step and evaluate the slope anew. Absent: none is."""
 
 
 @enter_force_free.of(NoTension)
@@ -55,7 +55,7 @@ def _(tension, slots, beta, t, y, work):
 
 @by_slot
 def leave_force_free(tension, slots, y, dy, forces):
-    """End a step's slack at its end: the velocities in dy stay, w and the account go over to the law's own G.
+    """At a step's end no contact is slack: velocities in dy stay, w and the account use the law's own G again.
 
     Returns whether anything changed, and the slope with it. Absent: no contact is slack.
     """
@@ -106,9 +106,9 @@ def scaled_force_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, c
 def first_kink(tension, slots, beta, t, h, y, work, until, counts, again):
     """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
 
-    0 where the step is to be tried again because rounding had contacts begin on the wrong side of a kink: all of them
-    change sides at once, or a symmetric motion would lose its symmetry; and not if it is tried `again` already: where F
-    is rounding, either side may contradict itself. Absent: forces have no such kink.
+    0 where the step must be repeated: rounding put a contact on the wrong side of F = 0 at the start. All such contacts
+    change sides together, to keep a symmetric motion symmetric. Done once a step (`again`); where F is only rounding,
+    either choice is right. Absent: forces have no such kink.
     """
     return 2.0
 

@@ -6,7 +6,9 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
 Values     coefficient: λ in scaled units, at an overlap of one length unit where a > 0
 Law        its `exponent` a and its `power` δ^a; all other terms, here and in other files, are made of these two
-Terms      damping, primitive, keep_primitive, velocity (absent: v = w)
+Terms      damping, damping_slope, primitive, shape = G/λ, velocity and its inverse shifted (absent: v = w);
+           keep_primitive, put_primitive and put_prescribed_primitive write into the array of G, batch_values reads the
+           lanes of a batch
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from ..simd.vector import load
 
 @by_slot_inlined
 def exponent(law):
-    """a of g = λ δ^a, a literal: what is computed from it alone is computed by the compiler."""
+    """a of g = λ δ^a. It must return a literal, so that the compiler computes what follows from it."""
     return 0.0
 
 
@@ -91,7 +93,7 @@ def checked(*laws):
                             f"(dop853/time_map.py) takes 0, 1/4, 1/2, … 5/4.")
         if any(not math.isclose(power(law(1.0), d, math.sqrt(d)), d**a) for d in (0.3, 1.0, 2.0)):
             raise TypeError(f"damping law {law.__name__}: `power` is not δ^{a}, which its `exponent` says.")
-        in_simd_kernels(law)  # which are made of the same two terms
+        in_simd_kernels(law)  # these kernels use the same two terms
     return laws
 
 

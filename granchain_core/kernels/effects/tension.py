@@ -4,12 +4,11 @@ Equation   F = max(0, K δ^{3/2} + g(δ) δ̇)   for δ > 0
 Source     the alternative to the paper's law, in which the gated dashpot pulls while the contact opens
 Values     slack (N+1,): 1 for a contact that touches without force throughout the present step, else 0; then its
            G is offset + slope·δ, both (N+1,)
-Terms      cut_tension adds what is missing to F ≥ 0 to the elastic forces, contact by contact, so that the
-           w-equation m ẇ = Σ e stays the one place where forces act
-Slack      The force is zero, before δ = 0 and behind it, but what is added to keep it so, −g(δ)δ̇, ends with a jump
-           (linear) or with an infinite slope, and so does g. For the length of a step G goes on straight instead, with
-           its value and slope at the start: the right-hand side is smooth, whatever the law. At the step's end
-           w is brought back to the law's own G (`leave_force_free`).
+Terms      cut_tension raises each elastic force just enough to make the total zero, so that forces still enter in one
+           place, m ẇ = Σ e
+Slack      Just before δ = 0 the added force −g(δ)δ̇ is finite and just behind it zero (linear law), or its slope is
+           infinite (Tsuji). So for one step G is replaced by its tangent at the step's start, which is smooth at
+           δ = 0; at the step's end w is recomputed with the law's own G (`leave_force_free`).
 """
 
 from __future__ import annotations
@@ -33,13 +32,13 @@ class NoTension(NamedTuple):
 
 
 def no_tension(contacts: int) -> NoTension:
-    """A slot for so many contacts, none of them slack."""
+    """The slot for this number of contacts, none of them slack."""
     return NoTension(np.zeros(contacts, dtype=np.uint8), np.zeros(contacts), np.zeros(contacts))
 
 
 @kernel
 def slacken(tension, slots, y, c):
-    """Have contact c, which touches without force in state y, go on so for a step."""
+    """Mark contact c, which touches without force in state y, as slack for one step."""
     d = positive_part(overlap(slots.preload, y, c))
     tension.slack[c] = 1
     tension.slope[c] = damping(slots.dissipation, d)
@@ -61,7 +60,7 @@ def _(tension, slots, y, c, d):
 
 @by_slot
 def keep_slack_primitive(tension, slots, y, G):
-    """Let G of slack contacts go on straight, below δ = 0 too. Absent: no contact is slack."""
+    """Continue G of slack contacts linearly, below δ = 0 too. Absent: no contact is slack."""
 
 
 @keep_slack_primitive.of(NoTension)

@@ -2,7 +2,8 @@
 
 An overlap is a cubic in between, from its values and rates at the step's two ends. Behind an onset at s = 0 the
 elastic force grows like s^{3/2}, whose integral Simpson's rule (and RK4 with it) misses by a part of h^{5/2}: that
-part is known, because the speed is, and is taken back. So is the same of G ∝ δ^{1+a}, a > 0, in the path.
+part is known, because the speed is, and is subtracted. For laws with a > 0 the corresponding error of ∫G dt is
+subtracted from the displacement.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from ..jit import by_slot, inline_llvm, inline_numba, kernel
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
 #: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
 GAP, RATE, GAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
-#: More contacts than this many changing in one step: the rest of the step is taken whole.
+#: At most so many events are located in one step; the rest of it is taken whole.
 MOST_SPLITS = 64
-#: An overlap that is none but for its sign.
+#: Size of an overlap that only has a sign: above zero the contact counts as closed, but its force is negligible.
 TINY = 1e-300
 
 
@@ -103,7 +104,7 @@ def add_quadrature_errors(law, stiffness, ends, c, h, done):
     Simpson's rule fails over the part of the step on the contact's closed side and over the whole steps beyond it.
     """
     rate = ends[RATE, c]
-    ends[GAP, c] = copysign(TINY, rate)  # what the cubic leaves of it is no second event
+    ends[GAP, c] = copysign(TINY, rate)  # the cubic's remainder must not count as a second event
     speed, part = abs(rate), 1.0 - done if rate > 0.0 else done
     ends[MOMENTUM_ERROR, c] += stiffness * speed * sqrt(speed) * h * h * sqrt(h) * three_halves_excess(part)
     add_displacement_error(law, ends, c, speed, h, part)
@@ -111,7 +112,7 @@ def add_quadrature_errors(law, stiffness, ends, c, h, done):
 
 @inline_llvm
 def simpson_excess(r, p, half, one, inner, middle, far):
-    """What Simpson's rule gives too much for s^p over a part r of a step from 0 and over the two steps after it.
+    """Excess of Simpson's rule over the integral of s^p, over a part r of a step from 0 and the two steps after it.
 
     `half` is 2^{−p}; `one`, `middle` and `far` are s^p at r, r + 1 and r + 2, `inner` its sum at r + 1/2 and r + 3/2.
     """
@@ -138,7 +139,7 @@ def primitive_excess(law, r):
 
 @by_slot
 def add_displacement_error(law, ends, c, speed, h, part):
-    """Note what Simpson's rule gives too much of ∫G dt. Absent, and where G is linear: nothing."""
+    """Add the error of Simpson's rule for ∫G dt. Absent, and where G is linear: nothing."""
 
 
 add_displacement_error.absent_for(*JUMP_LAWS)

@@ -11,7 +11,7 @@ from math import sqrt
 
 from ..jit import kernel
 
-#: Differences used; as many slow modes less one are removed.
+#: Differences used; k differences remove k − 1 slow modes.
 ORBITS = 8
 #: A second difference of which less than this is left beside the earlier ones says nothing new.
 _DEPENDENT = 1e-9

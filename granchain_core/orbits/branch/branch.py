@@ -184,7 +184,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     on_point : callable, optional
         Called with the arm that has grown.
     stop : Stop, optional
-        A byte that another thread sets to 1 to end the computation.
+        Ends the computation when another thread sets it.
 
     Returns
     -------

@@ -19,15 +19,15 @@ import numpy as np
 from .axis import KnobAxis
 from .point import BranchPoint
 
-#: An interval is narrow enough at this width relative to the knob.
+#: An interval is narrow enough at this width relative to the knob, or to a thousandth of the range's larger end.
 WIDTH = 1e-5
 #: The tangents at both ends of a bracket meet within this factor times its length: they turn by no more
 #: than 30° (walk.py).
 _SIDE = 1.25
-#: A guess is put so far beside where the test function vanishes, relative to the bracket, first on one side and then on
-#: the other; a narrower bracket is straighter, so the second two are nearer. Then come halves, by turns.
+#: Offsets of the next orbit from the root of the test function, as fractions of the bracket, on alternating sides so
+#: that it closes from both; None means the middle. A narrower bracket is straighter, so the second two are smaller.
 _BESIDE = (0.02, -0.02, 0.003, -0.003, None, 0.02, -0.02)
-#: Orbits between two neighbours at most before what is found is taken as it is.
+#: Most levels of bisection between two neighbours; the interval is then taken as it is.
 _DEEPEST = 60
 
 Between = Callable[[BranchPoint, BranchPoint, float], BranchPoint]
