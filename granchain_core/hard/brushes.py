@@ -12,7 +12,7 @@ from math import asin, pi
 
 import numpy as np
 
-from ..kernels.dop853.located import certified_step
+from ..kernels.dop853.run import certified_step
 from ..kernels.dop853.step import ALL_STAGES, STAGES, Dop853, Work, evaluate
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import Harmonic

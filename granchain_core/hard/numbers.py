@@ -38,7 +38,7 @@ class Injector:
     def renew(self) -> None:
         """New vectors from the present parameters, where the method has any."""
         if not METHODS[self.method].adaptive:
-            self.engine.stepper.work = self.engine.stepper.work._replace(along=self.engine.stepper.new_simd_workspace())
+            self.engine.stepper.work = self.engine.stepper.work._replace(simd=self.engine.stepper.new_simd_workspace())
 
     def into_state(self, rng: np.random.Generator) -> bool:
         """Whether a bad displacement or w of a bead is said at once, with bead, time and step."""

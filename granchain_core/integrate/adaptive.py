@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kernels.dop853.located import run_certified
+from ..kernels.dop853.run import run_certified
 from ..kernels.dop853.step import ALL_STAGES, Dop853, Work
 from ..kernels.equations.motion import place
 from ..kernels.forces.peaks import MEMORY, ROWS, next_period

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..kernels.forces.largest import new_log
+from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
 from ..kernels.forces.peaks import MEMORY, ROWS, forget
 from ..kernels.samples import Samples
 from ..kernels.status import DONE, NOT_FINITE
@@ -158,17 +158,17 @@ class Engine:
     @property
     def closings(self) -> np.ndarray:
         """The jumps of the last record (J, 4): sample before it, drive phase θ, contact, scaled force just after."""
-        return self.log.closings[: self.log.met[0]]
+        return self.log.closings[: self.log.met[CLOSED]]
 
     @property
     def unresolved(self) -> int:
         """How many of them were touches within a step, by a method that does not locate events."""
-        return int(self.log.met[1])
+        return int(self.log.met[UNRESOLVED])
 
     @property
     def closings_missing(self) -> int:
         """How many jumps there were behind these, for which there was no place."""
-        return max(0, int(self.log.met[0]) - len(self.log.closings))
+        return max(0, int(self.log.met[CLOSED]) - len(self.log.closings))
 
     def largest_forces(self, periods: int) -> np.ndarray:
         """Advance by whole periods: the largest input, output and elastic output force on the way (3,), scaled."""

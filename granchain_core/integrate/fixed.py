@@ -66,7 +66,7 @@ class FixedStep:
         """Go on with other values in the same slots, or with other effects."""
         self.lowered = lowered
         self.drive = self._driver_table()
-        self.work = self.work._replace(forces=lowered.forces(), along=self.new_simd_workspace())
+        self.work = self.work._replace(forces=lowered.forces(), simd=self.new_simd_workspace())
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: nothing is remembered of the last."""
@@ -119,7 +119,7 @@ class FixedStep:
         """State and slopes after steps `first` to `last`, counted through periods, by vectors or by scalar code."""
         n, now = self.grid, y.copy()
         # new vectors: those of the failed call are full of what failed
-        work = self.work._replace(along=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
+        work = self.work._replace(simd=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
         work.k[0] = slope
         kept, out = empty_samples(self.lowered, 2), Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
         j = first

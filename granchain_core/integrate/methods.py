@@ -136,23 +136,34 @@ def _adaptive(setting: Setting, lowered: Lowered, samples: int) -> Stepper:
 METHODS: dict[str, Method] = {
     m.name: m
     for m in (
-        Method("rk4", "RK4 in w", 4.0, 2.0, False, False, False, "fixed step; order 2 at contact events; a touch "
-               "shorter than a step is not resolved, its jump read off the step's ends",
-               "Kutta 1901; w-variables: docs/model.md", _fixed(Rk4), StepCost(350e-9, 35e-9)),
-        Method(LIVE, "RK4 in w, steps split at contact events, quadrature corrected there", 4.0,
-               3.9, True, False, False, "fixed step; order 3.5 below errors of about 1e-9; with more than 30 beads two "
-               "changes of one contact inside a step are not seen",
-               "Kutta 1901; w-variables and events: docs/model.md", _fixed(Rk4Split, simd=True),
-               StepCost(450e-9, 45e-9), usual_error=_LIVE_ERROR, even=True),
-        Method("rk4-naive", "RK4 in (u, v), as one would write it first", 4.0, 1.0, False, False, False,
-               "no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
-               "Kutta 1901", _in_velocity(Rk4Naive), StepCost(120e-9, 40e-9), variables="uv"),
-        Method("verlet-naive", "velocity Verlet in (u, v), as one would write it first", 1.0, 1.0, False, False, True,
-               "no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
-               "Verlet 1967; Swope et al. 1982", _in_velocity(VerletNaive), StepCost(80e-9, 12e-9), variables="uv"),
-        Method(CERTIFIED, "Dormand–Prince 8 in w, contact events located", 8.5, 7.5, True, True, False,
-               "accuracy to about 1e-12", "Hairer, Nørsett & Wanner 1993, section II.5", _adaptive,
-               StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
+        Method(
+            name="rk4", title="RK4 in w", order_smooth=4.0, order=2.0, events=False, adaptive=False, symplectic=False,
+            restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, its jump "
+                         "read off the step's ends",
+            reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9)),
+        Method(
+            name=LIVE, title="RK4 in w, steps split at contact events, quadrature corrected there", order_smooth=4.0,
+            order=3.9, events=True, adaptive=False, symplectic=False,
+            restrictions="fixed step; order 3.5 below errors of about 1e-9; with more than 30 beads two changes of one "
+                         "contact inside a step are not seen",
+            reference="Kutta 1901; w-variables and events: docs/model.md", stepper=_fixed(Rk4Split, simd=True),
+            cost=StepCost(450e-9, 45e-9), usual_error=_LIVE_ERROR, even=True),
+        Method(
+            name="rk4-naive", title="RK4 in (u, v), as one would write it first", order_smooth=4.0, order=1.0,
+            events=False, adaptive=False, symplectic=False,
+            restrictions="no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
+            reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv"),
+        Method(
+            name="verlet-naive", title="velocity Verlet in (u, v), as one would write it first", order_smooth=1.0,
+            order=1.0, events=False, adaptive=False, symplectic=True,
+            restrictions="no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
+            reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
+            variables="uv"),
+        Method(
+            name=CERTIFIED, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
+            events=True, adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
+            reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive,
+            cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
     )
 }
 

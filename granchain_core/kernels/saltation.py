@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .dop853.event_step import keep_gaps
 from .dop853.flow import jump
+from .dop853.flow_attempt import keep_gaps
 from .dop853.tableau import STAGES, A, C
 from .dop853.time_map import rate_at
 from .effects.contact import positive_part

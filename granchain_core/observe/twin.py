@@ -19,7 +19,7 @@ from ..integrate.methods import CERTIFIED
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
-from ..steady.settle import settle
+from ..steady.settle import run_until_settled
 from ..stop import Stop
 from .pair import Pair
 
@@ -120,7 +120,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     """
     _check(periods, samples)
     began = time.perf_counter()
-    way = settle(scene, None, stop)
+    way = run_until_settled(scene, None, stop)
     orbit, start, n = None, way.engine.state, way.regime.period or 1
     if way.regime.period is not None and not scene.cuts_tension:
         orbit = periodic_orbit(scene, n, start, observer=True, stop=stop)

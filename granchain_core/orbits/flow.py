@@ -8,8 +8,8 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import Engine, certified
-from ..kernels.dop853.event_step import Path
 from ..kernels.dop853.flow import run_flow
+from ..kernels.dop853.flow_attempt import Path
 from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot

@@ -17,7 +17,7 @@ from ..integrate import State
 from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
-from ..steady.settle import settle
+from ..steady.settle import run_until_settled
 from ..stop import Stop
 from .flow import Flow, StroboscopicMap, refuse_cut
 from .krylov import leading_multipliers, newton_step
@@ -137,7 +137,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     refuse_cut(scene)
     n = period
     if start is None:
-        way = settle(scene, None, stop)
+        way = run_until_settled(scene, None, stop)
         n = n or way.regime.period or 1
         start = way.engine.state
     n = n or 1

@@ -19,7 +19,7 @@ from ..scene import Scene
 from ..stop import Stop
 from .batch_settle import batch_results
 from .regime import Regime
-from .settle import Settling, relax, settle
+from .settle import Settling, relax, run_until_settled
 from .steady_state import SteadyState
 from .threads import on_all_cores
 
@@ -131,7 +131,7 @@ def coarse_first(count: int) -> list[int]:
 
 def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     """The steady state of `scene` from rest or from `start`, certified where it is periodic."""
-    way = settle(scene, start, stop)
+    way = run_until_settled(scene, start, stop)
     if way.regime.name == "periodic":
         return _certified(way)
     tops = way.tops[-min(len(way.tops), 100) :].max(axis=0) * way.engine.lowered.scales.force

@@ -66,7 +66,7 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     strobes = np.zeros((len(growth), 2, row))
     # step by step, whatever vectors the engine has: one kernel for chains of every length
     stepper = engine.stepper
-    one, other = stepper.work._replace(along=None), shadow.stepper.work._replace(along=None)
+    one, other = stepper.work._replace(simd=None), shadow.stepper.work._replace(simd=None)
     status, done = run_two_trajectories(stepper.method, engine.lowered.slots, stepper.drive, stepper.h, engine.y,
                                         shadow.y, one, other, growth, strobes, new_log(), engine.counts.array,
                                         engine.stop.flag)

@@ -244,14 +244,14 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
     '2.260 N'
     """
     began = time.perf_counter()
-    way = settle(scene, start, stop)
+    way = run_until_settled(scene, start, stop)
     origin = "rest" if start is None else "previous state"
     if way.regime.name == "periodic":
         return certified_picture(way, samples, began, origin)
     return live_picture(way, samples, began, origin, final=True)
 
 
-def settle(scene: Scene, start: State | None, stop: Stop | None) -> Settling:
+def run_until_settled(scene: Scene, start: State | None, stop: Stop | None) -> Settling:
     """Run to the end of the budget or to the steady state, without pictures."""
     way = Settling(scene, start, stop)
     way.go_on(np.inf)
@@ -292,17 +292,12 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(way.regime, distance=distance)
     # an error e of the n-period map moves its fixed point by e/(1 − |μ|), and the forces with it
-    still = 1.0 / (1.0 - slowness(way.regime))
+    still = 1.0 / (1.0 - way.regime.slowness)
     forces = CAUTION * still * relative_changes(fine.tops, coarse.tops)
     forces += jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
     integration *= still
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces + 1.5 * distance)
     return Settled(run, regime, start, origin, False, True)
-
-
-def slowness(regime: Regime) -> float:
-    """What is left per orbit of a distance from it, on which bounds rest."""
-    return regime.slowness
 
 
 def certified_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
@@ -320,7 +315,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
     """
     scene, n = way.scene, way.regime.period
     assert n is not None
-    rate = slowness(way.regime)
+    rate = way.regime.slowness
     setting = certified_setting(scene, accuracy, rate)
     engine = Engine(scene, setting, samples, stop=way.stop)
     engine.start(way.engine.state)

@@ -9,7 +9,7 @@ import numpy as np
 from granchain_core import scene
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
-from granchain_core.steady.settle import settle
+from granchain_core.steady.settle import run_until_settled
 
 from . import problem
 from .machine import timed
@@ -32,7 +32,7 @@ def report(quick: bool, tell: Callable[[str], None]) -> str:
         derivative = timed(lambda strobe=strobe, x=x: strobe(x), 0.05, repeats)
         rows.append([str(beads), f"{1e3 * flow.median:.2f}", f"{1e3 * derivative.median:.2f}",
                      f"{derivative.median / flow.median:.1f}", f"{2 * beads + 1}"])
-    start = settle(scene("sec2"), None, None).engine.state
+    start = run_until_settled(scene("sec2"), None, None).engine.state
     newton = timed(lambda: periodic_orbit(scene("sec2"), 1, start), 0.05, repeats)
     return table("One drive period of sec2 at 340 Hz with a foundation, tolerance 1e-13, from one state of all contacts",
                  ["N", "flow ms", "with derivative ms", "ratio", "ratio of one-sided differences"], rows,

@@ -76,7 +76,7 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     chain = scene("sec2").evolve(**knobs)
     e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, Stop())
     stepper = e.stepper
-    one = (stepper.work.along, e.lowered.slots, stepper.drive, 0, 4, 0.01, stepper.h, e.y, stepper.work.k[0],
+    one = (stepper.work.simd, e.lowered.slots, stepper.drive, 0, 4, 0.01, stepper.h, e.y, stepper.work.k[0],
            stepper.work.forces.e, e.log, e.counts.array, e.stop.flag)
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
 

@@ -92,7 +92,7 @@ def test_switching_an_effect_on_adds_nothing_else_to_a_batch():
 def test_absent_effects_have_no_arrays_in_the_simd_workspaces():
     """None in place of the static overlaps, of the damping and the foundation of a batch, of unequal beads."""
     bare = scene("sec2").evolve(dissipation="none")
-    assert Engine(bare, Setting("rk4-split"), 1).stepper.work.along.preload is None
+    assert Engine(bare, Setting("rk4-split"), 1).stepper.work.simd.preload is None
     lanes = Batch(bare, Stop()).lanes
     assert (lanes.dissipation, lanes.foundation, lanes.preload, lanes.unequal) == (None, None, None, None)
     full = Batch(scene("sec2").evolve(kappa=0.001, F0=1.0), Stop()).lanes

@@ -26,7 +26,7 @@ def test_a_touch_inside_a_step_throws_the_bead(depth: float, vectors: bool) -> N
     slots = engine.lowered.slots
     far = slots.chain._replace(stiffness=np.array([1.0, 0.0]))  # the wall pushes with no force
     engine.use(replace(engine.lowered, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0))))
-    engine.stepper.work = engine.stepper.work._replace(along=engine.stepper.new_simd_workspace() if vectors else None)
+    engine.stepper.work = engine.stepper.work._replace(simd=engine.stepper.new_simd_workspace() if vectors else None)
     beta = engine.lowered.beta
     assert 2.0 * np.sqrt(2.0 * depth) / beta < 0.9 * engine.stepper.h  # shorter than the step in whose middle the top is
     engine.start(State(np.array([(1.0 - depth) * chain.A0]), np.zeros(1)))

@@ -9,7 +9,7 @@ from granchain_core import resonance_curve, run, scene, settled
 from granchain_core.lower import lower
 from granchain_core.orbits import periodic_orbit
 from granchain_core.steady.nearby_orbit import NearbyOrbit, orbit_of
-from granchain_core.steady.settle import settle
+from granchain_core.steady.settle import run_until_settled
 from granchain_core.steady.strobe_map import StrobeMap, fixed_point, sizes
 from granchain_core.stop import Stop
 from tests.numerics.label_honesty import judged
@@ -98,7 +98,7 @@ def test_slow_is_not_quasi_periodic() -> None:
     """A0 = 0.3 µm at 1500 Hz: |μ| = 0.9995. 300 periods look like a closed curve; `run` claims nothing that it is not yet."""
     chain = scene("sec2").evolve(A0=3e-7, f=1500.0)
     assert run(chain, periods=300).regime.name == "unsettled"
-    way = settle(chain, None, None)
+    way = run_until_settled(chain, None, None)
     assert (way.regime.name, way.regime.period, way.regime.followed) == ("periodic", 1, True)
     assert way.regime.multiplier is not None and 0.999 < way.regime.multiplier < 1.0
     assert way.regime.sentence.endswith("(|μ| 0.9995)")

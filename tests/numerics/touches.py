@@ -26,7 +26,7 @@ from granchain_core.hard.brushes import (
     run,
     workspace,
 )
-from granchain_core.kernels.dop853.located import certified_step
+from granchain_core.kernels.dop853.run import certified_step
 from granchain_core.kernels.dop853.step import STAGES, Dop853, evaluate
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic

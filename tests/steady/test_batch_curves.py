@@ -9,7 +9,7 @@ from granchain_core import scene
 from granchain_core.kernels.batch import period_end
 from granchain_core.steady import batch_settle
 from granchain_core.steady.curve import draft_curve, resonance_curve
-from granchain_core.steady.settle import settle
+from granchain_core.steady.settle import run_until_settled
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 
@@ -27,7 +27,7 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
     """Lanes, which follow slow approaches, and the live method, which runs on until it is there, from rest."""
     by_lanes = results(FREQUENCIES)
     for f in FREQUENCIES:
-        way = settle(scene("sec2").evolve(f=f), None, None)
+        way = run_until_settled(scene("sec2").evolve(f=f), None, None)
         found = by_lanes[f]
         assert found.regime.name == way.regime.name
         if found.regime.period is None:
@@ -53,7 +53,7 @@ def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
     for point in found:
         kick = 1e-3 * np.abs(point.state.displacement).max() * np.where(np.arange(11) % 2, 1.0, -1.0)
         start = type(point.state)(point.state.displacement + kick, point.state.velocity)
-        way = settle(scene("rig").evolve(f=point.frequency), start, None)
+        way = run_until_settled(scene("rig").evolve(f=point.frequency), start, None)
         assert way.regime.period == point.regime.period
 
 

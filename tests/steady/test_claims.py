@@ -76,22 +76,22 @@ def test_the_times_of_samples_are_counted_and_not_summed() -> None:
 
 def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a tenth of a distance is left after an orbit the settled error is e/(1 − 1/10), where nine tenths are, 10 e."""
-    way = settle.settle(scene("sec2"), None, None)
+    way = settle.run_until_settled(scene("sec2"), None, None)
     engine = Engine(way.scene, Setting("rk4-split"), 16)
     engine.start(way.engine.state)
     monkeypatch.setattr(settle, "relax", lambda *words: (engine, 0.0))
     stated = []
     for decay in (0.1, 0.9):
-        monkeypatch.setattr(settle, "slowness", lambda regime, decay=decay: decay)
+        monkeypatch.setattr(regime.Regime, "slowness", decay)
         stated.append(settle.certified_picture(way, 16, 0.0, "rest").run.error_estimate)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
 def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
-    way, seen = settle.settle(scene("sec2"), None, None), []
+    way, seen = settle.run_until_settled(scene("sec2"), None, None), []
     real = settle.changes
-    monkeypatch.setattr(settle, "slowness", lambda regime: 0.99)
+    monkeypatch.setattr(regime.Regime, "slowness", 0.99)
     monkeypatch.setattr(settle, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
     _, bound = settle.relax(way, 1e-6)
     assert bound <= 0.3e-6

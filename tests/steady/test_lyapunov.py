@@ -10,7 +10,7 @@ from granchain_core.integrate import Engine, Setting
 from granchain_core.lower import lower
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
-from granchain_core.steady.settle import settle
+from granchain_core.steady.settle import run_until_settled
 from granchain_core.stop import Stop
 
 CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # PHYSICS, trap 8: irregular everywhere with κ = 0
@@ -43,7 +43,7 @@ def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
 
 
 def test_a_chaotic_chain_has_the_exponent_of_its_tangent_flow() -> None:
-    way = settle(CHAOTIC, None, None)
+    way = run_until_settled(CHAOTIC, None, None)
     assert way.regime.name == "chaotic"
     exact, error = by_tangents(CHAOTIC, way.engine.state, 10, 12)
     assert exact[0] > 0.5
@@ -52,7 +52,7 @@ def test_a_chaotic_chain_has_the_exponent_of_its_tangent_flow() -> None:
 
 
 def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> None:
-    way = settle(QUASI, None, None)
+    way = run_until_settled(QUASI, None, None)
     assert way.regime.name == "quasi-periodic"
     exact, error = by_tangents(QUASI, way.engine.state, 10, 30)
     # on a closed curve tangents turn into it within the first block; what is left of that dies as 1/periods
@@ -63,7 +63,7 @@ def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> No
 
 def test_exponents_of_a_scene_do_not_depend_on_those_beside_it() -> None:
     lowered = lower(QUASI)
-    y = lowered.scaled(settle(QUASI, None, None).engine.state)
+    y = lowered.scaled(run_until_settled(QUASI, None, None).engine.state)
     slower = lower(QUASI.evolve(f=QUASI.f / 2.2))
     alone = exponents_in_pairs([(lowered, y)], 5, 20, Stop())[0]
     beside = exponents_in_pairs([(slower, 0.5 * y), (lowered, y)], 5, 20, Stop())[1]

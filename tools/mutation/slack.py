@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_CERTIFIED, _SLACKENING = "kernels/dop853/located.py", "kernels/dop853/force_kinks.py"
+_CERTIFIED, _SLACKENING = "kernels/dop853/run.py", "kernels/dop853/force_kinks.py"
 _TENSION = "kernels/effects/tension.py"
 
 SLACK = (

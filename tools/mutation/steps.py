@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _MOTION, _FIXED, _EVENTS = "kernels/equations/motion.py", "kernels/rk4/step.py", "kernels/rk4/contact_events.py"
-_CERTIFIED, _DOP853, _TABLEAU = "kernels/dop853/located.py", "kernels/dop853/step.py", "kernels/dop853/tableau.py"
+_CERTIFIED, _DOP853, _TABLEAU = "kernels/dop853/run.py", "kernels/dop853/step.py", "kernels/dop853/tableau.py"
 _SAMPLING, _ENGINE = "kernels/rk4/run.py", "integrate/engine.py"
 
 MOTION = (

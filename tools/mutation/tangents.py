@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_TIME, _STEP, _LANDING = "kernels/dop853/time_map.py", "kernels/dop853/event_step.py", "kernels/dop853/event_location.py"
+_TIME, _STEP, _LANDING = "kernels/dop853/time_map.py", "kernels/dop853/flow_attempt.py", "kernels/dop853/flow_events.py"
 _FLOW, _TANGENT, _SALTATION = "kernels/dop853/flow.py", "kernels/equations/tangent.py", "kernels/saltation.py"
 _MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
 

@@ -63,7 +63,7 @@ IN_ROWS = (
            "(closed_after ^ closed) != 0", "a touch inside a step of a short chain is not seen", k.STEP_TOUCH),
     Mutant("wide-split-phase", _RUN, "theta + dtheta * (done + 0.5 * part), theta", "theta + dtheta * (done + part), theta",
            "the driver is ahead in the middle of a split step", k.SIMD_PLAIN),
-    Mutant("along-last-stage", _ALONG, "later_stage(along, slots, end, along.first", "later_stage(along, slots, middle, along.first",
+    Mutant("along-last-stage", _ALONG, "later_stage(simd, slots, end, simd.first", "later_stage(simd, slots, middle, simd.first",
            "the driver of a long chain is half a step late", k.SIMD_LONG),
     Mutant("along-damping-sign", _ALONG, "inverse_mass * (from_left(before, G) - G)", "inverse_mass * (G - from_left(before, G))",
            "damping drives a long chain", k.SIMD_LONG),

@@ -14,7 +14,7 @@ from ..equations.tangent import Tangent, carry
 from ..jit import by_slot, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEP_TOO_SMALL, STEPS
-from .event_location import flow_step
+from .flow_events import flow_step
 from .step import evaluate, new_scale
 from .time_map import time_at
 

@@ -16,7 +16,7 @@ from ..jit import inline_numba, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, DONE, NOT_FINITE
 from .force_search import follow_step
-from .located import certified_step, inner_extremum, overlap_in_step
+from .run import certified_step, inner_extremum, overlap_in_step
 from .step import evaluate, new_scale, prepare_dense
 from .tableau import STAGES
 

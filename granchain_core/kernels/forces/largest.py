@@ -33,6 +33,9 @@ _FAINT = 0.9
 #: Largest rise or fall of a force in one step, over its value: behind a closing, where g has an
 #: infinite slope, the cubic's slope is bounded by this.
 _STEEPEST = 3.0
+#: Entries of `ForceLog.met`: how many contacts closed with a jump, how many of these were touches within a step of a
+#: method that does not locate them, and the number of the last sample.
+CLOSED, UNRESOLVED, SAMPLE = range(3)
 
 
 class ForceLog(NamedTuple):
@@ -40,8 +43,8 @@ class ForceLog(NamedTuple):
 
     `peaks` (17,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value and
     slope of each force at the last state watched. Rows of `closings` (C, 4) are the number of the last sample before a
-    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (3,) is how many there were, how
-    many of them were touches within a step of a method that does not locate them, and the number of the last sample.
+    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (3,) are the numbers CLOSED,
+    UNRESOLVED and SAMPLE.
     """
 
     peaks: np.ndarray
@@ -186,11 +189,11 @@ def _(law, rate, c, last, theta, log):
         if c == last:
             reach(log.peaks, OUTPUT, force)
             reach(log.peaks, OUTPUT_JUMP, force)
-        place = log.met[0]
-        log.met[0] = place + 1
+        place = log.met[CLOSED]
+        log.met[CLOSED] = place + 1
         if place < log.closings.shape[0]:
             row = log.closings[place]
-            row[0], row[1], row[2], row[3] = log.met[2], theta, c, force
+            row[0], row[1], row[2], row[3] = log.met[SAMPLE], theta, c, force
 
 
 @by_slot
@@ -291,7 +294,7 @@ def watch_crossing(law, slots, c, before, rate, y, dy, h, theta, dtheta, log):
     elif rate > 0.0 and rate_after < 0.0:
         jump = brief_touch(before, after, rate, rate_after, h)
         note_closing(law, jump, c, slots.chain.stiffness.size - 1, theta + 0.5 * dtheta, log)
-        log.met[1] += jump > 0.0
+        log.met[UNRESOLVED] += jump > 0.0
 
 
 end_overlaps.absent_for(*SMOOTH_LAWS)

@@ -43,83 +43,83 @@ class LongChain(NamedTuple):
 
 
 @inline_numba
-def steps_without_events(along, slots, drive, j, count, dtheta, h, y, peaks):
+def steps_without_events(simd, slots, drive, j, count, dtheta, h, y, peaks):
     """Take up to `count` steps from half-step index 2j of the drive; how many were taken."""
-    now, before, blocks = along.now, along.before, along.inverse_mass.shape[0]
+    now, before, blocks = simd.now, simd.before, simd.inverse_mass.shape[0]
     m = slots.chain.inverse_mass.size
     unpack(y, m, now, blocks)
     done, first, last = 0, False, False
     while True:
         i = 2 * (j + done)
-        changed = first_stage(along, slots, drive_displacement(slots, drive, i, dtheta), h)
+        changed = first_stage(simd, slots, drive_displacement(slots, drive, i, dtheta), h)
         v0 = drive_velocity(slots, drive, i, dtheta)
         first_before, last_before = first, last
-        first, last = comes_nearer(along, slots, v0)
+        first, last = comes_nearer(simd, slots, v0)
         if done > 0:
             # one that came nearer and now goes away from zero may have been beyond it in between
             if changed or (first_before and not first) or (last_before and not last):
                 pack(before, blocks, y, m)
                 return done - 1
-            watch_ends(slots, along, v0, peaks)
+            watch_ends(slots, simd, v0, peaks)
         if done == count:
             pack(now, blocks, y, m)
             return done
         middle, end = drive_displacement(slots, drive, i + 1, dtheta), drive_displacement(slots, drive, i + 2, dtheta)
-        later_stage(along, slots, middle, along.first, along.second, h, 0.5, 1.0 / 3.0)
-        later_stage(along, slots, middle, along.second, along.first, h, 1.0, 1.0 / 3.0)
-        later_stage(along, slots, end, along.first, along.second, h, 0.0, 1.0 / 6.0)
+        later_stage(simd, slots, middle, simd.first, simd.second, h, 0.5, 1.0 / 3.0)
+        later_stage(simd, slots, middle, simd.second, simd.first, h, 1.0, 1.0 / 3.0)
+        later_stage(simd, slots, end, simd.first, simd.second, h, 0.0, 1.0 / 6.0)
         for b in range(2 * blocks):
             store(before, b, load(now, b))
-            store(now, b, load(along.acc, b))
+            store(now, b, load(simd.acc, b))
         done += 1
 
 
 @inline_numba
-def first_stage(along, slots, u0, h):
+def first_stage(simd, slots, u0, h):
     """The slope at the step's start: begins acc and the mid-step state; whether a contact changed since the last."""
-    blocks, law, now = along.inverse_mass.shape[0], slots.dissipation, along.now
+    blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
     here, e_before = with_first(load(now, 0), u0), splat(0.0)
     G_before, changed = primitive(law, e_before), np.int64(0)
     half, sixth = 0.5 * h, h / 6.0
     for b in range(blocks):
         ahead = load(now, b + 1) if b + 1 < blocks else splat(0.0)
-        gap = batch_overlap(along.preload, here, from_right(here, ahead), b)
+        gap = batch_overlap(simd.preload, here, from_right(here, ahead), b)
         signs = positive_mask(gap)
-        changed |= signs ^ along.signs[b]
-        along.signs[b] = signs
+        changed |= signs ^ simd.signs[b]
+        simd.signs[b] = signs
         d = positive_part(gap)
-        e, G = elastic_force(load(along.stiffness, b), d), primitive(law, d)
-        inverse = load(along.inverse_mass, b)
+        e, G = elastic_force(load(simd.stiffness, b), d), primitive(law, d)
+        inverse = load(simd.inverse_mass, b)
         du = long_chain_velocity(law, load(now, blocks + b), inverse, G_before, G)
         dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
-        store(along.gap, b, gap)
-        store(along.slope, b, du)
-        store(along.elastic, b, e)
+        store(simd.gap, b, gap)
+        store(simd.slope, b, du)
+        store(simd.elastic, b, e)
         for row, slope in ((b, du), (blocks + b, dw)):
             start = load(now, row)
-            store(along.first, row, start + half * slope)
-            store(along.acc, row, start + sixth * slope)
+            store(simd.first, row, start + half * slope)
+            store(simd.acc, row, start + sixth * slope)
         here, e_before, G_before = ahead, e, G
     return changed != 0
 
 
 @kernel
-def later_stage(along, slots, u0, y, out, h, forward, weight):
+def later_stage(simd, slots, u0, y, out, h, forward, weight):
     """A later stage at state y: out = now + forward·h·slope, acc += weight·h·slope."""
-    blocks, law, now = along.inverse_mass.shape[0], slots.dissipation, along.now
+    blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
     here, e_before = with_first(load(y, 0), u0), splat(0.0)
     G_before = primitive(law, e_before)
     reach, share = forward * h, weight * h
     for b in range(blocks):
         ahead = load(y, b + 1) if b + 1 < blocks else splat(0.0)
-        d = positive_part(batch_overlap(along.preload, here, from_right(here, ahead), b))
-        e, G = elastic_force(load(along.stiffness, b), d), primitive(law, d)
-        inverse = load(along.inverse_mass, b)
+        d = positive_part(batch_overlap(simd.preload, here, from_right(here, ahead), b))
+        e, G = elastic_force(load(simd.stiffness, b), d), primitive(law, d)
+        inverse = load(simd.inverse_mass, b)
         du = long_chain_velocity(law, load(y, blocks + b), inverse, G_before, G)
         dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
         for row, slope in ((b, du), (blocks + b, dw)):
             store(out, row, load(now, row) + reach * slope)
-            store(along.acc, row, load(along.acc, row) + share * slope)
+            store(simd.acc, row, load(simd.acc, row) + share * slope)
         here, e_before, G_before = ahead, e, G
 
 
@@ -135,23 +135,23 @@ def _(law, w, inverse_mass, before, G):
 
 
 @inline_numba
-def comes_nearer(along, slots, v0):
+def comes_nearer(simd, slots, v0):
     """Whether the overlaps of the first and of the last contact move towards zero at the last step's start."""
     last = slots.chain.stiffness.size - 1
-    first_gap, last_gap = along.gap[0, 0], along.gap[last // LANES, last % LANES]
-    first_rate, last_rate = v0 - along.slope[0, 1], along.slope[last // LANES, last % LANES]
+    first_gap, last_gap = simd.gap[0, 0], simd.gap[last // LANES, last % LANES]
+    first_rate, last_rate = v0 - simd.slope[0, 1], simd.slope[last // LANES, last % LANES]
     return (first_rate > 0.0) != (first_gap > 0.0), (last_rate > 0.0) != (last_gap > 0.0)
 
 
 @kernel
-def watch_ends(slots, along, v0, peaks):
+def watch_ends(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
     block, lane = last // LANES, last % LANES
-    d = positive_part(along.gap[0, 0])
-    watch(peaks, INPUT, along.elastic[0, 0] + damping(slots.dissipation, d) * (v0 - along.slope[0, 1]))
-    d, elastic = positive_part(along.gap[block, lane]), along.elastic[block, lane]
-    watch(peaks, OUTPUT, elastic + damping(slots.dissipation, d) * along.slope[block, lane])
+    d = positive_part(simd.gap[0, 0])
+    watch(peaks, INPUT, simd.elastic[0, 0] + damping(slots.dissipation, d) * (v0 - simd.slope[0, 1]))
+    d, elastic = positive_part(simd.gap[block, lane]), simd.elastic[block, lane]
+    watch(peaks, OUTPUT, elastic + damping(slots.dissipation, d) * simd.slope[block, lane])
     watch(peaks, OUTPUT_ELASTIC, elastic)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..effects.contact import elastic_force, positive_part
 from ..effects.preload import overlap
 from ..equations.motion import contact_force, copy, motion
-from ..forces.largest import watch_state
+from ..forces.largest import SAMPLE, watch_state
 from ..forces.peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
 from ..jit import by_slot_inlined, kernel
 from ..samples import first_not_finite, keep, keep_strobe
@@ -19,7 +19,7 @@ from .step import PATIENCE, drive_displacement, drive_velocity, step
 
 
 @by_slot_inlined
-def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+def advance(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
 
     The stop flag is asked often enough to end within milliseconds; the steps are then incomplete.
@@ -32,15 +32,15 @@ def advance(along, method, slots, drive, j, count, dtheta, h, y, stages, log, co
 
 
 @advance.of(ShortChain)
-def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
-    run_short_chain(along, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, log, counts, stop)
+def _(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+    run_short_chain(simd, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, log, counts, stop)
 
 
 @advance.of(LongChain)
-def _(along, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+def _(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     done = 0
     while done < count and stop[0] == 0:
-        smooth = steps_without_events(along, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y,
+        smooth = steps_without_events(simd, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y,
                                       log.peaks)
         if smooth > 0:
             done += smooth
@@ -83,7 +83,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, log, tops, counts, 
         if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
             return NOT_FINITE, p
         next_period(log.peaks)
-        advance(stages.along, method, slots, drive, 0, n, dtheta, h, y, stages, log, counts, stop)
+        advance(stages.simd, method, slots, drive, 0, n, dtheta, h, y, stages, log, counts, stop)
         if stop[0] != 0:
             return CANCELLED, p
         if first_not_finite(y, m) != 0:
@@ -108,8 +108,8 @@ def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples,
     for row in range(1, samples.displacement.shape[0]):
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, row - 1
-        log.met[2] = row - 1
-        advance(stages.along, method, slots, drive, j, stride, dtheta, h, y, stages, log, counts, stop)
+        log.met[SAMPLE] = row - 1
+        advance(stages.simd, method, slots, drive, j, stride, dtheta, h, y, stages, log, counts, stop)
         j = 0 if j + stride == n else j + stride
         if stop[0] != 0:
             return CANCELLED, row

@@ -26,8 +26,8 @@ ROUNDING = 1e-12
 def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) -> None:
     shown = scene("sec2").evolve(**changes)
     fast, slow = (Engine(shown, Setting("rk4-split"), 8) for _ in range(2))
-    slow.stepper.work = slow.stepper.work._replace(along=None)
-    assert fast.stepper.work.along is not None
+    slow.stepper.work = slow.stepper.work._replace(simd=None)
+    assert fast.stepper.work.simd is not None
     a, b = fast.record(24), slow.record(24)
     assert np.abs(a.displacement - b.displacement).max() < ROUNDING
     assert np.abs(a.force - b.force).max() < ROUNDING

@@ -10,7 +10,7 @@ import numpy as np
 from ..effects.preload import overlap
 from ..jit import inline_numba, kernel
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .event_step import attempt_in_time, first_change
+from .flow_attempt import attempt_in_time, first_change
 from .tableau import STAGES
 from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 

@@ -16,7 +16,7 @@ from ..effects.driver import driver_displacement
 from ..effects.preload import overlap
 from ..jit import by_slot, inline_numba, kernel
 from ..status import EVALUATIONS
-from .located import may_turn
+from .run import may_turn
 from .step import combine, dense_value, error_norm
 from .tableau import STAGES, C
 from .time_map import prepare_dense_in_time, rate_at, slope_in_x, time_at

@@ -14,7 +14,7 @@ from ..effects.driver import driver_displacement
 from ..effects.preload import overlap
 from ..effects.tension import NoTension
 from ..equations.motion import copy
-from ..forces.largest import note_closings
+from ..forces.largest import SAMPLE, note_closings
 from ..jit import by_slot, inline_numba, kernel
 from ..samples import first_not_finite, keep
 from ..status import CANCELLED, CHATTER, DONE, EVALUATIONS, EVENTS, NOT_FINITE, REJECTED, STEP_TOO_SMALL, STEPS
@@ -97,7 +97,7 @@ def may_turn(d0, s0, d1, s1, sign):
 
 
 @inline_numba
-def first_event(slots, beta, t, h, y, work, counts):
+def first_crossing(slots, beta, t, h, y, work, counts):
     """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
     Events closer to t than floating-point resolution are ignored.
@@ -189,7 +189,7 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
         factor = min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
         if aimed >= 0 or kinked:
             break
-        aimed, x = first_event(slots, beta, t, h, y, work, counts)
+        aimed, x = first_crossing(slots, beta, t, h, y, work, counts)
         kink = first_kink(slots.tension, slots, beta, t, h, y, work, min(x, 1.0), counts, again)
         if kink == 0.0:
             aimed, again = -1, True
@@ -266,7 +266,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
                 keep(slots, row, work.probe, work.slope, work.forces.e, samples)
                 row += 1
         if every > 0:
-            log.met[2] = row - 1
+            log.met[SAMPLE] = row - 1
             note_closings(slots.dissipation, slots, y, work.k[0], work.end, work.k[STAGES], beta * t, beta * h, log)
         copy(work.end, y)
         copy(work.k[STAGES], work.k[0])
