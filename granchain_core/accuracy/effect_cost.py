@@ -19,10 +19,15 @@ from ..integrate.methods import LIVE
 from ..scene import Scene
 from ..stop import Stop
 
-#: Pairs of freshly allocated chains, turns for each, and seconds one run of a turn should take. Where an array happens
-#: to lie in memory can make a step a fifth slower, and stays so: hence several chains. About half a second in all.
-_CHAINS, _TURNS, _RUN = 7, 7, 0.004
-CODE, MOTION = "rk4", LIVE
+#: Pairs of freshly allocated chains: where an array lies in memory can make a step a fifth slower, and stays so.
+_CHAINS = 7
+#: Alternating runs of each pair.
+_TURNS = 7
+#: Time of one run [s]; about half a second in all.
+_RUN = 0.004
+#: Methods by which an effect is timed: its code alone, and its cost in this motion.
+CODE = "rk4"
+MOTION = LIVE
 """The methods that show the cost of an effect's code, and its cost in the live picture's motion."""
 
 #: Drive periods that are run before, so that the chain is in motion.

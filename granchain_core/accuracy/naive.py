@@ -19,8 +19,10 @@ from ..stop import Stop
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)
 #: Samples a period of the drawn force; it divides all of them.
 _SAMPLES = 100
-#: Drive periods from rest that are run, and the last ones that are shown.
-_RUN, _SHOWN = 10, 2
+#: Drive periods run from rest.
+_RUN = 10
+#: The last of them, which are shown.
+_SHOWN = 2
 _TRUE = certified(1e-11)
 
 

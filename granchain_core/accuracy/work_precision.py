@@ -22,15 +22,23 @@ from .naive import Lesson, lesson
 from .scipy_methods import solve
 from .ways import SCIPY, Choice, choices
 
-#: Periods from rest, and samples a period at which displacements are compared.
-PERIODS, SAMPLES = 10, 16
+#: Drive periods run from rest.
+PERIODS = 10
+#: Samples a period at which displacements are compared.
+SAMPLES = 16
 _REFERENCE = certified(3e-15)
 _SECOND = ("DOP853", 1e-14)
-#: Seconds after which a setting is given up, and a reference.
-_ROW_LIMIT, _REFERENCE_LIMIT = 8.0, 60.0
-#: A setting is repeated for this many seconds or runs; the fastest counts, so that neither a compiler nor a
-#: neighbour on the machine is measured. What takes longer than the last is run once.
-_ENOUGH, _MOST_RUNS, _SLOW = 0.05, 9, 0.5
+#: Time after which a setting is abandoned [s].
+_ROW_LIMIT = 8.0
+#: The same for a reference [s].
+_REFERENCE_LIMIT = 60.0
+#: A setting is repeated for this time [s]; the fastest run counts, so that neither a compiler nor another
+#: process is measured.
+_ENOUGH = 0.05
+#: Most runs of one setting.
+_MOST_RUNS = 9
+#: A setting that takes longer than this is run once [s].
+_SLOW = 0.5
 #: What takes less than so many seconds is measured in a second round, too, seconds after the first: a neighbour that
 #: was busy during all of the first runs is not there for long.
 _BRIEF = 0.1

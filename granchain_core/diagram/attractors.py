@@ -25,13 +25,18 @@ from ..stop import Stop
 from .compute import settle_on_all_cores
 from .sameness import LIVE, Found, found, merged
 
-#: Frequencies passed on the way in a sweep, periods at each, and how far away it begins.
-_SWEEP, _PASS, _AWAY = 8, 150, 0.08
+#: Frequencies of a sweep before the one asked for.
+_SWEEP = 8
+#: Drive periods at each of them.
+_PASS = 150
+#: Distance from the frequency asked for at which a sweep begins, relative to it.
+_AWAY = 0.08
 #: Size of the box of random states, in largest displacements and velocities seen on the way from rest.
 _BOX = 1.5
-#: Displacement from an unstable orbit, relative to the motion, and drive periods before the next check: enough to
-#: leave an orbit with |μ| = 1.003.
-_BESIDE, _RUN_ON = 1e-2, 3000
+#: Displacement from an unstable orbit, relative to the motion.
+_BESIDE = 1e-2
+#: Drive periods before the next check: enough to leave an orbit with |μ| = 1.003.
+_RUN_ON = 3000
 #: Mean exponents per drive period above which a group is chaotic, and below which it may be quasi-periodic.
 _CLEARLY, _UNCLEAR = 0.01, 5e-3
 #: Most random states.

@@ -21,9 +21,16 @@ from ..errors import BadInput
 from .cells import CELL, empty_cells
 from .grid import Grid
 
-#: Cells in one block, and seconds after which fewer are written too.
-BLOCK, SECONDS = 128, 2.0
-_HEAD, _SUFFIX, _VERSION = "map.json", ".block", 1
+#: Cells in one block.
+BLOCK = 128
+#: Time after which a smaller block is written [s].
+SECONDS = 2.0
+#: File that says which scene and grid the folder belongs to.
+_HEAD = "map.json"
+#: Ending of a block's file name.
+_SUFFIX = ".block"
+#: Version of the format.
+_VERSION = 1
 
 
 class Blocks:

@@ -20,8 +20,10 @@ from .cells import REGIMES, Diagram
 
 #: Steps from a cell to its neighbour in which its orbit is carried.
 _STEPS = 6
-#: A point this many cells outside its pair is another one; curves closer than this are one.
-_OUTSIDE, _SAME = 1.0, 0.5
+#: A point this many cells outside the pair of cells between which it was looked for belongs to another boundary.
+_OUTSIDE = 1.0
+#: Curves closer than this many cells are the same.
+_SAME = 0.5
 
 
 @dataclass(frozen=True, eq=False)

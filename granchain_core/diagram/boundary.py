@@ -32,13 +32,20 @@ from .grid import KNOBS
 KINDS = ("fold", "period_doubling", "neimark_sacker")
 #: The condition on the critical multiplier is met to this; the map's own tangents are good to about 1e-7.
 _MET = 1e-6
-#: Residual of an orbit, and Newton's iterations at most.
-_CONVERGED, _ITERATIONS = 1e-10, 8
+#: Residual at which an orbit is found.
+_CONVERGED = 1e-10
+#: Newton's iterations at most.
+_ITERATIONS = 8
 #: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
 _DIFFERENCE = 1e-6
-#: First step along a branch, relative to the state and the knob; a secant goes at most so many times the last step,
-#: is halved so often where the branch is lost, and so many are tried.
-_STEP, _FARTHEST, _SECANTS, _HALVINGS = 1e-3, 6.0, 14, 3
+#: First step along a branch, relative to the state and the knob.
+_STEP = 1e-3
+#: Longest secant step, in units of the last step.
+_FARTHEST = 6.0
+#: Secant steps at most.
+_SECANTS = 14
+#: Halvings of a step at most, where the branch is lost.
+_HALVINGS = 3
 #: Smallest part of the way to the next y that is tried as one step.
 _LEAST = 1.0 / 32.0
 #: Slower than this from +1 or −1 in angle a critical pair is not told from a real multiplier.

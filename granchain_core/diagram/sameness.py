@@ -25,10 +25,13 @@ from ..steady.steady_state import SteadyState
 _SAME = 1e-7
 #: Scaled strobes of an orbit that agree to this after fewer periods have the shorter period.
 _REPEATS = 1e-6
-#: Sections are different if their distance exceeds that of their own neighbouring states by this factor; states in the
-#: section of a motion that is not periodic, taken after as many further periods.
-_APART, _SECTION = 3.0, 400
-LIVE, _CERTIFIED = live(), certified(1e-11)
+#: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
+_APART = 3.0
+#: States in the section of a motion that is not periodic, taken after as many further periods.
+_SECTION = 400
+#: Method by which a motion's section is taken, and the tolerance for that of an orbit.
+LIVE = live()
+_CERTIFIED = certified(1e-11)
 
 
 @dataclass(eq=False)

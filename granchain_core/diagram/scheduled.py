@@ -15,8 +15,10 @@ from .grid import Axis, Grid
 
 #: Cells of one block: some seconds of work, so that sending it costs nothing.
 BLOCK = 256
-#: Seconds in which a scheduler must answer, and between looks whether the map is still wanted.
-_ANSWERS, _LOOK = 4.0, 0.2
+#: Time in which a scheduler must answer [s].
+_ANSWERS = 4.0
+#: Time between two checks whether the map is still wanted [s].
+_LOOK = 0.2
 
 
 def work_on(described: dict[str, Any], numbers: Sequence[int]) -> np.ndarray:

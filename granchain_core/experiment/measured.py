@@ -12,8 +12,10 @@ import numpy as np
 from ..errors import BadInput
 from .table import Expected, Table, read_table
 
-#: Largest file and most rows accepted.
-MOST_BYTES, MOST_ROWS = 2_000_000, 20_000
+#: Largest file accepted [bytes].
+MOST_BYTES = 2_000_000
+#: Most rows accepted.
+MOST_ROWS = 20_000
 _EXPECTED = Expected(
     columns={
         "frequency": {"frequency", "frequency_hz", "f", "f_hz", "freq", "freq_hz"},

@@ -18,8 +18,10 @@ from ..kernels.effects.tension import no_tension
 from ..kernels.samples import Samples
 from ..scene import Scene, scene
 
-#: Speed of two colliding beads in scaled units, m* = 1/2: contact time 3.2180655 (m*/K)^{2/5} v^{-1/5}.
-HERTZ_DURATION, HERTZ_FORCE = 3.2180655, 1.1432626
+#: Contact time of a loss-free Hertz collision at v, in units of (m*/K)^{2/5} v^{-1/5} with the reduced mass m*.
+HERTZ_DURATION = 3.2180655
+#: Its peak force, (5/4)^{3/5}, in units of K^{2/5} (m* v²)^{3/5}.
+HERTZ_FORCE = 1.1432626
 
 
 def contact_time(speed: float, reduced_mass: float = 0.5, stiffness: float = 1.0) -> float:

@@ -17,8 +17,10 @@ from .case import Figure, Picture, Trace
 from .drafts import observed_apart
 from .oracle import Plain
 
-#: Strobes of a normal form, and its dimension.
-_STROBES, _BEADS = 400, 3
+#: Strobes of a normal form.
+_STROBES = 400
+#: Beads whose states hold it: half its dimension.
+_BEADS = 3
 
 
 def normal_form(rng: np.random.Generator, kind: str, closeness: float,
@@ -133,8 +135,12 @@ def near_bifurcation_picture() -> Picture:
 
 # --- several attractors -----------------------------------------------------------------------------------
 
-#: A frequency at which section 2's chain has orbits of period 1 and of period 3, both stable, and sweeps towards it.
-_SHARED, _BELOW, _ABOVE = 885.7627, 800.0, 1000.0
+#: A frequency at which the chain of `sec2` has orbits of period 1 and of period 3, both stable [Hz].
+_SHARED = 885.7627
+#: Where the sweep up to it begins [Hz].
+_BELOW = 800.0
+#: Where the sweep down to it begins [Hz].
+_ABOVE = 1000.0
 
 
 def arrivals() -> dict[str, CurvePoint]:

@@ -23,8 +23,10 @@ from ..stop import Stop
 
 #: A period that no lane reaches.
 NEVER = int(np.iinfo(np.int64).max)
-#: Periods until the first extrapolation after a vain one, and fewest orbits of a finer run.
-_WAIT, _FEWEST = 16, 2
+#: Drive periods until the next extrapolation after a failed one, at the start.
+_WAIT = 16
+#: Fewest orbits in one round of a finer run.
+_FEWEST = 2
 
 
 def can_share_batch(scene: Scene) -> bool:

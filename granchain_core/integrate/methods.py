@@ -17,8 +17,10 @@ from .adaptive import Adaptive
 from .fixed import FixedStep, FixedStepInVelocity
 from .stepper import Stepper
 
-#: Names of the two methods that do the work.
-LIVE, CERTIFIED = "rk4-split", "dop853"
+#: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.
+LIVE = "rk4-split"
+#: Error control with located events: the method of the finest accuracy.
+CERTIFIED = "dop853"
 
 #: Above this relative error the live method is the cheaper one (`granchain accuracy sec2` measures it).
 _LIVE_IS_CHEAPER = 1e-10

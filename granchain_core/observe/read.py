@@ -20,8 +20,10 @@ from .record import ForceRecord, checked
 #: Units that are understood, in SI.
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}
 FORCE_UNITS = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
-#: Largest file and most rows.
-MOST_BYTES, MOST_ROWS = 50_000_000, 1_000_000
+#: Largest file accepted [bytes].
+MOST_BYTES = 50_000_000
+#: Most rows accepted.
+MOST_ROWS = 1_000_000
 _FORCES = {"force": ("force", "input_force", "f_in"), "output": ("output", "output_force", "f_out")}
 
 

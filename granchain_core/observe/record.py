@@ -21,8 +21,10 @@ from ..scene import Scene
 GAP = 1.5
 #: What may be done with gaps: refuse them, take the force as zero in them, or draw the cubic across.
 GAPS = ("refuse", "zero", "interpolate")
-#: Fewest samples over the shortest pulse of this strength, and in all.
-PULSE_SAMPLES, FEWEST = 4, 8
+#: Fewest samples over the shortest pulse of this strength.
+PULSE_SAMPLES = 4
+#: Fewest samples in all.
+FEWEST = 8
 #: Duration of a collision of two free beads with peak force F is this times √(m/2) K^{−1/3} F^{−1/6}: from Hertz'
 #: 3.2180655 (m*/K)^{2/5} v^{−1/5} and F = 1.1432626 K^{2/5} m*^{3/5} v^{6/5} with m* = m/2.
 _HERTZ = 3.2180655 * 1.1432626 ** (1.0 / 6.0)

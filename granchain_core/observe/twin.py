@@ -23,16 +23,20 @@ from ..steady.settle import run_until_settled
 from ..stop import Stop
 from .pair import Pair
 
-#: Distances between these are small enough to be linear and large enough not to be rounding.
-LINEAR, ROUNDING = 0.03, 1e-11
+#: Largest distance, relative to the motion, at which the difference of two motions still grows linearly.
+LINEAR = 0.03
+#: Smallest distance that is not rounding.
+ROUNDING = 1e-11
 #: Differences below this, all through a period, are rounding: the observer is in step and is followed no further.
 IN_STEP = 1e-12
 #: Most periods of one twin: a minute or so.
 MOST_PERIODS = 20_000
 #: Periods after which the fast multipliers are taken to have died out, as a part of the usable ones.
 _TRANSIENT = 1.0 / 3.0
-#: Fewest strobes a rate is taken from, and what one multiplier may leave unexplained before there are two.
-_FEWEST, _ONE_IS_ENOUGH = 4, 0.03
+#: Fewest strobes from which a rate is taken.
+_FEWEST = 4
+#: Part that a fit by one multiplier may leave unexplained before two are fitted.
+_ONE_IS_ENOUGH = 0.03
 #: A difference is called a translation when the uniform shift is so much of it (squared cosine).
 TRANSLATION = 0.7
 

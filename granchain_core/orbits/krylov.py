@@ -12,11 +12,16 @@ from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, gmres
 from ..errors import NumbersFailed
 from .flow import StroboscopicMap
 
-#: Multipliers computed for a long chain, and how exact, relative to the largest.
-LEADING, _EXACT = 24, 1e-9
+#: Multipliers computed for a long chain.
+LEADING = 24
+#: Their error, relative to the largest.
+_EXACT = 1e-9
 #: Newton's step is solved to this; its error is that times the residual.
 _SOLVED = 1e-6
-_RESTART, _ROUNDS = 80, 5
+#: Products with the derivative after which GMRES restarts.
+_RESTART = 80
+#: Restarts at most.
+_ROUNDS = 5
 
 
 def derivative_at(strobe: StroboscopicMap, x: np.ndarray, observer: bool = False) -> LinearOperator:

@@ -26,8 +26,10 @@ from .orbit import DENSE, Orbit
 
 #: Size of the carried disturbance relative to the motion.
 _SMALL = 1e-5
-#: Pairs that Arnoldi iteration looks for at least, and how exact, relative to the largest.
-_FEWEST, _EXACT = 6, 1e-9
+#: Fewest eigenpairs that Arnoldi iteration computes.
+_FEWEST = 6
+#: Their error, relative to the largest.
+_EXACT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)

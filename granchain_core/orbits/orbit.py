@@ -22,8 +22,10 @@ from ..stop import Stop
 from .flow import Flow, StroboscopicMap, refuse_cut
 from .krylov import leading_multipliers, newton_step
 
-#: Residual, relative to the largest displacement and w, at which an orbit is found; and Newton's iterations at most.
-CONVERGED, MOST_ITERATIONS = 1e-11, 12
+#: Residual at which an orbit is found, relative to the largest displacement and w.
+CONVERGED = 1e-11
+#: Newton's iterations at most.
+MOST_ITERATIONS = 12
 #: Beads up to which the whole derivative is computed; of longer chains only the leading multipliers are.
 DENSE = 100
 #: Multipliers smaller than this part of the largest have no digit that is not rounding.

@@ -31,8 +31,10 @@ from .orbit import Orbit
 
 #: A push is met by the reflected pulse if bead 1 comes back with this part of the drive's largest speed.
 IN_STEP = 1.0 / 3.0
-#: Samples a period, and the tolerance of a step: events are placed to about a degree of the drive.
-_SAMPLES, _TOLERANCE = 480, 1e-9
+#: Samples a period: events are placed to about a degree of the drive.
+_SAMPLES = 480
+#: Tolerance of a step.
+_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True)

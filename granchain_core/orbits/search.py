@@ -19,8 +19,10 @@ from ..stop import Stop
 from .flow import StroboscopicMap
 from .orbit import Orbit, periodic_orbit
 
-#: Closest returns from which Newton's method is started, and periods that lie at least between two of them.
-_STARTS, _APART = 4, 5
+#: Closest returns from which Newton's method is started.
+_STARTS = 4
+#: Fewest periods between two of them.
+_APART = 5
 #: States of the section whose mean is its middle: a multiple of all short periods.
 _MIDDLE = 120
 #: Relative change after a part of the period at which the orbit is one of that shorter period.

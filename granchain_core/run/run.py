@@ -27,8 +27,10 @@ from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
 from .stated import Computations
 
-#: Most periods in all and most recorded rows of one run.
-MOST_PERIODS, MOST_ROWS = 10_000_000, 50_000_000
+#: Most drive periods of one run.
+MOST_PERIODS = 10_000_000
+#: Most recorded values of one run: rows times beads.
+MOST_ROWS = 50_000_000
 #: Stated error above which a motion may be chaotic: finer computations do not help then.
 _LOST = 0.3
 #: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.

@@ -16,9 +16,10 @@ _CAUTION, _UNEVEN = 1.5, 3.0
 _ROUNDINGS = 32.0
 #: Where the typical error of the steps is above this, rounding is no part of the difference.
 _SMOOTH = 1e-10
-#: Relative error above which a motion counts as chaotic at its end, and what is stated then, in amplitudes of the
-#: motion: two chaotic computations may differ by twice the amplitude.
-_WORTHLESS, _ALL = 0.05, 2.0
+#: Relative error above which a motion counts as chaotic at its end.
+_WORTHLESS = 0.05
+#: What is stated then, in amplitudes of the motion: two chaotic computations may differ by twice the amplitude.
+_ALL = 2.0
 
 
 @dataclass(eq=False)

@@ -33,9 +33,10 @@ from .steady_state import SteadyState
 _FINER = 3
 #: Periods after which a draft gives up.
 _DRAFT = 300
-#: Decay per orbit above which an orbit that was extrapolated to needs its multipliers, and largest |μ|, as seen by
-#: coarse differences, that settles it.
-_SLOW, _SURE = 0.998, 0.995
+#: Decay per orbit above which an orbit found by extrapolation needs its multipliers.
+_SLOW = 0.998
+#: Largest |μ|, by one-sided differences, that settles it.
+_SURE = 0.995
 #: Scenes whose exponents are found at once.
 _PAIRS = LANES // 2
 

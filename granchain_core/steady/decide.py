@@ -17,10 +17,14 @@ from .lyapunov import exponents
 from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 from .regime import Regime, agree, clearly_chaotic, departing, irregular, slowing
 
-#: Drive periods after which an unsettled motion is examined by its nearby orbit, and the largest number run in all.
-MOST_PERIODS, SLOW_PERIODS = 400, 4000
-#: Blocks and periods a block of one measurement of the Lyapunov exponent.
-BLOCKS, BLOCK = 10, 20
+#: Drive periods after which an unsettled motion is examined by its nearby orbit.
+MOST_PERIODS = 400
+#: Most drive periods in all.
+SLOW_PERIODS = 4000
+#: Blocks in one measurement of the Lyapunov exponent.
+BLOCKS = 10
+#: Drive periods in a block.
+BLOCK = 20
 #: Strobes on which a decision is based.
 REMEMBERED = 420
 #: Measurements of the Lyapunov exponent for a motion that is not followed any further.

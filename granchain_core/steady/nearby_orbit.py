@@ -28,10 +28,17 @@ UNSURE = 1e-5
 _BESIDE = 0.1
 #: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _AS_SMALL = 3.0
-#: Factor between the tested distances, and the smallest; the part of a distance that must decay according to the
-#: multipliers, orbits for that at most, and the part of it that must really decay. Beside an orbit that has just
-#: become stable there may be a closed curve on which the motion stays, and distances vary by some per cent.
-_CLOSER, _SMALLEST, _TAKEN, _MOST_ORBITS, _PART = 0.4, 1e-5, 0.2, 3000, 0.3
+#: Factor between the tested distances. Beside an orbit that has just become stable there may be a closed curve on which
+#: the motion stays, and distances vary by some per cent: hence several distances, and large parts of each.
+_CLOSER = 0.4
+#: Smallest distance tested, relative to the orbit.
+_SMALLEST = 1e-5
+#: Part of a distance that must decay according to the multipliers: it sets the number of orbits.
+_TAKEN = 0.2
+#: Orbits for that at most.
+_MOST_ORBITS = 3000
+#: Factor on the predicted decay: so much of it must really be seen.
+_PART = 0.3
 #: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
 _TURN = 16
 #: Directions whose |μ| is below this, or below this part of the largest, have decayed after those orbits.

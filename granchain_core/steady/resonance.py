@@ -21,9 +21,11 @@ ENDED = 0.05
 #: A peak or valley counts if it differs from both neighbouring extrema by this part of the larger: a valley is at least
 #: 20 % below both peaks beside it.
 STANDS_OUT = 0.2
-#: A state is on a peak, or at the bottom of a valley, if its force is no more than this part of the height between the
-#: two away from it; what lies between is a flank.
-_ON_TOP, _AT_BOTTOM = 0.2, 0.1
+#: A state is on a peak if its force is below it by no more than this part of the height from the next valley.
+_ON_TOP = 0.2
+#: A state is at the bottom of a valley if its force is above it by less than this part of that height; what lies
+#: between is a flank.
+_AT_BOTTOM = 0.1
 #: A state whose force differs by this part from the curve's at its frequency is not on the curve.
 _OFF = 0.1
 #: Less than this part of the input force at the wall: nothing travels through the chain.

@@ -25,9 +25,12 @@ _TOLERANCE = 1e-11
 _DIFFERENCE = 1e-5
 #: The same for a difference to one side, whose error is the difference times the map's second derivative.
 _TO_ONE_SIDE = 1e-6
-#: Relative residual at which a fixed point is found, Newton's iterations at most, and how much one has to gain to be
-#: done with the derivative that is there.
-_FOUND, _MOST_ITERATIONS, _ENOUGH = 1e-9, 10, 0.1
+#: Relative residual at which a fixed point is found.
+_FOUND = 1e-9
+#: Newton's iterations at most.
+_MOST_ITERATIONS = 10
+#: The derivative is renewed if an iteration leaves more than this part of the residual.
+_ENOUGH = 0.1
 #: A step of Newton's method is halved so often at most.
 _HALVINGS = 5
 

@@ -27,17 +27,28 @@ from ..strobes.periodicity import (
     window_of,
 )
 
-#: Strobes kept of each member at least, and those on which its regime is decided.
-REMEMBERED, SEEN = 432, 4 * LONGEST_PERIOD + 1
-#: Remaining orbits that justify an extrapolation, and fewest periods between two attempts.
-_TOO_LONG, _BETWEEN = 4.0, 8
+#: Fewest strobes kept of each member.
+REMEMBERED = 432
+#: Strobes on which its regime is decided.
+SEEN = 4 * LONGEST_PERIOD + 1
+#: Fewest orbits still to run that justify an extrapolation.
+_TOO_LONG = 4.0
+#: Fewest drive periods between two attempts.
+_BETWEEN = 8
 #: Longest jump, in units of change/(1 − rate), the distance that the decay predicts.
 LONGEST_JUMP = 3.0
-#: Part of the coarse orbit's error that may be left in the finer run, and extrapolations for it at most.
-FORGET, _MOST_ROUNDS = 0.02, 6
-#: Test of an extrapolated orbit: disturbance relative to the motion, orbits, the largest part of it that may be left at
-#: their end relative to their first quarter, and periods without extrapolation after a failed test.
-_DISTURBANCE, _TEST_ORBITS, _LEFT, _NO_MORE = 1e-4, 16, 0.97, 400
+#: Part of the coarse orbit's error that may be left in the finer run.
+FORGET = 0.02
+#: Extrapolations for that at most.
+_MOST_ROUNDS = 6
+#: Disturbance that tests an extrapolated orbit, relative to the motion.
+_DISTURBANCE = 1e-4
+#: Orbits of the test.
+_TEST_ORBITS = 16
+#: Largest part of the disturbance that may be left at their end, relative to their first quarter.
+_LEFT = 0.97
+#: Drive periods without extrapolation after a failed test.
+_NO_MORE = 400
 #: Decay reported for a disturbance that did not shrink in the end: the multipliers are then computed.
 _NEARLY_ONE = 0.9999
 #: Slowest decay that an extrapolation is taken to have removed: slower ones are not measured well enough.

@@ -23,11 +23,13 @@ from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
 from .step import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
 
-#: Target overlap just past an event, a few roundings of the largest displacement, and the factor by which it may be
-#: missed: the time of the event is then as exact as the approach speed allows.
-_BEHIND, _NEAR = 1e-15, 4.0
-#: The same where tension is cut: a contact without force may linger at δ = 0, which is no chatter.
-_BEHIND_CUT, _NEAR_CUT = 1e-14, 100.0
+#: Target overlap just past an event, in units of the largest displacement: a few roundings.
+_BEHIND = 1e-15
+#: Factor by which it may be missed: the time of the event is then as exact as the approach speed allows.
+_NEAR = 4.0
+#: The same two where tension is cut: a contact without force may linger at δ = 0, which is no chatter.
+_BEHIND_CUT = 1e-14
+_NEAR_CUT = 100.0
 #: A step that is to end at an event may become longer by this factor.
 _LONGER = 1.01
 #: No contact opens and closes more often than this in one period unless it chatters.

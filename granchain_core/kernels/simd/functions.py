@@ -113,8 +113,10 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
     return vector(vector, vector, vector, vector, vector, vector), codegen
 
 
-#: A maximum is smooth if its neighbours are above these parts of it: the jump of a dashpot force is no curved peak.
-NEAR, FAR = 0.8, 0.4
+#: A maximum is smooth if its two neighbours are above this part of it: the jump of a dashpot force is no curved peak.
+NEAR = 0.8
+#: The same for the two values beyond them.
+FAR = 0.4
 
 
 def choose_peak(a, b, c, d, e, top):

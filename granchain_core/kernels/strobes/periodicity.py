@@ -10,8 +10,10 @@ import numpy as np
 
 from ..jit import kernel
 
-#: Longest period that is tested, in drive periods, and the least number of changes that give its decay.
-LONGEST_PERIOD, LEAST_WINDOW = 16, 8
+#: Longest period that is tested, in drive periods.
+LONGEST_PERIOD = 16
+#: Fewest changes that give their decay.
+LEAST_WINDOW = 8
 #: A state is on its orbit when its distance bound, relative to the largest displacement and velocity, is below this.
 SETTLED_DISTANCE = 1e-6
 #: Changes below this are rounding of a fixed-step map.

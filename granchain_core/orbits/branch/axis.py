@@ -16,9 +16,10 @@ from ...scene import Scene
 
 #: Knobs that move a chain continuously; N and the laws jump, `accuracy` changes no chain.
 CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
-#: Length of a factor e in a logarithmic knob, and of the whole range of a linear one. The state changes by about its
-#: own size where f changes by a tenth.
-_LOGARITHMIC, _LINEAR = 10.0, 20.0
+#: Length of a factor e in a logarithmic knob: the state changes by about its own size where f changes by a tenth.
+_LOGARITHMIC = 10.0
+#: Length of the whole range of a linear knob.
+_LINEAR = 20.0
 
 
 @dataclass(frozen=True)

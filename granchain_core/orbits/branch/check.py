@@ -11,9 +11,11 @@ from .walk import LONGEST, Arm
 
 #: Neighbours may be so much farther apart than the longest step: correction goes across it.
 _APART = 1.2
-#: Liouville's sum of logarithms: error of the tangents relative to the largest entry of the monodromy matrix, and
-#: what is allowed on top. Where the smallest multiplier is below that error the sum says nothing.
-_TANGENTS, _LIOUVILLE = 1e-11, 1e-5
+#: Error of the tangents relative to the largest entry of the monodromy matrix. Where the smallest multiplier is below
+#: that error, Liouville's sum of logarithms says nothing.
+_TANGENTS = 1e-11
+#: Error of Liouville's sum that is allowed beyond that of the tangents.
+_LIOUVILLE = 1e-5
 
 
 def check_branch(branch: Branch) -> list[str]:

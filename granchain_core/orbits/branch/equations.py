@@ -16,11 +16,16 @@ from ...stop import Stop
 from ..flow import Flow, StroboscopicMap
 from .axis import KnobAxis
 
-#: Residual at which a point is good, and the most that is accepted where rounding does not let it fall so far.
-GOOD, ACCEPTED = 1e-11, 1e-10
-#: Newton's iterations at most; below the residual _LAST the next is the last, and below _NEAR the last derivative
-#: serves once more.
-_MOST, _LAST, _NEAR = 8, 1e-6, 1e-4
+#: Relative residual at which Newton's method stops.
+GOOD = 1e-11
+#: Largest residual that is accepted where rounding does not let it fall that far.
+ACCEPTED = 1e-10
+#: Newton's iterations at most.
+_MOST = 8
+#: A step with the last derivative follows each of Newton's that began above this residual.
+_LAST = 1e-6
+#: It is taken if the residual is below this.
+_NEAR = 1e-4
 #: Difference in p: between the curvature of the map and its rounding (1e-13).
 _DIFFERENCE = 1e-6
 

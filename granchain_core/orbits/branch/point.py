@@ -19,8 +19,10 @@ from .equations import BranchEquations, Solved
 _TOLERANCE = 1e-11
 #: Turning points of overlaps there is room for at first, for each contact and period.
 _ROOM = 32
-#: Contact counts of a contact that never changes: always open, always closed.
-_OPEN, _CLOSED = 0, -1
+#: Count of the closings of a contact that is always open.
+_OPEN = 0
+#: The same of one that is always closed.
+_CLOSED = -1
 
 
 @dataclass(frozen=True, eq=False)

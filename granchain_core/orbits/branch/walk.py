@@ -16,18 +16,29 @@ from .equations import BranchEquations, Solved, relative_change, said
 from .point import BranchPoint, branch_point
 from .special import SpecialPoint, special_between
 
-#: First, longest and shortest step in arclength.
-FIRST, LONGEST, SHORTEST = 0.02, 0.4, 1e-7
-#: Newton's iterations up to which a step grows, and from which it shrinks.
-_EASY, _HARD = 3, 5
-#: Turns of the tangent (cosines) up to which a step grows, and beyond which it is rejected.
-_STRAIGHT, _BENT = np.cos(np.radians(10.0)), np.cos(np.radians(30.0))
-_GROW, _SHRINK = 2.0, 0.6
+#: First step in arclength.
+FIRST = 0.02
+#: Longest step.
+LONGEST = 0.4
+#: Shortest step.
+SHORTEST = 1e-7
+#: A step after at most this many of Newton's iterations grows.
+_EASY = 3
+#: A step after at least this many shrinks.
+_HARD = 5
+#: Cosine of the tangent's turn up to which a step grows.
+_STRAIGHT = np.cos(np.radians(10.0))
+#: Cosine of the turn beyond which a step is rejected.
+_BENT = np.cos(np.radians(30.0))
+#: Factors by which a step grows and shrinks.
+_GROW = 2.0
+_SHRINK = 0.6
 #: The corrected point may lie this part of the step from the predicted one.
 _OFF = 0.3
-#: A step passes the seed if that lies this near to it, relative to its length; it has closed if the corrected point
-#: is the seed to this.
-_PASSES, _CLOSED = 0.2, 1e-7
+#: A step passes the seed if the seed lies this near to it, relative to its length.
+_PASSES = 0.2
+#: The branch has closed if the corrected point is this near to the seed.
+_CLOSED = 1e-7
 #: A state that comes back this near, relative to its largest entry, before its period has a shorter one.
 SHORTER = 1e-8
 #: Points from the seed on before the branch may close on itself.
