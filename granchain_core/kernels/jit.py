@@ -4,8 +4,8 @@
 * No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`, which let an absent effect's
   neutral elements fold away and sums be vectorised.
 * Numba does not notice edits in *imported* kernels, so the cache folder is named by a hash of all sources in
-  this package and of the kind of processor: any edit starts an empty cache, an unchanged tree compiles nothing in
-  the second process.
+  this package and of the kind of processor: any edit starts an empty cache, and with an unchanged tree the second
+  process compiles nothing.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def by_slot(absent, forceinline=False):
         return register
 
     def absent_for(*slot_classes):
-        """Let slots of these classes be as good as absent to this function."""
+        """Use the code of an absent effect for slots of these classes."""
         implementations.update(dict.fromkeys(slot_classes, absent))
 
     generic.of, generic.absent_for, generic.implementations = of, absent_for, implementations

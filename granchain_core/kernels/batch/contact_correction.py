@@ -45,7 +45,7 @@ def _(law, r, half, speed, h):
 
 @by_slot
 def correct_displacement(law, values, y, c, changed, path):
-    """Take the path's excess from the displacements on both sides of contact c. Absent: there is none."""
+    """Subtract the displacement error from both sides of contact c. Absent: there is none."""
 
 
 @correct_displacement.of(*LAWS)

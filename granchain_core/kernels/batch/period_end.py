@@ -51,7 +51,7 @@ _LEFT = 0.97
 _NO_MORE = 400
 #: Decay reported for a disturbance that did not shrink in the end: the multipliers are then computed.
 _NEARLY_ONE = 0.9999
-#: Slowest decay that an extrapolation is taken to have removed: slower ones are not measured well enough.
+#: Slowest decay that counts as removed by an extrapolation: slower ones are not measured well enough.
 _SLOWEST = 0.98
 #: Columns of a fine member's record: period, rate, the coarse run's largest forces, orbits a round, rounds.
 PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
@@ -84,14 +84,14 @@ def place_member(state, lane, where):
     for c in range(m - 1):
         state.gaps[c, lane] = 0.0
     for row in range(4):
-        state.ends[row, lane] = 1.0  # closed: what follows is no closing
+        state.ends[row, lane] = 1.0  # counts as closed, so that no closing is recorded here
     state.kept[lane] = 0
     keep_member_strobe(state, lane)
 
 
 @kernel
 def follow(state, lane, n, rate, change):
-    """Put a lane where its last strobes, n periods apart, lead, if that is within reach; whether it was."""
+    """Put a lane into the limit of its last strobes, n periods apart, if that is within reach; whether it was."""
     kept = state.kept[lane]
     if kept < ORBITS * n + 1 or not 0.0 < rate < 1.0:
         return False
@@ -109,7 +109,7 @@ def follow(state, lane, n, rate, change):
 
 @kernel
 def check_coarse(state, lane):
-    """See what a lane's last strobes show and follow what they approach; whether it is periodic."""
+    """Whether a lane's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
     kept, periods = state.kept[lane], state.periods[lane]
     period, rate, distance, n, its_rate, change = find(
         state.strobes[lane, max(0, kept - SEEN) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
@@ -132,7 +132,7 @@ def check_coarse(state, lane):
     if periods < state.ready[lane] or left <= SETTLED_DISTANCE:
         return False
     if log(SETTLED_DISTANCE / left) > _TOO_LONG * log(its_rate):
-        return False  # it is there sooner by itself
+        return False  # it settles sooner without extrapolation
     copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
     copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
     if follow(state, lane, n, its_rate, change):
@@ -147,7 +147,7 @@ def check_coarse(state, lane):
 
 @inline_numba
 def disturb(state, lane, period):
-    """Push a lane off the orbit it seems to be on and note the orbit's state and forces."""
+    """Disturb a lane that seems to be on an orbit, keeping the orbit's state and forces."""
     kept, m = state.kept[lane], state.limit.shape[1]
     for q in range(2):
         copy(state.strobes[lane, kept - 1, q], state.before[lane, q])
@@ -162,7 +162,7 @@ def disturb(state, lane, period):
 
 @inline_numba
 def decayed(state, lane):
-    """Whether the disturbance of a lane has become smaller; the lane is then put back, and its decay is known."""
+    """Whether the disturbance of a lane has decayed; the lane is then put back on its orbit, and the decay is kept."""
     n, m = state.testing[lane], state.limit.shape[1]
     state.testing[lane] = 0
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0

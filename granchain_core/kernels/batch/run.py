@@ -52,7 +52,7 @@ class BatchState(NamedTuple):
     phase (2, 8)             sin and cos of the drive phase
     peaks (17, 8)            largest forces
     steps, left (8,)         steps in a period, and those left of it
-    periods, look (8,)       periods run, and the period at which the kernel returns in any case
+    periods, look (8,)       periods run, and the period at which the kernel returns at the latest
     earliest (8,)            next period at which the strobes are checked
     ready, wait (8,)         period from which a transient may be extrapolated, and the pause after a failed attempt
     kept (8,)                number of strobes
@@ -141,7 +141,7 @@ def run_batch(lanes, state, stop):
 
 @inline_numba
 def renormalise(state, m, start, growth, lane):
-    """Note by how much a pair of lanes has parted in a period and pull the second back to the distance `start`."""
+    """Record how much a pair of lanes has parted in a period, and reset the second to the distance `start`."""
     y, total = state.y, 0.0
     for i in range(2 * m):
         total += (y[i, lane + 1] - y[i, lane]) ** 2
@@ -155,7 +155,8 @@ def renormalise(state, m, start, growth, lane):
 def run_pairs(lanes, state, start, growth, stop):
     """Run lanes in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
 
-    growth (4, P) holds the logarithm of each period's growth; pairs that are never to be looked at are left out.
+    growth (4, P) holds the logarithm of each period's growth; only pairs whose `look` is P count,
+    the others are not in use.
     """
     m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
     while busy:

@@ -17,7 +17,7 @@ from ..simd.vector import blank, load, positive_mask, store
 
 
 class Values(NamedTuple):
-    """What the lanes' scenes are made of, in registers where it is one number a scene."""
+    """Values of the lanes' scenes, in registers where it is one number a scene."""
 
     wall: Any
     law: Any
@@ -84,7 +84,7 @@ def _(law, unequal, i, w, difference):
 
 
 class Ends(NamedTuple):
-    """What is known of the chain's two ends where a step begins: elastic forces and the beads' velocities."""
+    """The chain's two ends at the start of a step: elastic forces and the beads' velocities."""
 
     pushed: Any
     v_first: Any
@@ -97,7 +97,7 @@ def batch_step(values, y, h, u0, middle, end):
     """One RK4 step in place, the driver at u0, at `middle` and at `end`; returns the `Ends` where it began.
 
     The four stages run along the chain one bead behind another, so that a step goes through memory once. The stages'
-    states y1, y2, y3 are all there is to remember: y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
+    states y1, y2, y3 are enough for the result: y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
     """
     m, n = values.last + 2, values.last
     half, sixth, third = 0.5 * h, (1.0 / 6.0) * h, 1.0 / 3.0

@@ -1,4 +1,4 @@
-"""A sign change between two values, narrowed look by look: regula falsi that halves the end that stays (Illinois)."""
+"""A bracketed sign change, narrowed step by step: regula falsi that halves the end that stays (Illinois)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def between(low, high, f_low, f_high):
 
 @kernel
 def narrowed(low, high, f_low, f_high, side, x, f):
-    """(low, high, f_low, f_high, side) after a look at x with the value f; `side` is the end that moved, −1 or 1."""
+    """(low, high, f_low, f_high, side) once x has the value f; `side` is the end that moved, −1 or 1."""
     if (f > 0.0) == (f_low > 0.0):
         return x, high, f, 0.5 * f_high if side < 0 else f_high, -1
     return low, x, 0.5 * f_low if side > 0 else f_low, f, 1

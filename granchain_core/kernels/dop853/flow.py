@@ -1,4 +1,4 @@
-"""The flow over whole drive periods, contact event by contact event, with the tangents one asks for.
+"""The flow over whole drive periods, contact event by contact event, with or without tangents.
 
 With `tangent` None there is no code for tangents. The events are written into a log: the sequence in which contacts
 open and close is what changes where an orbit grazes.
@@ -18,7 +18,7 @@ from .flow_events import flow_step
 from .step import evaluate, new_scale
 from .time_map import time_at
 
-#: Steps in one period after which it is given up.
+#: Most steps in one drive period.
 _MOST_STEPS = 5_000_000
 
 

@@ -1,9 +1,9 @@
 """One attempt of the flow's step: Dormand–Prince 8 in the time in which the motion is smooth, and what changes in it.
 
 Which contacts are closed is kept beside the state (`Held` in the workspace's forces) and does not change within a step,
-so that neither the motion's nor the tangents' slopes jump there. An onset is met from in front of it, where nothing is
-singular yet; a release is aimed at: its time is guessed, the step ends there in the time that goes with the root of the
-distance, and Newton's method on the overlap found corrects the guess.
+so that neither the motion's nor the tangents' slopes jump there. An onset is located from before it, where nothing is
+singular yet. The time of a release is estimated, the step ends there in a time variable that is the root of the
+distance, and Newton's method on the resulting overlap corrects the estimate.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Path(NamedTuple):
 
 @by_slot
 def keep_gaps(tangent, slots, state, stage):
-    """Keep the overlaps of one stage for the tangents. Absent: nobody needs them."""
+    """Keep the overlaps of one stage for the tangents. Absent: there are no tangents."""
 
 
 @kernel

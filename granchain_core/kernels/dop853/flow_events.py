@@ -33,7 +33,7 @@ _LOST = -1
 
 @inline_numba
 def next_release(slots, y, path):
-    """(contact, time) to the release that is nearest if its speed stays, (−1, ∞) if no contact opens."""
+    """(contact, time left) of the nearest release at present speeds, (−1, ∞) if no contact opens."""
     contact, first = -1, np.inf
     for c in range(path.closed.size):
         if path.closed[c] != 0:
@@ -74,7 +74,7 @@ def grown(h, error):
 
 @inline_numba
 def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
-    """Step from t towards the release of contact c, guessed at `goal`: onto it, or part of the way.
+    """Step from t towards the release of contact c, estimated at `goal`: onto it, or part of the way.
 
     Returns (status, time, size, c or −1, goal), with a status of _LOST where the contact does not open there.
     """

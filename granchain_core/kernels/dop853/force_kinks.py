@@ -1,7 +1,7 @@
 """Where a contact whose tension is cut stops pushing, or pushes again, while its beads still touch.
 
 There F = K δ^{3/2} + g(δ) δ̇ = 0: the force has a kink, at which an error-controlled step is to end. Its sign is that of
-F/g = K δ^{3/2}/g(δ) + δ̇, which unlike F goes through zero nowhere else, not even at δ = 0.
+F/g = K δ^{3/2}/g(δ) + δ̇, which unlike F passes through zero nowhere else, not even at δ = 0.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ..status import EVALUATIONS
 from .bracket import between, narrowed
 from .step import STAGES, dense_value, evaluate, prepare_dense
 
-#: A kink nearer to an end of the step than this changes the motion by less than rounding, its square.
+#: A kink nearer to an end of the step than this changes the motion by less than rounding: by its square.
 _NEAR = 1e-8
 #: A contact whose F/g is a smaller part of the largest velocity is at rest ahead of a wave: its sign is rounding.
 _STILL = 1e-15

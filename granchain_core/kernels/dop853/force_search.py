@@ -23,9 +23,9 @@ from .tableau import STAGES
 #: Golden sections around the top of a force; each shrinks the bracket to 0.618 and the top's error, as it is flat, to
 #: 0.382.
 _SECTIONS = 24
-#: A step whose ends are below this part of the largest force so far is not looked into.
+#: A step whose ends are below this part of the largest force so far is not searched.
 _FAINT = 0.3
-#: A top that the cubic through values and slopes at both ends puts below this part of it is not searched.
+#: A maximum that the cubic through values and slopes at both ends estimates below this part of it is not searched.
 _WORTH = 0.98
 _RATIO = 0.6180339887498949
 
@@ -103,7 +103,7 @@ def is_monotone(f0, s0, f1, s1, h):
 
 @kernel
 def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
-    """Raise the largest forces to what the step from y holds; whether its dense output is prepared now.
+    """Raise the largest forces to those in the step from y; whether its dense output is prepared now.
 
     work.k[0] and work.k[12] are its slopes at both ends. A force that rises or falls throughout is largest at an end.
     """

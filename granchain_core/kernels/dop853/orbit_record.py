@@ -1,6 +1,6 @@
 """A run along an orbit that keeps the turning points of all overlaps and the largest forces.
 
-Each accepted step of the certified method is looked at on its dense output. A contact's overlap has a turning point
+Each accepted step of the certified method is searched on its dense output. A contact's overlap has a turning point
 where its bodies move equally fast; the smallest of these are the touches and separations about to appear or vanish. The
 largest forces are searched inside the steps (dop853/force_search.py).
 """
@@ -58,7 +58,7 @@ def follow_turns(slots, beta, t, h, y, work, since, record, row):
 
 @kernel
 def record_orbit(method, slots, beta, period, periods, y, work, clock, record, counts, stop):
-    """Run whole periods from phase 0 and fill `record`. Returns (status, periods done, turning points met)."""
+    """Run whole periods from phase 0 and fill `record`. Returns (status, periods done, number of turning points)."""
     m, row = slots.chain.inverse_mass.size, 0
     evaluate(slots, beta, 0.0, y, work.k[0], work.forces)
     for p in range(periods):

@@ -1,8 +1,8 @@
 """Event-located, error-controlled integration: DOP853 in w, restarted where a contact opens or closes.
 
-The slope is continuous across an event but its derivative is not, and behind onset the solution carries a
-(t − t_e)^{5/2}: no smooth method keeps its order across. So every contact event inside a step is located on
-the dense output, the step is repeated to end just past it, and the next one starts small.
+The slope is continuous across an event but its derivative is not, and behind an onset the solution has a term
+(t − t_e)^{5/2}: no method for smooth equations keeps its order across. So every contact event inside a step is located
+on the dense output, the step is repeated to end just past it, and the next one starts small.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def may_turn(d0, s0, d1, s1, sign):
     """Whether a contact with the same sign at both ends may cross zero in between.
 
     It must move towards zero first and away last; then the smaller of the two straight continuations bounds how
-    near it can come, up to the curvature of a step the error control accepted, for which a factor is allowed.
+    near it can come, up to the curvature in a step that the error control accepted.
     """
     if not (sign * s0 > 0.0 and sign * s1 < 0.0):
         return False
@@ -231,7 +231,7 @@ def run_certified(method, slots, beta, period, y, work, clock, first, points, gr
                   stop):
     """Run over `points` points of a grid of `grid` points a period, starting at grid point `first`.
 
-    With every > 0 the largest forces are followed and closings noted in `log`, and each every-th grid point is kept in
+    With every > 0 the largest forces and closings are recorded in `log`, and each every-th grid point is kept in
     `samples`, whose row 0 is the start; with every = 0 nothing is recorded. Returns (status, rows or points done).
     """
     m = slots.chain.inverse_mass.size

@@ -23,7 +23,7 @@ class Dop853(NamedTuple):
 class Work(NamedTuple):
     """Workspace: slopes k (16, M), stage, step end, probe and its slope (M,), dense output (7, M), forces.
 
-    `scale` (2,) is the largest displacement and largest w met so far, what the tolerance is relative to.
+    `scale` (2,) is the largest displacement and the largest w so far, to which the tolerance is relative.
     """
 
     k: np.ndarray
@@ -131,7 +131,7 @@ def dense_value(dense, y0, x, i):
 
 @kernel
 def new_scale(y, work, m):
-    """Let the scale the tolerance is relative to grow with the motion."""
+    """Let the scale of the tolerance grow with the motion."""
     for row in range(2):
         for i in range(row * m + 1, row * m + m - 1):
             work.scale[row] = max(work.scale[row], abs(y[i]))

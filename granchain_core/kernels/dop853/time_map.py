@@ -5,9 +5,9 @@ motion has no Taylor series in t there; in s it has one, where
 
     t = t_e + s^p  behind an onset,    t = t_e − s^p  before a release,    p = 2
 
-and p = 4 for damping ∝ δ^{1/4} or δ^{3/4}, whose G goes with the power 5/4 or 7/4. One step of Dormand and Prince then
-reaches from an event as far as anywhere else, motion and tangents alike, where error control in t would creep away from
-it.
+and p = 4 for damping ∝ δ^{1/4} or δ^{3/4}, whose G goes with the power 5/4 or 7/4. A step of Dormand and Prince that
+begins at an event is then as long as anywhere else, for motion and tangents alike; in t, error control would have to
+begin with tiny steps.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ Method     Both integrands jump with the dashpot force. Integrated by parts they
              W = ∫ (e_0 v_0 − G_0 v̇_0) dt + G_0 v_0
              Q = −∫ Σ_c G_c (ẇ_c − ẇ_{c+1}) dt + Σ_c G_c (δ̇_c − γ_c/2),   γ_c = δ̇_c − (w_c − w_{c+1}),
            because Σ γ_c dG_c is the differential of a quadratic form in G. Body 0 has w_0 = v_0.
-           What the tension cut adds to a force does work of its own, x_c δ̇_c, and is added to Q̇.
+           The force x_c that the tension cut adds does work of its own, x_c δ̇_c, which is added to Q̇.
 Absent     nothing is integrated: curves and settling do not need it
 """
 
@@ -40,7 +40,7 @@ def _(balance, slots, y, dy, e):
     for c in range(e.size):
         d = positive_part(overlap(slots.preload, y, c))
         G = contact_primitive(slots.tension, slots, y, c, d)
-        # what a slack contact loses of its elastic energy is known at the step's end: `lost_in`
+        # the elastic energy that a slack contact loses is known at the step's end: `lost_in`
         cut = e[c] - unless_slack(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
         lost += cut * (dy[c] - dy[c + 1]) - G * (dy[m + c] - dy[m + c + 1])
         if c == 0:
@@ -52,7 +52,7 @@ def _(balance, slots, y, dy, e):
 
 @by_slot
 def slack_loss(balance, slots, y, end):
-    """What slack contacts lose from y to `end`, where it is accounted for. Absent: nothing is."""
+    """Energy that slack contacts lose from y to `end`. Absent: there is no account."""
     return 0.0
 
 
@@ -74,7 +74,7 @@ def _(balance, y, work, lost):
 
 @kernel
 def account_ends(slots, y, dy):
-    """What integration by parts leaves at a state: to be added to the integrals of W and of Q."""
+    """Boundary terms of the integration by parts at a state, to be added to the integrals of W and of Q."""
     m = slots.chain.inverse_mass.size
     lost, work = 0.0, 0.0
     for c in range(m - 1):
@@ -90,7 +90,7 @@ def account_ends(slots, y, dy):
 
 @by_slot
 def ends_of(balance, slots, y, dy):
-    """`account_ends` where there is an account. Absent: nothing is left."""
+    """`account_ends` where there is an account. Absent: zero."""
     return 0.0, 0.0
 
 

@@ -24,7 +24,7 @@ class Chain(NamedTuple):
 
 
 class Held(NamedTuple):
-    """Slot of contacts that stay as they are while a step is tried: closed (N+1,) is 0 where one stays open."""
+    """Slot of contacts whose state is fixed while a step is tried: closed (N+1,) is 0 where one stays open."""
 
     closed: np.ndarray
 
@@ -48,7 +48,7 @@ def _(held, c, overlap):
 
 @inline_llvm
 def three_halves(s):
-    """s^{3/2}, as the elastic force goes."""
+    """s^{3/2}, the power of the elastic force."""
     return s * root(s)
 
 

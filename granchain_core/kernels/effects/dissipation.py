@@ -5,7 +5,7 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              Tsuji           a = 1/4   Tsuji, Tanaka & Ishida 1992
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
 Values     coefficient: λ in scaled units, at an overlap of one length unit where a > 0
-Law        its `exponent` a and its `power` δ^a; all other terms, here and in other files, are made of these two
+Law        its `exponent` a and its `power` δ^a; all other terms, here and in other files, follow from these two
 Terms      damping, damping_slope, primitive, shape = G/λ, velocity and its inverse shifted (absent: v = w);
            keep_primitive, put_primitive and put_prescribed_primitive write into the array of G, batch_values reads the
            lanes of a batch
@@ -82,7 +82,7 @@ def _(law, d, r):
 
 
 def checked(*laws):
-    """The laws, each checked to be complete; TypeError says by name which law lacks what."""
+    """The laws, each checked to be complete; a TypeError names the law and the missing term."""
     for law in laws:
         require_terms(law, exponent, power)
         if law._fields != ("coefficient",):
@@ -142,7 +142,7 @@ def primitive_factor(law):
 
 @inline_llvm
 def primitive_power(law, s):
-    """s^{1+a}, as G goes."""
+    """s^{1+a}, the power of G."""
     return s * power(law, s, root(s))
 
 
@@ -180,7 +180,7 @@ def _(law, G, c, d):
 
 @by_slot
 def put_primitive(law, G, c, value):
-    """Store another value for G of contact c; without dissipation there is no array to store it in."""
+    """Store a given value of G of contact c; without dissipation there is no array to store it in."""
 
 
 @put_primitive.of(*LAWS)
@@ -190,7 +190,7 @@ def _(law, G, c, value):
 
 @by_slot
 def put_prescribed_primitive(law, G, source, target):
-    """G of one contact is that of another too; without dissipation there is none."""
+    """Copy G of contact `source` to contact `target`; without dissipation there is none."""
 
 
 @put_prescribed_primitive.of(*LAWS)
@@ -222,12 +222,12 @@ def _(law, inverse_mass, v, G, i):
 
 @by_slot
 def batch_values(law):
-    """The law with the values of all lanes, read from its (1, 8) arrays; what multiplies `shape` in the first."""
+    """The law with the values of all lanes, read from its (1, 8) arrays."""
     return None
 
 
 def _read_by_lane(slot):
-    """Code of `batch_values` for a law: a compiled function makes a slot of a class that it knows by name."""
+    """Code of `batch_values` for a law: a compiled function can only make slots of a class named in its source."""
 
     @batch_values.of(slot)
     def _(law):

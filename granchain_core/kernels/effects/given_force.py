@@ -73,7 +73,7 @@ def _(driver, u0):
 
 @by_slot
 def prescribe_primitive(driver, slots, y, G):
-    """Put the input force's G where it pushes another chain. Absent: nothing."""
+    """Copy the input force's G to the contact of the observer. Absent: nothing."""
 
 
 @prescribe_primitive.of(Harmonic)

@@ -1,7 +1,7 @@
-"""What one would write first: the equations in (u, v), whose dashpot force jumps, with fixed steps across everything.
+"""The usual first attempt: the equations in (u, v), whose dashpot force jumps, with fixed steps across all events.
 
 Equation   m_i v̇_i = F_{i-1} − F_i − k u_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
-Purpose    shown beside the other methods, to see what the w-variables and located events are worth
+Purpose    shown beside the other methods, to measure the gain of w-variables and located events
 The second row of the state holds v here, not w; nothing else differs for the rest of the program.
 """
 
@@ -34,7 +34,7 @@ class VerletNaive(NamedTuple):
 
 @kernel
 def naive_motion(slots, u0, v0, y, dy, forces):
-    """dy/dτ in (u, v); leaves the elastic forces (with what a cut adds to them) in forces.e, as `motion` does."""
+    """dy/dτ in (u, v); leaves the elastic forces (with those that a cut adds) in forces.e, as `motion` does."""
     inverse_mass = slots.chain.inverse_mass
     m = inverse_mass.size
     y[0], dy[0] = u0, v0

@@ -1,11 +1,11 @@
-"""The largest forces of a motion: their suprema over the time watched, the jumps of closing contacts included.
+"""The largest forces of a motion: their suprema over the recorded time, the jumps of closing contacts included.
 
 Equation   F = K δ^{3/2} + g(δ) δ̇.  With a linear dashpot F jumps from 0 to λδ̇ at the instant a contact closes. The
            value behind the jump, its right limit, counts: it is often the largest force there is
-Method     Between two states the force is the cubic with its values and slopes at both. At an event it is watched on
+Method     Between two states the force is the cubic with its values and slopes at both. At an event it is evaluated on
            either side: nothing is interpolated across a jump or a kink. Methods that do not locate events find the
-           closing by their own crossing: without its own damping force the rate of an overlap is smooth, and
-           its parabola gives the rate at the instant at which the overlap is zero
+           closing as the zero of a smooth quantity: without the contact's own damping the rate of an overlap is
+           smooth, and its parabola gives the rate at the instant at which the overlap is zero
 Source     Zhang et al. 2016, eq. (1), for the force; docs/model.md for the definition
 """
 
@@ -27,8 +27,8 @@ from ..rk4.contact_events import GAP, RATE, TINY, hermite_turn
 from ..simd.functions import clip, root
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 
-#: A force below this part of the largest so far is watched without its slope: a top is higher than the ends of its step
-#: by h²/8 of its curvature, some per cent of it.
+#: A force below this part of the largest so far is followed without its slope: a maximum inside a step exceeds the
+#: step's ends by h²/8 of its curvature, which is some per cent of it.
 _FAINT = 0.9
 #: Largest rise or fall of a force in one step, over its value: behind a closing, where g has an
 #: infinite slope, the cubic's slope is bounded by this.
@@ -39,10 +39,10 @@ CLOSED, UNRESOLVED, SAMPLE = range(3)
 
 
 class ForceLog(NamedTuple):
-    """What is known of the forces: the largest so far, the last ones watched, and the jumps.
+    """The forces so far: the largest, the last ones followed, and the jumps.
 
     `peaks` (17,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value and
-    slope of each force at the last state watched. Rows of `closings` (C, 4) are the number of the last sample before a
+    slope of each force at the last state followed. Rows of `closings` (C, 4) are the number of the last sample before a
     contact closed, the drive phase θ, the contact and the force behind the jump; `met` (3,) are the numbers CLOSED,
     UNRESOLVED and SAMPLE.
     """
@@ -139,7 +139,7 @@ def watch_beside(slots, y, dy, e, h, event, closed, log):
 
 @inline_llvm
 def watch_state(slots, y, dy, e, h, log):
-    """The same where no contact changes; three values where none of them can be part of a top."""
+    """The same where no contact changes; only the values where none of the three can be part of a maximum."""
     last, peaks = e.size - 1, log.peaks
     pushed, passed = contact_force(slots, y, dy, e, 0), contact_force(slots, y, dy, e, last)
     elastic = elastic_force(slots.chain.stiffness[last], positive_part(overlap(slots.preload, y, last)))
@@ -176,7 +176,7 @@ def watch_ends(slots, ends, c, theta, log):
 
 @by_slot
 def note_closing(law, rate, c, last, theta, log):
-    """Note the jump of contact c that closes at `rate` at drive phase θ. Absent, and where g(0) = 0: there is none."""
+    """Record the jump of contact c, which closes at `rate` at drive phase θ. Absent, and where g(0) = 0: none."""
 
 
 @note_closing.of(*JUMP_LAWS)
@@ -198,7 +198,7 @@ def _(law, rate, c, last, theta, log):
 
 @by_slot
 def note_closings(law, slots, y, dy, end, end_slope, theta, dtheta, log):
-    """Note the contacts that closed in a located step from y at drive phase θ to `end`. Absent: no force jumps there.
+    """Record the contacts that closed in a located step from y at drive phase θ to `end`. Absent: no force jumps there.
 
     The step ends just behind an event; one that was too near to its start to be told from it belongs to that.
     """
@@ -224,8 +224,8 @@ note_closings.absent_for(*SMOOTH_LAWS)
 def closing_rate(before, after, rate, open_rate, own, h):
     """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
 
-    `rate` is δ̇ before. `open_rate` is δ̇ after without what the contact's own damping took from it since the closing,
-    own·δ. Between the two the rate is a parabola, whose integral is the overlap's own change. For numbers and vectors.
+    `rate` is δ̇ before. `open_rate` is δ̇ after plus own·δ, by which the contact's own damping has reduced it since then.
+    Between the two the rate is a parabola, whose integral is the overlap's own change. For numbers and vectors.
     """
     s = before / (before - after)
     closed = 0.5 * (1.0 - s) * after
@@ -243,7 +243,7 @@ def closing_rate(before, after, rate, open_rate, own, h):
 
 @inline_llvm
 def brief_touch(before, after, rate, rate_after, h):
-    """λ = 1 times the jump of a touch within a step: √(2 a δ_max) for an overlap with constant acceleration −a.
+    """Rate at which a touch within a step closes: √(2 a δ_max) for an overlap with constant acceleration −a.
 
     The overlap is negative at both ends of the step and turns in between; 0 or a NaN where it does not touch. For
     numbers and vectors.
@@ -267,7 +267,7 @@ def _(law, slots, y, dy):
 
 @by_slot
 def watch_crossings(law, slots, before, y, dy, h, theta, dtheta, log):
-    """Note which end contacts closed between two states a step apart, for methods that look for no events.
+    """Record which end contacts closed between two states a step apart, for methods that do not locate events.
 
     `before` are the overlaps and rates of `end_overlaps` at the first of them.
     """
@@ -285,7 +285,7 @@ def _(law, slots, before, y, dy, h, theta, dtheta, log):
 
 @inline_llvm
 def watch_crossing(law, slots, c, before, rate, y, dy, h, theta, dtheta, log):
-    """Note whether contact c, open at the start of the step, closed in it or touched."""
+    """Record whether contact c, open at the start of the step, closed in it or touched."""
     after, rate_after = overlap(slots.preload, y, c), dy[c] - dy[c + 1]
     if after > 0.0:
         own = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])

@@ -8,10 +8,11 @@ from ..jit import inline_llvm, kernel
 from ..simd.functions import choose_peak, larger
 from ..simd.vector import load, positive_mask, store
 
-#: Rows of what is remembered of one force: the largest so far, then the last four values, newest first.
+#: Values kept of one force: the largest so far, then the last four values, newest first.
 ROWS = 5
 
-#: Largest top of the quartic, over the largest of its values: its neighbours are near (choose_peak).
+#: The quartic's maximum is at most this factor times the largest of its values, since only smooth peaks are
+#: interpolated (`choose_peak`).
 HIGHEST = 1.25
 
 #: Where the memories of the three forces start in an array of peaks, and how many values they take.
@@ -48,7 +49,7 @@ def watch(peaks, row, value):
 
 @kernel
 def forget(peaks):
-    """Start watching afresh."""
+    """Reset the largest value and the last values."""
     for i in range(MEMORY):
         peaks[i] = -np.inf if i % ROWS == 0 else 0.0
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0

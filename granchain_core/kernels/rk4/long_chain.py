@@ -56,7 +56,7 @@ def steps_without_events(simd, slots, drive, j, count, dtheta, h, y, peaks):
         first_before, last_before = first, last
         first, last = comes_nearer(simd, slots, v0)
         if done > 0:
-            # one that came nearer and now goes away from zero may have been beyond it in between
+            # an overlap that came nearer to zero and now moves away may have crossed it in between
             if changed or (first_before and not first) or (last_before and not last):
                 pack(before, blocks, y, m)
                 return done - 1

@@ -1,4 +1,4 @@
-"""A second chain close by, pulled back to the same small distance once a period: the growth of an error."""
+"""A second chain close by, reset to the same small distance once a period: the growth of a disturbance."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .step import step
 @kernel
 def run_two_trajectories(method, slots, drive, h, y, other, stages, shadow_stages, growth, strobes, forces, counts,
                          stop):
-    """Run y and `other` through growth.size periods, noting the log of each period's growth of their distance.
+    """Run y and `other` through growth.size periods, recording the logarithm of each period's growth of their distance.
 
-    Both start at phase 0 with their slopes in place; strobes (P, 2, N+2) are those of y. The forces of either go into
-    the log `forces`, which nobody reads. Returns (status, periods).
+    Both start at phase 0 with their slopes in place; strobes (P, 2, N+2) are those of y. The forces of both go into
+    the log `forces`, which is not used. Returns (status, periods).
     """
     n = method.steps_per_period
     dtheta = 2.0 * np.pi / n

@@ -17,7 +17,7 @@ def run_observed(method, slots, spans, pieces, substeps, y, stages, drive, sampl
     """Run through all intervals and keep the state at every sample, the first one included.
 
     Interval i lasts spans[i], its force is the cubic pieces[i] (constant term first) and it is taken in substeps[i]
-    steps; `drive` is empty, so that the force is asked at every stage. Returns (status, rows filled).
+    steps; `drive` is empty, so that the force is evaluated at every stage. Returns (status, rows filled).
     """
     m = slots.chain.inverse_mass.size
     taken = 0

@@ -22,7 +22,7 @@ from .step import PATIENCE, drive_displacement, drive_velocity, step
 def advance(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
 
-    The stop flag is asked often enough to end within milliseconds; the steps are then incomplete.
+    The stop flag is read often enough to end within milliseconds; the steps are then incomplete.
     """
     for i in range(j, j + count):
         left = step(method, slots, drive, i, i * dtheta, dtheta, h, y, stages, log, counts)
@@ -97,7 +97,7 @@ def run_periods(method, slots, drive, h, y, stages, strobes, log, tops, counts, 
 def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples, log, counts, stop):
     """Run with a fixed-step method from step index `first_step` of the period, keeping every stride-th state.
 
-    Row 0 of `samples` is the state it starts from. Closings are noted in `log`. Returns (status, rows filled).
+    Row 0 of `samples` is the state it starts from. Closings are recorded in `log`. Returns (status, rows filled).
     """
     n = method.steps_per_period
     dtheta = 2.0 * np.pi / n

@@ -45,7 +45,7 @@ WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
 #: A step's beginning and its end in the workspace, and what is kept of each, one row a vector.
 BEGIN, END = 0, 1
 U, W, DU, NET_FORCE, ELASTIC, KEPT = range(6)
-#: Steps whose forces are looked through together.
+#: Steps whose forces are searched together.
 BLOCK = 32
 
 
@@ -111,7 +111,7 @@ def _(width, array, row):
 
 @by_slot
 def over_masses(law, inverse_mass):
-    """What multiplies differences of shapes of G: its coefficient over the masses. Absent: nothing does."""
+    """The damping coefficient over the masses, by which differences of shapes of G are multiplied. Absent: None."""
     return None
 
 

@@ -114,7 +114,7 @@ def run_short_chain(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, coun
             vb = drive_velocity(slots, drive, i + 2, dtheta)
             end = row_step(row, ua, ub, vb, h, x, nothing, nothing)
             closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
-            # another sign, or moved towards zero at first and away from it at last
+            # another sign, or moving towards zero at the start and away from it at the end
             if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
                 store_state(wide, BEGIN, x)
                 store_state(wide, END, end)

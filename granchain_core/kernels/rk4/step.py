@@ -58,7 +58,7 @@ class Stages(NamedTuple):
     simd: Any
 
 
-#: Steps after which the stop flag is asked at the latest.
+#: Most steps between two readings of the stop flag.
 PATIENCE = 4096
 
 
@@ -93,9 +93,9 @@ def rk4(slots, ua, va, ub, vb, h, y, stages):
 
 @inline_numba
 def may_change(slots, y, slope, end, end_slope):
-    """Whether a contact may open or close within the step: its overlap has another sign at the end, or turned.
+    """Whether a contact may open or close within the step: its overlap has another sign at the end, or turns.
 
-    An overlap that moves towards zero at first and away from it at last may have been beyond in between.
+    An overlap that moves towards zero at the start and away from it at the end may have crossed it in between.
     """
     changed = 0
     for c in range(slots.chain.stiffness.size):
@@ -138,8 +138,8 @@ def _(balance, excess, y):
 def step(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     """Advance y by one step from half-step index 2j of the drive table; slope in stages.k[0] before and after.
 
-    What happens to the forces inside the step is written to `log`. Returns how far behind the last state at which they
-    were followed the step ends.
+    Largest forces and jumps inside the step go into `log`. Returns the time from the last state at which they were
+    followed to the step's end.
     """
     raise NotImplementedError
 
@@ -183,7 +183,7 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
 def split(slots, theta, dtheta, u_end, v_end, h, y, stages, log, counts):
     """Repeat a step in which contacts change from event to event; leaves its end in stages.end.
 
-    Returns how far behind the last event the step ends.
+    Returns the time from the last event to the step's end.
     """
     ends, end, k = stages.ends, stages.end, stages.k
     reset_corrections(ends)

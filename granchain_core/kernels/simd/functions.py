@@ -20,7 +20,8 @@ from .vector import FLAGS, LANES, VectorType, as_vector, vector
 #: Whether kernels are compiled for this very machine and it has the instruction.
 _HAS_RSQRT14 = (numba.config.CPU_NAME is None and numba.config.CPU_FEATURES is None
                 and bool(llvmlite.binding.get_host_cpu_features().get("avx512f", False)))
-#: Smaller numbers than this have the root of none: squares of forces that no double can hold.
+#: Smallest number whose root is computed; smaller ones count as this. The force of such an overlap, with its power 3/2,
+#: underflows to zero.
 _LEAST = 1e-280
 
 
@@ -59,7 +60,7 @@ def _vector_root(typingctx, value):
 
 @intrinsic
 def root_by_series(typingctx, value):
-    """√ of every lane, all above zero, without the divider where the machine has a start for it."""
+    """√ of every lane, all above zero; where the machine has `vrsqrt14pd`, without the divider."""
 
     def codegen(context, builder, sig, args):
         if _HAS_RSQRT14:
@@ -71,7 +72,7 @@ def root_by_series(typingctx, value):
 
 @intrinsic
 def above_zero(typingctx, value):
-    """Every lane, or the least number whose root can be had where it is below that; a NaN stays one."""
+    """Every lane, raised to at least the smallest number whose root is computed; a NaN stays one."""
 
     def codegen(context, builder, sig, args):
         least = ir.Constant(args[0].type, [_LEAST] * args[0].type.count)

@@ -1,4 +1,4 @@
-"""Subnormal numbers taken for zero while a kernel runs: ahead of a wave they are all there is, and slow."""
+"""Subnormal numbers count as zero while a kernel runs: ahead of a wave all may be subnormal, which is slow."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _control_register(builder, name, pointer):
 
 @intrinsic
 def flush_subnormals(typingctx):
-    """From here on subnormal numbers are zero, as ahead of a wave they cost a hundredfold; returns what was before."""
+    """Take subnormal numbers for zero: arithmetic with them is a hundred times slower. Returns the old setting."""
 
     def codegen(context, builder, sig, args):
         if not _IS_X86:
@@ -39,7 +39,7 @@ def flush_subnormals(typingctx):
 
 @intrinsic
 def restore_subnormals(typingctx, before):
-    """Back to what `flush_subnormals` found."""
+    """Restore the setting that `flush_subnormals` returned."""
 
     def codegen(context, builder, sig, args):
         if _IS_X86:

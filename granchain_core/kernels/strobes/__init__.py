@@ -1,1 +1,1 @@
-"""Decisions on states a period apart: is the motion periodic, and where does it go."""
+"""Decisions on states a period apart: whether the motion is periodic, and the limit of a decaying transient."""

@@ -1,4 +1,4 @@
-"""Where a decaying sequence of states leads: reduced rank extrapolation.
+"""The limit of a decaying sequence of states: reduced rank extrapolation.
 
 Near its orbit the stroboscopic map is linear, x_{k+1} − x* = M (x_k − x*). With the differences d_j = x_{j+1} − x_j the
 weights ξ that make d_0 + Σ ξ_j (d_{j+1} − d_j) least give x* ≈ x_0 + Σ ξ_j d_j: the slowest modes are taken out.
@@ -13,7 +13,8 @@ from ..jit import kernel
 
 #: Differences used; k differences remove k − 1 slow modes.
 ORBITS = 8
-#: A second difference of which less than this is left beside the earlier ones says nothing new.
+#: A second difference is linearly dependent on the earlier ones if its orthogonal part is below this
+#: fraction of it.
 _DEPENDENT = 1e-9
 
 

@@ -1,4 +1,4 @@
-"""Decisions on stroboscopic states, compiled because a curve takes thousands: changes, decay, the shortest period.
+"""Decisions on stroboscopic states, compiled because a curve needs thousands: changes, decay, the shortest period.
 
 States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one a drive period; all changes are
 relative to the largest of either in the record.
@@ -18,12 +18,13 @@ LEAST_WINDOW = 8
 SETTLED_DISTANCE = 1e-6
 #: Changes below this are rounding of a fixed-step map.
 ROUNDING = 1e-12
-#: A change larger than this cannot have a distance bound that small: nothing decays a thousandfold in one period.
+#: A larger change cannot have such a small distance bound: nothing decays a thousandfold in one period.
 _FAR = 1e-3
 #: A change this much smaller than the required distance is accepted without a steady rate: a slow mode below it
 #: would have to decay a hundred times more slowly than what is observed.
 _DEEP = 1e-2
-#: A change over q periods that decays faster than this, per q periods, is going to zero and not to a longer orbit's.
+#: Changes over q periods that decay faster than this, per q periods, go to zero; else they may be those of a longer
+#: orbit.
 _APPROACHING = 0.97
 #: Changes below this may be extrapolated (kernels/strobes/extrapolation.py).
 _WORTH_A_JUMP = 1e-2
@@ -126,7 +127,7 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
 
     `period` is the smallest whose distance bound change·rate/(1 − rate) is at most `settled`; changes below
     `rounding` count as none, the rate is −1 where none was seen. `approached` is the first period over which changes
-    decay. `slowest` is a rate per drive period known to be in the motion whether these states show it or not.
+    decay. `slowest` is a rate per drive period that is known to occur, whether these states show it or not.
     `scale` (2,) and `change` (3·longest or more,) are workspaces.
     """
     run = strobes.shape[0] - 1
@@ -141,7 +142,7 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
             nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
         now = change_between(strobes, scale, run, run - n)
         if nearer or now > _WORTH_A_JUMP:
-            continue  # a shorter period is still being approached: this one's small change is that approach
+            continue  # a shorter period is being approached, which is why the change over this one is small
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
             return n, earlier_rate(strobes, scale, n, rounding, change), rounding, 0, 0.0, 0.0
