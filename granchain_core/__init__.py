@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from .stop import Stop
     from .store import load, save
 
-#: Public names by module. They are imported when they are first asked for, so that `import granchain_core` is quick.
+#: Public names by module. They are imported at first use, so that `import granchain_core` is quick.
 _MODULES = {
     "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
     "stop": ("Stop",),

@@ -1,4 +1,4 @@
-"""What one effect costs in a step: the same chain's kernel with it and without it, timed by turns.
+"""The cost of one effect in a step: the same chain's kernel with it and without it, timed alternately.
 
 There are two costs. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The
 live method also splits steps where contacts open or close, so an effect that changes the motion (a preload that keeps
@@ -25,12 +25,12 @@ _CHAINS = 7
 _TURNS = 7
 #: Time of one run [s]; about half a second in all.
 _RUN = 0.004
-#: Methods by which an effect is timed: its code alone, and its cost in this motion.
+#: Method that shows the cost of an effect's code alone.
 CODE = "rk4"
+#: Method that shows its cost in the motion of the live picture.
 MOTION = LIVE
-"""The methods that show the cost of an effect's code, and its cost in the live picture's motion."""
 
-#: Drive periods that are run before, so that the chain is in motion.
+#: Drive periods that are run before timing, so that the chain is in motion.
 _BEFORE = 3
 
 
@@ -44,7 +44,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class EffectCost:
-    """Nanoseconds a step with the effect and without, and what it adds: medians over pairs of chains.
+    """Nanoseconds a step with the effect and without, and their difference: medians over pairs of chains.
 
     `difference` is taken pair by pair, so that a machine that slows down for a while does not count as an effect;
     `spread` is the median distance of the pairs from it.
@@ -63,9 +63,9 @@ class EffectCost:
 
 def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: Stop | None = None,
                 pause: Callable[[], None] | None = None) -> EffectCost:
-    """Time both kernels by turns; `pause` is called before each. Raises `Cancelled`.
+    """Time both kernels alternately; `pause` is called before each. Raises `Cancelled`.
 
-    Of a pair's turns the fastest count, because a neighbour on the machine only ever makes a run slower.
+    Of a pair's runs the fastest count, because another process on the machine only ever makes a run slower.
     """
     stop = Stop() if stop is None else stop
     times = np.zeros((_CHAINS, _TURNS, 2))
@@ -76,7 +76,7 @@ def effect_cost(with_it: Variant, without: Variant, method: str = CODE, stop: St
             raise Cancelled
         if turn == 0:
             pair = [_Stepper(variant, method, stop) for variant in (with_it, without)]
-        order = (0, 1) if turn % 2 else (1, 0)  # neither is always the one that runs first
+        order = (0, 1) if turn % 2 else (1, 0)  # which one runs first alternates
         for place in order:
             times[chain, turn, place] = pair[place].nanoseconds_per_step()
     fastest = times.min(axis=1)

@@ -7,14 +7,14 @@ import time
 
 from ..stop import Stop
 
+#: Time between two checks of the outer flag and the clock [s].
 _LOOK = 0.01
-"""Seconds between two checks of the outer flag and the clock."""
 
 
 class Limited:
     """`with Limited(stop, seconds) as limit:` gives `limit.stop`, raised with `stop` or after `seconds`.
 
-    Afterwards it is `stop` itself that tells a cancelled computation from one that was merely too slow.
+    Afterwards `stop` distinguishes a cancelled computation, in which it is set, from one that was merely too slow.
     """
 
     def __init__(self, stop: Stop, seconds: float) -> None:

@@ -1,6 +1,6 @@
 """What the naive method would have drawn: the output force in (u, v) with plain steps, beside the certified one.
 
-That is the lesson of the whole page: the picture looks like a result, and nothing in it says that it is wrong.
+The lesson of the accuracy page: the picture looks like a result, and nothing in it shows that it is wrong.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..lower import Lowered
 from ..scene import Scene
 from ..stop import Stop
 
-#: Steps in a drive period one would naturally take; the second is what is shown first.
+#: Usual choices of steps in a drive period; the second is shown first.
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)
 #: Samples a period of the drawn force; it divides all of them.
 _SAMPLES = 100
@@ -23,6 +23,7 @@ _SAMPLES = 100
 _RUN = 10
 #: The last of them, which are shown.
 _SHOWN = 2
+#: Reference.
 _TRUE = certified(1e-11)
 
 
@@ -61,7 +62,7 @@ class Lesson:
 
 
 def lesson(scene: Scene, stop: Stop) -> Lesson:
-    """Run the naive methods at natural steps. Raises `NumbersFailed` where the truth itself fails, and `Cancelled`."""
+    """Run the naive methods at usual steps. Raises `NumbersFailed` where the reference fails, and `Cancelled`."""
     first = (_RUN - _SHOWN) * _SAMPLES
     true = output_force(scene, _TRUE, stop)[first:]
     time = (first + np.arange(len(true))) / _SAMPLES * scene.period

@@ -1,4 +1,4 @@
-"""SciPy's solvers on the same compiled equations, as a user would otherwise have had them: w-variables, scaled."""
+"""SciPy's solvers on the same compiled equations, in scaled w-variables."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ SOLVERS: dict[str, Solver] = {
 _LEAST_STEPS = 16
 #: Least relative tolerance SciPy takes without changing it.
 _LEAST_RTOL = 3e-14
-#: Contact events nearer to a step's start than this fraction of the period are the one it started from.
+#: A contact event nearer to a step's start than this fraction of the period is the event that the step started from.
 _SAME_EVENT = 1e-9
 
 

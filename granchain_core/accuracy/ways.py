@@ -8,11 +8,14 @@ from dataclasses import dataclass
 from ..integrate import METHODS, Setting
 from .scipy_methods import SOLVERS
 
+#: Settings of fixed-step methods: factors on the live method's number of steps.
 _REFINES = (1, 2, 4, 8, 16)
+#: Settings of methods with error control: tolerances per step.
 _TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+#: Settings of SciPy's solvers: rtol = atol.
 _SCIPY_TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9)
+#: Beginning of the names of SciPy's solvers.
 SCIPY = "scipy "
-"""What the names of SciPy's solvers begin with."""
 
 
 @dataclass(frozen=True)

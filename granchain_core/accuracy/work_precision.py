@@ -1,7 +1,7 @@
-"""The picture of the trade: error against time for every method and setting, and how sure the reference is.
+"""Work and precision: error against time for every method and setting, and the error of the reference.
 
 The reference is the certified method at its finest. A second one shares only the equations with it: SciPy's DOP853,
-started anew wherever a contact opens or closes. How far the two are apart says how well the truth itself is known.
+restarted wherever a contact opens or closes. The difference of the two is the error with which the reference is known.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from .ways import SCIPY, Choice, choices
 PERIODS = 10
 #: Samples a period at which displacements are compared.
 SAMPLES = 16
+#: The reference, and SciPy's solver with its tolerance that checks it.
 _REFERENCE = certified(3e-15)
 _SECOND = ("DOP853", 1e-14)
 #: Time after which a setting is abandoned [s].
@@ -39,8 +40,8 @@ _ENOUGH = 0.05
 _MOST_RUNS = 9
 #: A setting that takes longer than this is run once [s].
 _SLOW = 0.5
-#: What takes less than so many seconds is measured in a second round, too, seconds after the first: a neighbour that
-#: was busy during all of the first runs is not there for long.
+#: A setting that takes less than this is measured again in a second round, seconds after the first, because another
+#: process may have been busy during all of the first runs [s].
 _BRIEF = 0.1
 
 
@@ -80,13 +81,13 @@ class WorkPrecision:
     scene : Scene
         The chain.
     reference, second : str
-        The method whose motion is taken for the true one, and the independent one it is compared with.
+        The method whose motion counts as true, and the independent one with which it is compared.
     agreement : float
         Largest difference of the two over the largest displacement; NaN as long as it is not known.
     rows : list of Row
         One for each method and setting: `method`, `setting`, `error`, `wall_s` [s], `rhs`, and `failure`, a sentence.
     lesson : Lesson or None
-        What a naive method makes of the force.
+        The force as naive methods compute it.
     disagreement : str
         A sentence where the second method failed.
 
@@ -128,7 +129,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
     stop : Stop, optional
         Ends the measurement when another thread sets it.
     progress : callable, optional
-        Called with the part that is done, 0 to 1.
+        Called with the fraction that is done, 0 to 1.
     report : callable, optional
         Called with the growing result after each part.
     pause : callable, optional
@@ -172,7 +173,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
 
     found = WorkPrecision(scene, f"dop853 with located events, tolerance {_REFERENCE.tolerance:g}",
                           f"SciPy DOP853, started anew at contact events, tolerance {_SECOND[1]:g}")
-    compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # else a compiler would eat the time of a method's first row
+    compile_methods(scene.evolve(f=max(scene.f, 1000.0)))  # else a method's first row would include compiling
     exact = _within("The reference", stop, _REFERENCE_LIMIT, lambda stop: _ours(scene, _REFERENCE, stop)).moved
     advance()
     found.lesson = lesson(scene, stop)
@@ -199,7 +200,7 @@ def compile_methods(scene: Scene) -> None:
 
 
 def _row(scene: Scene, choice: Choice, exact: np.ndarray, stop: Stop) -> Row:
-    """Measure one setting; what goes wrong with it is its own."""
+    """Measure one setting; a failure is recorded in its row."""
 
     def measure(limit: Stop) -> Measured:
         if choice.setting is not None:
@@ -233,7 +234,7 @@ def _fastest(stop: Stop, measure: Measure) -> Measured:
 
 
 def _within(what: str, stop: Stop, seconds: float, measure: Measure) -> Measured:
-    """Run `measure` with a flag that also goes up after `seconds`, which is then a failure and not a cancellation."""
+    """Run `measure` with a flag that is also set after `seconds`, which is then a failure and not a cancellation."""
     try:
         with Limited(stop, seconds) as limit:
             return measure(limit.stop)
@@ -259,7 +260,7 @@ def _scipys(scene: Scene, solver: str, tolerance: float, stop: Stop, located: bo
 
 
 def _distance(moved: np.ndarray, exact: np.ndarray) -> float:
-    """Largest displacement error over the largest displacement; infinite where the method did not get through."""
+    """Largest displacement error over the largest displacement; infinite where the method did not reach the end."""
     if not np.isfinite(moved).all():
         return float("inf")
     return float(np.abs(moved - exact).max() / np.abs(exact).max())

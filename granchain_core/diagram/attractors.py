@@ -31,7 +31,7 @@ _SWEEP = 8
 _PASS = 150
 #: Distance from the frequency asked for at which a sweep begins, relative to it.
 _AWAY = 0.08
-#: Size of the box of random states, in largest displacements and velocities seen on the way from rest.
+#: Size of the box of random states, in units of the largest displacements and velocities of the motion from rest.
 _BOX = 1.5
 #: Displacement from an unstable orbit, relative to the motion.
 _BESIDE = 1e-2
@@ -53,7 +53,7 @@ class Origin:
 
 @dataclass(eq=False)
 class Attractor:
-    """A steady state with what leads to it.
+    """A steady state with the starts that lead to it.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
                progress: Callable[[float], None] | None = None) -> list[Attractor]:
     """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
-    Random states are uniform in a box of displacements and velocities, 1.5 times what is seen on the way from rest;
+    Random states are uniform in a box of displacements and velocities, 1.5 times those of the motion from rest;
     the shares are relative to it (docs/diagram.md).
 
     Parameters
@@ -122,9 +122,9 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     seed : int
         Of the random states; the same seed gives the same answer.
     stop : Stop, optional
-        Looked at between starts; once it is set the search ends with what there is.
+        Read between starts; once it is set the search ends with what has been found.
     progress : callable, optional
-        Called with the part that is done.
+        Called with the fraction that is done, 0 to 1.
 
     Returns
     -------
@@ -168,7 +168,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
 
 def _settled(starts: list[Start], stop: Stop | None,
              progress: Callable[[float], None] | None = None) -> list[SteadyState]:
-    """Where starts lead, in their order."""
+    """The steady states that starts reach, in their order."""
     results: list[SteadyState] = []
     for result in settle_on_all_cores(starts, stop):
         results.append(result)
@@ -178,7 +178,7 @@ def _settled(starts: list[Start], stop: Stop | None,
 
 
 def _beside(group: list[Found]) -> Iterator[Start]:
-    """Starts for all that ended on an unstable orbit: where it goes from beside it."""
+    """New starts beside the orbit for all results on an unstable orbit."""
     orbit = group[0].orbit
     assert orbit is not None
     u, v = orbit.state.displacement, orbit.state.velocity
@@ -224,7 +224,7 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
 
 
 def _run_on(scene: Scene, state: State) -> tuple[State, np.ndarray, float]:
-    """Where the live method gets in `_PASS` periods, its scaled strobes on the way, and the unit of velocity [m/s]."""
+    """State after `_PASS` periods by the live method, scaled strobes on the way, and the unit of velocity [m/s]."""
     engine = Engine(scene, LIVE, 1)
     engine.start(state)
     strobes, _ = engine.periods(_PASS)
@@ -232,7 +232,7 @@ def _run_on(scene: Scene, state: State) -> tuple[State, np.ndarray, float]:
 
 
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
-    """What a group is: its forces are those with the least error, or the largest that any of an irregular group saw."""
+    """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
     best = min((one.result for one in group), key=lambda result: result.error_estimate or 0.0)
     first, tops = group[0], best.tops
     if first.result.regime.period is None:
@@ -246,7 +246,7 @@ def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
 def _regime(regimes: list[Regime]) -> Regime:
     """The regime of a group, of irregular motions by the mean of their Lyapunov exponents with its standard error.
 
-    The rule is that of steady/regime.py; the mean of many is not known better than its part that dies as 1/periods.
+    The rule is that of steady/regime.py; the mean of many is no better known than its part that decays as 1/periods.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     if regimes[0].period is not None or not known:

@@ -75,7 +75,7 @@ class Blocks:
                            "these knobs; give that one's scene and axes, another --out, or delete the folder.")
 
     def cells(self) -> np.ndarray:
-        """The table of all cells, filled with what is there whole."""
+        """The table of all cells, filled from the blocks that are intact."""
         cells = empty_cells(self.grid)
         for path in sorted(self.folder.glob(f"*{_SUFFIX}")):
             rows = self._rows_of(path.name)
@@ -92,13 +92,13 @@ class Blocks:
         return rows if whole else None
 
     def add(self, rows: np.ndarray) -> None:
-        """Take finished cells (cells,); they are written when there are enough of them or they have waited."""
+        """Add finished cells (cells,); they are written when a block is full or `SECONDS` have passed."""
         self._rows.append(np.atleast_1d(rows))
         if sum(map(len, self._rows)) >= BLOCK or time.monotonic() - self._last > SECONDS:
             self.write()
 
     def write(self) -> None:
-        """Write what has been taken."""
+        """Write the cells added since the last block."""
         if self._rows:
             buffer = io.BytesIO()
             np.save(buffer, np.concatenate(self._rows), allow_pickle=False)
@@ -115,17 +115,17 @@ class Blocks:
             os.fsync(file.fileno())
         os.replace(temporary, self.folder / name)
         folder = os.open(self.folder, os.O_RDONLY)
-        os.fsync(folder)  # the new name is in the folder, which is a file of its own
+        os.fsync(folder)  # the new name is stored in the folder, which is synced separately
         os.close(folder)
 
     def _read(self, name: str) -> bytes | None:
-        """The content of a file, None where it is not what was written."""
+        """The content of a file, None where its checksum does not fit."""
         stored = (self.folder / name).read_bytes()
         digest, content = stored[:32], stored[32:]
         return content if hashlib.sha256(content).digest() == digest else None
 
     def remove(self) -> None:
-        """The result is written: the blocks are not needed any more."""
+        """Remove the folder once the result is written."""
         shutil.rmtree(self.folder)
 
 

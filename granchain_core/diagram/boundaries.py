@@ -1,8 +1,8 @@
 """The boundaries that a diagram shows, found where neighbouring cells differ and followed through its rows.
 
-A pair of neighbouring cells says what to look for between them: periods n and 2n a period doubling, a periodic and a
-quasi-periodic cell a Neimark–Sacker point, anything else the fold at which an orbit ends. The orbit of the periodic
-cell is carried towards its neighbour, and from where its multipliers come nearest the point itself is found.
+A pair of neighbouring cells determines what is searched between them: periods n and 2n a period doubling, a periodic
+and a quasi-periodic cell a Neimark–Sacker point, anything else the fold at which an orbit ends. The orbit of the
+periodic cell is carried towards its neighbour, and from where its multipliers come nearest the point itself is found.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ def boundaries(found: Diagram, rows: Iterable[int] | None = None, values: Iterab
                on_curve: Callable[[BoundaryCurve], None] | None = None) -> list[BoundaryCurve]:
     """Curves through the boundaries of some rows of a diagram (the middle one), at `values` of y (those of its rows).
 
-    What cannot be followed is left out: a pair of cells from rest may be two attractors with no boundary between them.
-    `on_curve` is told each curve. Raises `BadInput` and `Cancelled`.
+    Boundaries that cannot be followed are left out: a pair of cells from rest may be two attractors with no boundary
+    between them. `on_curve` is called with each curve. Raises `BadInput` and `Cancelled`.
     """
     grid = found.grid
     chosen = [grid.shape[0] // 2] if rows is None else list(rows)

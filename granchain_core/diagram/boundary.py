@@ -7,8 +7,8 @@ On such a curve the orbit's critical multiplier meets its condition:
     neimark_sacker   |μ| = 1, μ not real
 
 Each point is found at a fixed second knob y: the orbit's branch over the first knob x is a curve in (state, x) with
-arclength s, on which Newton's method solves map(state, x) = state bordered by the arclength condition, so that a fold
-is nothing special; the root of the condition along s is found by secants. From one y to the next the curve is
+arclength s, on which Newton's method solves map(state, x) = state bordered by the arclength condition, so that folds
+need no special treatment; the root of the condition along s is found by secants. From one y to the next the curve is
 extrapolated, with steps that are halved where that fails.
 
 Source: Kuznetsov, Elements of Applied Bifurcation Theory (2004), chapter 10.
@@ -48,7 +48,7 @@ _SECANTS = 14
 _HALVINGS = 3
 #: Smallest part of the way to the next y that is tried as one step.
 _LEAST = 1.0 / 32.0
-#: Slower than this from +1 or −1 in angle a critical pair is not told from a real multiplier.
+#: Angle from +1 or −1 below which a critical pair is not distinguished from a real multiplier [rad].
 _REAL = 1e-7
 
 
@@ -81,7 +81,7 @@ class _Branch:
         return self.scene.evolve(**{self.knob: float(x) * self.unit})
 
     def map(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Where the map leads from X, and its derivative (2N, 2N)."""
+        """The map's end from X, and its derivative (2N, 2N)."""
         flow = StroboscopicMap(self.at(X[-1]), self.periods, self.stop)(X[:-1])
         return flow.end, flow.derivative
 
@@ -119,7 +119,7 @@ class _Branch:
 def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> tuple[float, complex]:
     """A smooth function that is 0 where `kind` is met, and the multiplier nearest to meeting it.
 
-    Π(μ − 1) for a fold and Π(μ + 1) for a period doubling, which know nothing of pairs that become real; |μ| − 1 of
+    Π(μ − 1) for a fold and Π(μ + 1) for a period doubling, which stay smooth where pairs become real; |μ| − 1 of
     the critical pair for Neimark–Sacker, which is the one nearest to `near`, else to the unit circle.
     """
     multipliers = np.linalg.eigvals(derivative)
@@ -250,7 +250,7 @@ def _follow(scene: Scene, kind: str, points: list[BoundaryPoint], value: float, 
 
 def _stepped(scene: Scene, kind: str, way: list[BoundaryPoint], end: float, period: int, x: str, y: str,
              stop: Stop | None) -> BoundaryPoint | None:
-    """The point at y = `end` by one step from the last two; None where it is not found or does not go on evenly."""
+    """The point at y = `end` by one step from the last two; None if there is none that continues smoothly."""
     guess, state = _extrapolated(way, end, x, y)
     try:
         branch = _Branch(scene.evolve(**{x: guess, y: end}), x, guess, period, stop, way[-1].multiplier)
@@ -282,6 +282,6 @@ def _extrapolated(way: list[BoundaryPoint], y: float, x_knob: str, y_knob: str) 
 
 
 def _continues(before: BoundaryPoint, after: BoundaryPoint) -> bool:
-    """Whether the critical multiplier and the first knob go on evenly: else it is another curve that was met."""
+    """Whether the critical multiplier and the first knob continue smoothly: else the point is on another curve."""
     turned = abs(abs(np.angle(after.multiplier)) - abs(np.angle(before.multiplier)))
     return bool(turned <= 0.15 and abs(after.x / before.x - 1.0) <= 0.25)

@@ -1,4 +1,4 @@
-"""Computing the cells of a diagram by lanes, on all cores, coarse first."""
+"""Computing the cells of a diagram in batches, on all cores, coarse first."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
 
 
 def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
-    """Where starts of one structure lead: by lanes where they can share them, else one by one."""
+    """Steady states from starts of one structure: in a batch where they can share one, else one by one."""
     rest_of_them = iter(starts)
     first = next(rest_of_them, None)
     if first is None:
@@ -66,8 +66,8 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
                  pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
     """Cells of the diagram as they are decided, coarse first; `missing` are those wanted, else all.
 
-    The result's `number` is the cell's. `stop` is looked at between cells and may end the computation; running cells
-    are then given up. `pause` is called before a cell is begun and may wait.
+    The result's `number` is the cell's. `stop` is read between cells and ends the computation; running cells
+    are then abandoned. `pause` is called before a cell is begun and may wait.
     """
     wanted = set(range(grid.size) if missing is None else (int(number) for number in missing))
     groups = by_structure(grid, [int(number) for number in grid.coarse_first() if int(number) in wanted])
@@ -79,7 +79,7 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
 
 def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,
                         workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
-    """Where starts of one structure lead, as they are found; closing the generator ends it."""
+    """Steady states from starts of one structure, as they are found; closing the generator ends it."""
     ended = Stop()
     return on_all_cores(lambda shared: settle_starts(shared, ended), starts, ended, stop, workers, pause)
 
@@ -96,9 +96,9 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
     x, y : tuple of (str, iterable of float)
         A knob ("f", "A0", "D", "k", "kappa", "F0" or "wall") and its ascending values in SI.
     stop : Stop, optional
-        Looked at between cells; once it is set the diagram ends, and what is not computed has regime −1.
+        Read between cells; once it is set the diagram ends, and cells that are not computed have regime −1.
     progress : callable, optional
-        Called with the diagram so far and the part of it that is done, after every cell.
+        Called with the diagram so far and the fraction that is done, after every cell.
     workers : int, optional
         Threads; one for each core if not given.
 

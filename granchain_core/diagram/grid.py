@@ -72,7 +72,7 @@ class Grid:
         if self.size > MOST_CELLS:
             raise BadInput(f"{len(self.x.values)} × {len(self.y.values)} = {self.size} cells are more than "
                            f"{MOST_CELLS}; take fewer points on an axis.")
-        for i in (0, self.shape[0] - 1):  # steps a period grow or fall all along an axis: its ends tell
+        for i in (0, self.shape[0] - 1):  # steps a period are monotone along an axis: its ends suffice
             for j in (0, self.shape[1] - 1):
                 lower(self.cell(i * self.shape[1] + j)).steps_per_period()
 

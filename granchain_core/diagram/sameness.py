@@ -2,7 +2,7 @@
 
 Periodic results are the same if all their stroboscopic states agree for some shift by whole periods, so that the n
 copies of a period-n orbit count once; first within the errors claimed for them, then, when each has been brought onto
-its orbit by Newton's method, within what is left of that. Motions that are not periodic are the same if their sections
+its orbit by Newton's method, within the error of that. Motions that are not periodic are the same if their sections
 lie in each other: the median distance of the states of one to the nearest of the other is no larger than `_APART`
 times that within each.
 """
@@ -21,7 +21,7 @@ from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
 from ..steady.steady_state import SteadyState
 
-#: Orbits found by Newton's method that agree to this, over 1 − |μ|, are one; coarser ones where it failed.
+#: Orbits found by Newton's method that agree to this, over 1 − |μ|, are the same.
 _SAME = 1e-7
 #: Scaled strobes of an orbit that agree to this after fewer periods have the shorter period.
 _REPEATS = 1e-6
@@ -51,7 +51,7 @@ class Found:
 
     @property
     def unstable(self) -> bool:
-        """Whether it is on an orbit that nothing stays on."""
+        """Whether it is on an unstable orbit."""
         return self.orbit is not None and not self.orbit.stable
 
 
@@ -109,7 +109,7 @@ def _polished(one: Found) -> Found:
         section = _strobes(orbit.scene, orbit.state, period, _CERTIFIED)
         shortest = next(n for n in range(1, period + 1)
                         if period % n == 0 and np.abs(section - np.roll(section, n, axis=0)).max() <= _REPEATS)
-        if shortest < period:  # the lanes saw a slow approach to it with changing sign
+        if shortest < period:  # in the batch a slow approach with alternating sign looked like twice the period
             orbit = periodic_orbit(one.result.scene, shortest, orbit.state)
     except (BadInput, NumbersFailed):  # a scene that cuts tension has no certified orbits
         return one

@@ -55,7 +55,7 @@ def connect(address: str) -> Any:
 
 def iter_blocks(client: Any, grid: Grid, numbers: Sequence[int],
                 stop: Stop | None = None) -> Iterator[np.ndarray]:
-    """Finished blocks (cells,) in the order in which workers return them; what is not wanted any more is cancelled."""
+    """Finished blocks (cells,) in the order in which workers return them; blocks no longer wanted are cancelled."""
     described = describe(grid)
     waiting = {client.submit(work_on, described, block, pure=False) for block in blocks_of(numbers)}
     try:

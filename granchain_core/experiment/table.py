@@ -1,6 +1,6 @@
 """Numbers in columns from a text file, read strictly.
 
-A lenient reader takes ``0,5;1,5e-6`` for numbers of another meaning without a word. Here the separator is found once,
+A lenient reader misreads ``0,5;1,5e-6`` silently. Here the separator is found once,
 every line has to fit, and a file has one decimal mark: where a point and a comma both occur in numbers, 1.100 may be
 1.1 or 1100, and nobody but its writer knows.
 """

@@ -1,4 +1,4 @@
-"""The hard cases: where solvers of granular chains lie quietly, each with what must hold and how one knows."""
+"""The hard cases, in which solvers of granular chains fail silently: what must hold in each, and an oracle."""
 
 from .case import Case, Check, Figure, Picture, Trace, run_case
 from .table import CASES

@@ -1,7 +1,7 @@
-"""Random brushes: a bead or a driver comes as near to its neighbour as 1e-7 of an amplitude, or misses it by that.
+"""Random brushes: a bead or a driver touches its neighbour, or misses it, by as little as 1e-7 of an amplitude.
 
 One bead with a gap on both sides (a negative static overlap), in scaled units. Either a driver of amplitude 1 comes
-within the gap's depth of it while it rests, or it is thrown on its foundation and comes as near to the wall. Depths are
+within the gap's depth of it while it rests, or it swings on its foundation and comes as near to the wall. Depths are
 log-uniform from 1e-7 to 1e-2 of the amplitude, half of them negative: then nothing may be touched. Frequency, phase,
 step settings and tolerance are random.
 """
@@ -47,8 +47,8 @@ def touch(cases, driven, work, y, clock, counts, static, chain, found):  # type:
     """Run every case from its phase until the driver, or the bead, is back at middle position.
 
     The gap is 1 − depth. A bead that rests is where it was until the touch, so the analytic onset is asin(gap); the
-    same is true of a bead on a spring of stiffness ω² with velocity ω. It lets go at π − asin(gap), but for what the
-    touch moved it.
+    same is true of a bead on a spring of stiffness ω² with velocity ω. It separates at π − asin(gap), apart from the
+    displacement by the touch.
     """
     for n in range(cases.shape[0]):
         rate, gap, start = cases[n, RATE], 1.0 - cases[n, DEPTH], cases[n, PHASE]
@@ -84,7 +84,7 @@ def touch(cases, driven, work, y, clock, counts, static, chain, found):  # type:
 
 
 def run(cases: np.ndarray, driven: bool) -> np.ndarray:
-    """What is found of each case (count, 3)."""
+    """Results for each case (count, 3)."""
     row, found = 3, np.zeros((len(cases), 3))
     chain = Chain(np.array([0.0, 1.0, 0.0]), np.ones(2))
     touch(cases, driven, workspace(row), np.zeros(2 * row), np.zeros(1), np.zeros(4, dtype=np.int64), np.zeros(2),
@@ -100,7 +100,7 @@ def workspace(row: int) -> Work:
 
 
 def missed(cases: np.ndarray, found: np.ndarray) -> np.ndarray:
-    """Numbers of the cases that touch and were not seen to, or were seen to and do not touch."""
+    """Numbers of the cases whose touch was missed, or invented."""
     return np.flatnonzero((found[:, ONSETS] == 1) != (cases[:, DEPTH] > 0.0))
 
 

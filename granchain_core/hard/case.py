@@ -1,4 +1,4 @@
-"""What a hard case is: figures against bars, the oracle they are measured against, and a small picture."""
+"""A hard case: figures against bars, the oracle they are measured against, and a small picture."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Picture:
 class Case:
     """One hard case.
 
-    `measure(quick)` computes the figures, with smaller counts where it is quick; `picture()` what is drawn beside
+    `measure(quick)` computes the figures, with smaller counts where it is quick; `picture()` the lines drawn beside
     them. `hard` and `naive` are one line each for a student: what is hard, and what a naive solver does there.
     """
 

@@ -1,4 +1,4 @@
-"""Chains that the hard cases need and scenes do not offer: without a driver, free at their ends, in scaled units."""
+"""Chains for the hard cases that scenes cannot describe: without a driver, free at their ends, in scaled units."""
 
 from __future__ import annotations
 

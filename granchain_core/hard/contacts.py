@@ -13,7 +13,7 @@ from .oracle import Plain, solved
 
 
 def brushed(quick: bool) -> list[Figure]:
-    """Random brushes: none missed, none invented, and the moments of contact exact."""
+    """Random brushes: none missed, none invented, and the times of contact exact."""
     count = 4_000 if quick else 100_000
     driver, thrown = (brushes.draw(count // 2, 11, True), brushes.draw(count // 2, 12, False))
     by_driver, by_throw = brushes.run(driver, True), brushes.run(thrown, False)
@@ -29,7 +29,7 @@ def brushed(quick: bool) -> list[Figure]:
 
 
 def brushed_picture() -> Picture:
-    """Part of brushes that plain sampling sees, over the depth: 100 and 1000 looks a period, and ours."""
+    """Fraction of brushes that 100 and 1000 samples a period detect, over their depth, and ours."""
     depths = np.linspace(-7.0, -2.0, 21)
     cases = brushes.draw(2_000, 5, True)
     cases[:, brushes.DEPTH] = np.abs(cases[:, brushes.DEPTH])
@@ -38,7 +38,7 @@ def brushed_picture() -> Picture:
     ours = np.array([seen[np.abs(logs - d) < 0.25].mean() for d in depths])
     traces = [Trace("granchain", ours)]
     for looks in (100, 1000):
-        # a touch of depth d lasts 2·arccos(1 − d)/2π of a period, and is seen if a look falls into it
+        # a touch of depth d lasts 2·arccos(1 − d)/2π of a period, and is detected if a sample falls into it
         traces.append(Trace(f"{looks} steps a period", np.minimum(1.0, looks * np.arccos(1.0 - 10.0**depths) / np.pi)))
     return Picture(depths, "depth of the touch in amplitudes, log10", "part that is seen", tuple(traces))
 
@@ -47,7 +47,7 @@ def brushed_picture() -> Picture:
 
 
 def mirrored(beads: int, time: float, tolerance: float = 1e-13, cut: bool = False) -> float:
-    """How far a chain thrown as its own mirror image is from that at the end, in amplitudes."""
+    """Loss of mirror symmetry of a chain that starts symmetric, at the end, in amplitudes."""
     bench = Bench(beads, time, 64, LinearDashpot(0.1), tolerance=tolerance, cut=cut)
     velocity = np.random.default_rng(beads).uniform(-1.0, 1.0, beads)
     bench.throw(velocity - velocity[::-1])
@@ -56,7 +56,7 @@ def mirrored(beads: int, time: float, tolerance: float = 1e-13, cut: bool = Fals
 
 
 def reordered(beads: int, time: float, seed: int) -> float:
-    """How far a chain is from its mirror image, in which simultaneous events are met in the other order.
+    """How far a chain is from its mirror image, in which simultaneous events come in the other order.
 
     Velocities are drawn from three values, so that collisions coincide without the whole being symmetric. The two take
     steps of their own, so their tolerance is far below the bar: at 1e-14 one of 200 chains was 1.2e-12 off, now 3e-14.
@@ -72,7 +72,7 @@ def reordered(beads: int, time: float, seed: int) -> float:
 
 
 def at_once(quick: bool) -> list[Figure]:
-    """Symmetry, and independence of the order in which events are met."""
+    """Symmetry, and independence of the order of events."""
     symmetric, of_cut = (max(mirrored(n, 200.0 if quick else 2000.0, t, cut)
                              for n in (2, 5, 8) for t in (1e-5, 1e-9, 1e-13)) for cut in (False, True))
     order = max(reordered(n, 60.0, seed) for n in (5, 8) for seed in range(4 if quick else 100))
@@ -82,7 +82,7 @@ def at_once(quick: bool) -> list[Figure]:
 
 
 def at_once_picture() -> Picture:
-    """The middle bead of a chain thrown as its own mirror image, which has no way to go: ours, and a loop over beads.
+    """The middle bead of a mirror-symmetric motion, which must not move: ours, and a loop over beads.
 
     The step is a hundredth of the shortest contact.
     """
@@ -125,7 +125,7 @@ def unequal(mass: float) -> float:
 
 
 def free_pulse(beads: int, inverse_mass: list[float], time: float = 20.0) -> float:
-    """Error of a free chain whose first bead is thrown, against SciPy restarted at every event, in amplitudes."""
+    """Error of a free chain whose first bead moves at first, against SciPy restarted at every event, in amplitudes."""
     bench = Bench(beads, time, 32, ends=(0.0, 0.0), inverse_mass=inverse_mass, tolerance=1e-14)
     bench.throw(np.eye(beads)[0])
     ours = bench.record().displacement
@@ -179,7 +179,7 @@ def collisions(quick: bool) -> list[Figure]:
 
 
 def collisions_picture() -> Picture:
-    """Velocities of a cradle's last two beads, and where explicit Euler with 40 steps a contact sends them."""
+    """Velocities of a cradle's last two beads, and those by explicit Euler with 40 steps a contact."""
     beads, samples, every = 5, 120, 2
     step = contact_time(1.0) / 40.0
     bench = Bench(beads, samples * every * step, samples, ends=(1e-9, 1e-9))

@@ -52,7 +52,7 @@ def strong_damping_picture() -> Picture:
 # --- restitution ------------------------------------------------------------------------------------------
 
 def bounce(law: str, strength: float, cut: bool, speed: float = 1.0) -> float:
-    """Restitution of a bead thrown against the wall."""
+    """Restitution of a bead that hits the wall."""
     time = 4.0 * contact_time(speed, 1.0) * (1.0 + 3.0 * strength)
     bench = Bench(1, time, 4, LAWS[law].slot(strength), ends=(0.0, 1.0), cut=cut, tolerance=1e-15)
     bench.throw([speed])
@@ -66,7 +66,7 @@ def tsuji_strength(e: float) -> float:
 
 
 def restitutions(quick: bool) -> list[Figure]:
-    """Every law with tension allowed and cut, and what the cut is for."""
+    """Restitution for every law with tension allowed and cut, and the pull that the cut removes."""
     strengths = (0.1, 0.6) if quick else (0.01, 0.1, 0.3, 0.6, 1.0)
     exact = max(abs(bounce("tsuji", tsuji_strength(e), False, v) - e)
                 for e in (0.95, 0.7, 0.3) for v in ((1.0,) if quick else (0.01, 1.0, 10.0)))

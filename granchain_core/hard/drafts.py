@@ -1,6 +1,6 @@
-"""Solvers one would write first, in plain Python: what some pictures draw beside ours.
+"""Naive solvers in plain Python, which some pictures draw beside ours.
 
-They are right but for what they leave out: contacts are asked for where a step happens to be, and nothing is located.
+They are correct except for what they omit: contacts are tested at the ends of steps, and no event is located.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Slope = Callable[[float, np.ndarray], np.ndarray]
 def plain_slope(chain: Plain, push: tuple[np.ndarray, np.ndarray] | None = None) -> Slope:
     """(u̇, v̇) of a chain whose contacts act where their overlap is above zero.
 
-    With a `push`, times and forces between which one reads along a line, the first bead feels that and no driver.
+    With a `push`, times and forces that are interpolated linearly, the first bead feels that force and no driver.
     """
     n, bodies, zeros = len(chain.masses), np.zeros((2, len(chain.masses) + 2)), np.zeros(len(chain.masses) + 1)
     static = np.vstack([chain.static, zeros])
@@ -38,7 +38,7 @@ def plain_slope(chain: Plain, push: tuple[np.ndarray, np.ndarray] | None = None)
 
 
 def rk4(slope: Slope, start: np.ndarray, first: float, step: float, count: int) -> np.ndarray:
-    """States (count + 1, size) of the classical Runge–Kutta method; numbers that are no more finite stay in."""
+    """States (count + 1, size) of the classical Runge–Kutta method; numbers that are not finite stay in."""
     out = np.empty((count + 1, len(start)))
     out[0] = start
     with np.errstate(all="ignore"):
@@ -61,7 +61,7 @@ def euler(slope: Slope, start: np.ndarray, step: float, count: int) -> np.ndarra
 
 
 def one_after_another(velocity: np.ndarray, damping: float, step: float, count: int) -> np.ndarray:
-    """Displacements (count + 1, N) between two walls of a loop that moves each bead before it looks at the next."""
+    """Displacements (count + 1, N) between two walls of a loop that moves each bead before it computes the next."""
     u, v = np.zeros(len(velocity) + 2), np.concatenate([[0.0], velocity, [0.0]])
     out = np.zeros((count + 1, len(velocity)))
 

@@ -116,7 +116,7 @@ def _mean(values: np.ndarray) -> tuple[float, float]:
 
 
 def chaos_picture() -> Picture:
-    """Strobes of the last bead: two starts that differ by 1e-12 of an amplitude part, and no period is there."""
+    """Strobes of the last bead: two starts that differ by 1e-12 of an amplitude diverge, and no period appears."""
     chosen = undamped(beads=5)
     traces = []
     for label, nudge in (("from rest", 0.0), ("from 1e-12 of an amplitude beside it", 1e-12)):
@@ -190,10 +190,10 @@ def switched_drives(quick: bool) -> list[Figure]:
 
 
 def switched_picture() -> Picture:
-    """Momentum of a chain whose driver jumps into it by its amplitude, and what plain RK4 makes of the jump.
+    """Momentum of a chain whose driver jumps into it by its amplitude, and the same by plain RK4.
 
-    A jump is the limit of a fast push: the dashpot then passes on D times the jump, whatever the push's form. That is
-    what stays the same in w: it does not jump, and the velocity does.
+    A jump is the limit of a fast push: the dashpot then transfers D times the jump, whatever the push's form. In this
+    limit w does not jump, and the velocity does.
     """
     chosen, beads, samples = scene("sec2").evolve(N=4), 4, 2000
     engine, shown = Engine(chosen, certified(1e-12), samples), 100

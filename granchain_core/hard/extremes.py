@@ -216,7 +216,7 @@ def mode_errors(preload: float, number: int, beads: int = 11) -> tuple[float, fl
 
 
 def cut_off_error(beads: int) -> float:
-    """How far the highest mode that the chain swings in is from f_c cos(π/2(N+1)), as a part of it.
+    """Relative difference of the highest mode's frequency from f_c cos(π/2(N+1)).
 
     A wrong frequency shows as a phase at the end of the swing: the chain is let go in the formula's mode.
     """

@@ -1,4 +1,4 @@
-"""Hard cases of long runs: the drive keeps its phase, and a run that was cut is the run that was not."""
+"""Hard cases of long runs: the drive keeps its phase, and interrupting a run changes nothing."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SAMPLES = 8
 
 
 def cut_and_gone_on(method: str, periods: int, cuts: int, seed: int = 1) -> float:
-    """Numbers of the final state and of the samples on the way that a run with random cuts has otherwise.
+    """How many numbers of the final state and of the samples random cuts change.
 
     Each cut takes a checkpoint through its bytes into a new engine. Methods with fixed steps are cut at any sample,
     those with error control at whole periods.
@@ -41,7 +41,7 @@ def whole_part(engine: Engine, count: int) -> np.ndarray:
 
 
 def uninterrupted(method: str, periods: int, cuts: int) -> float:
-    """Numbers of the final state of one call over all periods that differ from those of many cut ones."""
+    """How many numbers of the final state differ between one call over all periods and many cut ones."""
     chosen = scene("sec2").evolve(f=1130.0, N=5)
     setting = Setting(method, 1.0, 1e-9 if METHODS[method].adaptive else 0.0)
     whole, pieces = Engine(chosen, setting, 1), Engine(chosen, setting, 1)

@@ -1,4 +1,4 @@
-"""Hard cases of the numbers themselves: not-a-number anywhere, and numbers too small to be quick with."""
+"""Hard cases of the numbers themselves: NaN and infinity anywhere, and subnormal numbers, which are slow."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from ..integrate.methods import CERTIFIED, LIVE
 from ..scene import scene
 from .case import Figure, Picture, Trace
 
-#: What is injected.
+#: Values that are injected.
 _VALUES = (np.nan, np.inf, -np.inf)
 _SAMPLES = 4
 
 
 class Injector:
-    """An engine into which a bad number is put at random, again and again, from the same state."""
+    """An engine into which a bad number is put at random, repeatedly, from the same state."""
 
     def __init__(self, method: str, beads: int) -> None:
         self.method, self.beads = method, beads
@@ -29,7 +29,7 @@ class Injector:
         self._kept = engine.y.copy(), engine.stepper.work.k[0].copy(), engine.grid_index, engine.elapsed
 
     def restore(self) -> None:
-        """Back to where it was."""
+        """Restore that state."""
         engine = self.engine
         engine.y[:], engine.stepper.work.k[0] = self._kept[0], self._kept[1]
         engine.grid_index, engine.elapsed = self._kept[2], self._kept[3]
@@ -41,7 +41,7 @@ class Injector:
             self.engine.stepper.work = self.engine.stepper.work._replace(simd=self.engine.stepper.new_simd_workspace())
 
     def into_state(self, rng: np.random.Generator) -> bool:
-        """Whether a bad displacement or w of a bead is said at once, with bead, time and step."""
+        """Whether a bad displacement or w of a bead is reported at once, with bead, time and step."""
         row, bead = self.engine.lowered.row, int(rng.integers(1, self.beads + 1))
         self.engine.y[bead + row * int(rng.integers(2))] = _VALUES[rng.integers(3)]
         found = self.outcome()
@@ -49,7 +49,7 @@ class Injector:
         return found is not None and (found.bead, found.step) == (bead, step)
 
     def into_contact(self, rng: np.random.Generator) -> bool:
-        """Whether a contact whose stiffness is NaN is said in the first step, at one of its two beads."""
+        """Whether a contact whose stiffness is NaN is reported in the first step, at one of its two beads."""
         springs, contact = self.engine.lowered.slots.chain.stiffness, int(rng.integers(self.beads + 1))
         before, springs[contact] = springs[contact], np.nan
         self.renew()
@@ -61,10 +61,10 @@ class Injector:
         return found is not None and found.bead in beads and found.step == step
 
     def into_drive(self, rng: np.random.Generator) -> bool:
-        """Whether a driver that is NaN in one step is said in that step, at bead 1."""
+        """Whether a driver that is NaN in one step is reported in that step, at bead 1."""
         n = self.engine.grid
         step = int(rng.integers(n // _SAMPLES))
-        row = 2 * step + 2  # its end; what a step that is split has in its middle is not from this table
+        row = 2 * step + 2  # the step's end; the middle of a split step is not read from this table
         before = self.engine.stepper.drive[row].copy()
         self.engine.stepper.drive[row] = np.nan
         found = self.outcome()
@@ -72,7 +72,7 @@ class Injector:
         return found is not None and (found.bead, found.step) == (1, step)
 
     def outcome(self) -> NumbersFailed | None:
-        """The typed failure of the next sample, None if nobody noticed."""
+        """The typed failure of the next sample, None if it went unnoticed."""
         try:
             self.engine.record(1)
         except NumbersFailed as found:
@@ -130,7 +130,7 @@ def bad_numbers(quick: bool) -> list[Figure]:
 
 
 def bad_numbers_picture() -> Picture:
-    """A NaN in bead 6: what a solver shows whose contacts ask `if overlap > 0`: beads that calmly go on."""
+    """A NaN in bead 6 in a solver whose contacts test `if overlap > 0`: the other beads go on regardless."""
     chosen = scene("sec2").evolve(N=11)
     engine = Engine(chosen, Setting("rk4", 1.0), 100)
     ours = np.full(201, np.nan)

@@ -1,4 +1,4 @@
-"""Hard cases of claims on the long run: what is settled, which attractor it is, and what drifts away."""
+"""Hard cases of claims on the long run: settled or not, which attractor, and drift."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def chain_claims(count: int) -> tuple[int, int]:
 
 
 def near_bifurcation_picture() -> Picture:
-    """Distance from the orbit of a slow approach, what the change per period says, and our bound where claimed."""
+    """Distance from the orbit of a slow approach, the change per period, and our bound where claimed."""
     strobes, orbit, _ = normal_form(np.random.default_rng(8), "flip", 0.02, 1_000)
     scale, marks = np.abs(strobes).max(axis=(0, 2)), np.arange(20, 1_000, 20)
     true = [distance(strobes[i], orbit, scale) for i in marks]
@@ -174,7 +174,7 @@ def two_attractors(quick: bool) -> list[Figure]:
 
 
 def two_attractors_picture() -> Picture:
-    """Output force on both orbits over three drive periods, and from rest, which is all one run shows."""
+    """Output force on both orbits over three drive periods, and from rest, the only one that a single run shows."""
     chosen, traces = scene("sec2").evolve(f=_SHARED), []
     for start, point in arrivals().items():
         engine = Engine(chosen, certified(1e-10), 100)
@@ -188,7 +188,7 @@ def two_attractors_picture() -> Picture:
 
 
 def drifting(quick: bool) -> list[Figure]:
-    """The observer without a foundation drifts, and the verdict says so; with one it does not."""
+    """The observer without a foundation drifts, and the verdict reports it; with one it does not drift."""
     wrong = []
     for base, drifts in (("fig11-free", True), ("fig11-founded", False)):
         for frequency in ((100.0,) if quick else (100.0, 200.0)):

@@ -20,8 +20,8 @@ def _run(name: str, quick: bool) -> list[Check]:
 def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, list[Check]]]:
     """Case names with their rows as they are finished; closing the generator ends what has not begun.
 
-    Processes, because much of the oracles is Python, which threads would run by turns. Raises `NumbersFailed` where one
-    of them is ended from outside.
+    Processes, because much of the oracles is Python, which only one thread at a time can run. Raises `NumbersFailed`
+    where one of them is ended from outside.
     """
     count = workers or min(2, os.cpu_count() or 1)
     pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))

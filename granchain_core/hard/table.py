@@ -1,4 +1,4 @@
-"""The table of hard cases: what is hard, what a naive solver does there, what it is measured against."""
+"""The table of hard cases: what is hard, what a naive solver does there, and the oracle."""
 
 from __future__ import annotations
 
