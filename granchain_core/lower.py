@@ -31,7 +31,7 @@ from .state import State
 #: Step of the live method in scaled time where overlaps are about one drive amplitude. Its usual error is
 #: `_LIVE_ERROR` in integrate/methods.py.
 _STEP = 0.2
-#: The same for the oscillation of a bead on its foundation, in radians of it.
+#: The same for the oscillation of a bead on its foundation, in radians of phase.
 _FOUNDATION_STEP = 0.1
 #: RK4's stability limit on the negative real axis is 2.78; half of it for the fastest dashpot mode 4λ/m.
 _DASHPOT_LIMIT = 1.39
@@ -88,7 +88,7 @@ class Lowered:
         return 2 * self.row + (2 if self.slots.balance is not None else 0)
 
     def own(self) -> Lowered:
-        """The same with flags of its own, one for each contact, where there are any: an engine writes into them."""
+        """A copy whose flags of slack contacts, where there are any, are its own: an engine writes into them."""
         if self.slots.tension is None:
             return self
         return replace(self, slots=self.slots._replace(tension=no_tension(self.row - 1)))

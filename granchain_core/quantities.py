@@ -18,10 +18,10 @@ from .laws import LAWS
 class Quantity:
     """One knob of a scene, in SI.
 
-    `low` and `high` are the values granchain accepts at all; the narrower range of a slider belongs to the
-    scene. `step` is the fine step of the keyboard. `choices` is set for knobs that are words; `numeric` says
-    whether a plain number is accepted too. `main` knobs are always on the page, the others under "more".
-    `changes_motion` is False for a knob of the computation alone.
+    `low` and `high` limit the accepted values; the narrower range of a slider belongs to the scene. `step` is the fine
+    step of the keyboard. `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted
+    too. `main` knobs are always on the page, the others under "more". `changes_motion` is False for a knob of the
+    computation alone.
     """
 
     name: str

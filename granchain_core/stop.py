@@ -13,7 +13,7 @@ class Stop:
     Attributes
     ----------
     flag : numpy.ndarray, shape (1,)
-        The byte that compiled code looks at, between steps.
+        The byte that compiled code reads between steps.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The table of what can be compiled ahead of time, so that nobody waits for a compiler inside a visit.
+"""The table of what can be compiled ahead of time, so that no visitor waits for a compiler.
 
 A *structure* is the set of effects a scene has; moving a slider never changes it, adding a foundation or another
 dissipation law does, and the kernels of a new structure are compiled once per machine. They come in pieces, each of
@@ -35,13 +35,19 @@ from .steady.lyapunov import exponents, exponents_in_pairs
 from .stop import Stop
 
 #: Names of the pieces of one structure's kernels.
-CURVE, CERTIFIED, LIVE = "curve", "certified", "live"
-ORBIT, BRANCH, OBSERVER = "orbit", "branch", "observer"
-ACCURACY, COST, COST_ACCOUNT = "accuracy", "cost", "cost account"
+CURVE = "curve"
+CERTIFIED = "certified"
+LIVE = "live"
+ORBIT = "orbit"
+BRANCH = "branch"
+OBSERVER = "observer"
+ACCURACY = "accuracy"
+COST = "cost"
+COST_ACCOUNT = "cost account"
 
 
 def structure(shown: Scene) -> str:
-    """Name of what picks the compiled kernels of a scene: its set of effects and the vectors its bodies fit into."""
+    """Name of a scene's structure: its set of effects and the vectors its bodies fit into."""
     width = next((f"{lanes} lanes" for lanes in WIDTHS if lanes >= shown.N + 2), "long")
     effects = [effect.key(shown) for effect in effects_of(shown)]
     law = [] if shown.has_dissipation else ["none"]
@@ -97,7 +103,7 @@ def _observer(short: Scene) -> None:
 
 
 def _cost(balance: bool) -> Callable[[Scene], None]:
-    """A piece: what is timed to find the cost of an effect, with the energy account or without."""
+    """A piece: the kernels that are timed for the cost of an effect, with the energy account or without."""
 
     def compile_cost(short: Scene) -> None:
         for name in (CODE, MOTION):
@@ -106,7 +112,7 @@ def _cost(balance: bool) -> Callable[[Scene], None]:
     return compile_cost
 
 
-#: Every piece with what compiles it by running it shortly, in the order in which a visitor needs them.
+#: Every piece with the function that compiles it by a short run, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
     CURVE: _curve, CERTIFIED: _engine(certified(1e-3)), LIVE: _engine(live()),
     ORBIT: _orbit, BRANCH: _branch, OBSERVER: _observer,
@@ -115,7 +121,7 @@ PIECES: dict[str, Callable[[Scene], None]] = {
 
 
 def compile_piece(shown: Scene, piece: str) -> None:
-    """Compile one piece for the scene's structure, or load it from the cache, and note that it is there."""
+    """Compile one piece for the scene's structure, or load it from the cache, and mark it as compiled."""
     PIECES[piece](shown.evolve(f=max(shown.f, 1000.0)))  # short periods
     _marker(structure(shown), piece).touch()
 

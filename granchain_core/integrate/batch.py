@@ -93,7 +93,7 @@ class Batch:
         state.peaks[:, lane] = 0.0
         state.steps[lane] = state.left[lane] = steps
         state.y[:, lane], state.gaps[:, lane] = y, 0.0
-        state.ends[:, lane] = 1.0  # closed: what follows is no closing
+        state.ends[:, lane] = 1.0  # counts as closed, so that no closing is recorded here
         state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
         state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
         state.ready[lane], state.wait[lane], state.slowest[lane], state.jumped[lane] = 0, _WAIT, 0.0, 0.0

@@ -1,7 +1,7 @@
 """Stopping an engine and going on later, bit for bit as if it had never stopped.
 
-A `State` in SI is the physics of an instant, and rounded on its way there and back. A checkpoint is the engine's own
-numbers: the scaled state, its slope, the step the error control would try next, and where in the period the drive is.
+A `State` in SI is rounded by the conversion there and back. A checkpoint holds the engine's own numbers: the scaled
+state, its slope, the step the error control would try next, and where in the period the drive is.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .methods import METHODS, Setting
 class Checkpoint:
     """An engine's numbers: y (M,) and its slope, control (3,) of an adaptive method, grid index, drive periods run.
 
-    `digest`, `method`, `refine`, `tolerance` and `samples` say which engine may go on from here.
+    `digest`, `method`, `refine`, `tolerance` and `samples` identify the engines that may go on from here.
     """
 
     digest: str

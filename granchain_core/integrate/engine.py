@@ -20,7 +20,7 @@ from .flushed import flushed
 from .methods import METHODS, Setting
 from .stepper import Output, Start, empty_samples
 
-#: Places for closings of a contact in one period; one that bounces more often does so ever more gently.
+#: Places for closings of a contact in one period; bounces beyond that are ever weaker.
 _CLOSINGS = 4
 
 
@@ -82,7 +82,7 @@ class Engine:
 
     def place(self, from_velocity: bool = False) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
-        if self.lowered.slots.tension is not None:  # what the last step left behind
+        if self.lowered.slots.tension is not None:  # flags of the last step
             self.lowered.slots.tension.slack[:] = 0
         self.stepper.place(2 * np.pi * self.grid_index / self.grid, self.y, from_velocity)
 
@@ -123,7 +123,7 @@ class Engine:
 
         Returns the stroboscopic states (count + 1, 2, N), displacement and velocity in scaled units, and the largest
         input, output and elastic output force of each period (count, 3); without `watch` the certified method does
-        not look for the forces and they are NaN.
+        not search the largest forces and they are NaN.
         """
         self._remember()
         stepper = self.stepper
@@ -135,14 +135,14 @@ class Engine:
         return strobes[:, :, 1:-1], tops
 
     def _output(self, closings: int = 0) -> Output:
-        """A new log with places for so many closings, the counts and the stop flag."""
+        """A new log with places for this number of closings, the counts and the stop flag."""
         self.log = new_log(self.log, closings)
         return Output(self.log, self.counts.array, self.stop.flag)
 
     # --- largest forces ------------------------------------------------------------------------------------
 
     def forget_peaks(self) -> None:
-        """Watch for the largest forces afresh."""
+        """Reset the largest forces."""
         forget(self.log.peaks)
 
     @property
@@ -167,7 +167,7 @@ class Engine:
 
     @property
     def closings_missing(self) -> int:
-        """How many jumps there were behind these, for which there was no place."""
+        """How many further jumps there were, for which there was no place."""
         return max(0, int(self.log.met[CLOSED]) - len(self.log.closings))
 
     def largest_forces(self, periods: int) -> np.ndarray:
@@ -189,7 +189,7 @@ class Engine:
         raise self._failure(status, done, *found).error
 
     def _remember(self) -> None:
-        """Keep where a call begins; a number that is not finite there already is said at once."""
+        """Keep where a call begins; a number that is not finite there already is reported at once."""
         stepper = self.stepper
         bead = not_finite(self.y, stepper.lowered.row)
         if bead:

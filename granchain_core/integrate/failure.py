@@ -1,4 +1,4 @@
-"""What a kernel's status means, in a sentence: which bead, when and in which step the motion was lost."""
+"""A kernel's status as a sentence: which bead, when, and in which step the computation failed."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Methods with fixed steps, a whole number of them in a drive period.
 
-Their kernels look for numbers that are not finite once a sample or a period, because looking costs as much as a bead.
-When one has found some, the period is gone through again from its start by halves, until the step is known; in that
-step the failure has not spread yet, and its earliest stage names the bead where it began.
+Their kernels test for numbers that are not finite once a sample or a period, because the test costs as much as a bead.
+When one is found, the period is repeated from its start and bisected until the step is known; in that step the failure
+has not spread yet, and its earliest stage identifies the bead where it began.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class FixedStep:
 
     def _driver_table(self) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
-        # the table is the faster way, but a period of many steps would not fit into memory
+        # the table is faster, but that of a period of many steps would not fit into memory
         theta = np.pi * np.arange(2 * self.grid + 1 if self.grid <= _LARGEST_TABLE else 0) / self.grid
         driver = self.lowered.slots.driver
         if driver is None:
@@ -93,7 +93,7 @@ class FixedStep:
         return grid_index
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
-        """Bead and step: go through the call again up to the last certain instant, then halve the steps behind it."""
+        """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps behind it."""
         n, row = self.grid, self.lowered.row
         if start is None:
             return max(1, not_finite(y, row)), None

@@ -24,7 +24,7 @@ CERTIFIED = "dop853"
 
 #: Above this relative error the live method is the cheaper one (`granchain accuracy sec2` measures it).
 _LIVE_IS_CHEAPER = 1e-10
-#: The live method's relative error at the live step is about that; it falls with the fourth power of the step.
+#: The live method's usual relative error at the live step; it falls with the fourth power of the step.
 _LIVE_ERROR = 7e-6
 #: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
 #: tests.numerics.honesty`).
@@ -42,7 +42,7 @@ class Setting:
     tolerance: float = 0.0
 
     def finer(self) -> Setting:
-        """The next finer setting: half the step, or a tolerance so much smaller that the error surely is.
+        """The next finer setting: half the step, or a tolerance small enough that the error is certainly smaller.
 
         With error control the error does not fall evenly with the tolerance: an eighth of it sometimes left the error
         unchanged, so the next tolerance is a sixty-fourth.
@@ -61,7 +61,7 @@ class Setting:
 
     @property
     def finest(self) -> bool:
-        """Whether rounding would eat what a finer setting could gain."""
+        """Whether a finer setting gains nothing because of rounding."""
         return self.tolerance < 2e-15 if METHODS[self.method].adaptive else self.refine >= 256
 
     def steps_per_period(self, lowered: Lowered, samples: int) -> int:
@@ -173,7 +173,7 @@ METHODS: dict[str, Method] = {
 AT_A_JUMP = 0.95
 #: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step behind an onset, for several contacts.
 _JUMP = 0.01
-#: Coarsest steps for one of the live method's.
+#: Smallest refinement: steps twice as long as the live method's own.
 _COARSEST = 0.5
 
 

@@ -15,7 +15,7 @@ Start = tuple[np.ndarray, np.ndarray, int]
 
 
 class Output(NamedTuple):
-    """What every kernel writes into beside its result, and the byte that it polls."""
+    """Arrays that every kernel writes beside its result, and the stop flag that it reads."""
 
     log: ForceLog
     counts: np.ndarray

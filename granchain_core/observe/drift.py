@@ -1,9 +1,9 @@
-"""Drift by its name: an observer that nothing holds moves away as a whole.
+"""Drift: an observer that nothing holds moves away as a whole.
 
 The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
 wall alone, and only while they touch it. A multiplier outside the unit circle that is real and whose mode moves all
-beads the same way is no instability of a form but a drift: to one side where it is positive, where it is negative (at
-200 Hz) to either side by turns.
+beads the same way is not an instability of the shape but a drift: to one side if it is positive, alternating between
+the sides if it is negative (at 200 Hz).
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ import numpy as np
 from ..orbits import Orbit
 from ..orbits.flow import StroboscopicMap
 
-#: How far inside the unit circle a multiplier still counts as on it: what a tangent is known to.
+#: A multiplier this near to the unit circle counts as on it: the error of the tangents.
 _NEAR = 1e-6
 
 
 def observer_drift(orbit: Orbit) -> str | None:
-    """A sentence if the observer of `orbit` drifts, None if it does not; the orbit must have been asked for it."""
+    """A sentence if the observer of `orbit` drifts, else None; the orbit must have its observer's multipliers."""
     found = orbit.observer_multipliers
     if found is None or abs(found[0]) < 1.0 - _NEAR:
         return None

@@ -15,7 +15,7 @@ from ..scene import scene
 from ..stop import Stop
 from .twin import Twin, twin
 
-#: What the observer is off by at first: small enough for many periods of linear growth.
+#: First distance of the observer, in drive amplitudes: small enough for many periods of linear growth.
 PERTURBATION = 1e-6
 
 

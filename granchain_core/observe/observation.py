@@ -2,10 +2,10 @@
 
     m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
 
-The motion is computed twice, the second time with half the steps, until both agree to the accuracy asked for; and once
-more from every second sample. The first difference bounds what integration does wrong, three times the second what is
-lost between the samples: where a contact's dashpot makes the force jump, that loss goes with the spacing and with where
-in it the jump lies, so that one halving may gain little.
+The motion is computed with steps that are halved until two computations agree to the accuracy asked for, and once more
+from every second sample. The first difference bounds the integration error, three times the second the interpolation
+error. Where a contact's dashpot makes the force jump, the latter is of the order of the spacing and depends on the
+place of the jump in it, so that one halving may gain little.
 """
 
 from __future__ import annotations
@@ -28,12 +28,11 @@ from .record import ForceRecord, force_record, prepared
 
 #: Most values recorded of one kind: samples times beads.
 MOST_VALUES = 50_000_000
-#: What the difference of two computations is multiplied by; the finer one's error is a sixteenth of it where the
-#: order is 4.
+#: Factor on the difference of two computations; the finer one's error is a sixteenth of it where the order is 4.
 _CAUTION = 1.5
 #: The same for the loss between samples, which is of order 1 and uneven.
 _UNEVEN = 3.0
-#: Steps are halved at most this often: beyond it rounding and the events' own error stop what can be gained.
+#: Most halvings of the steps: beyond it rounding and the error of the events dominate.
 _MOST_HALVINGS = 7
 
 
@@ -63,8 +62,8 @@ class Observation:
     max_output_force, max_output_force_elastic : float
         Largest force on the wall and its elastic part [N].
     integration_error, interpolation_error : float
-        Relative errors of the displacements, by the steps and by what is between the samples; `error_estimate` is
-        their sum.
+        Relative errors of the displacements by the steps and by the interpolation between samples; `error_estimate`
+        is their sum.
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost
@@ -129,7 +128,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
 
     The motion is computed with halved steps until two computations agree, and once from every second sample, which
-    bounds what is lost between the samples (docs/observers.md).
+    bounds the interpolation error (docs/observers.md).
 
     Parameters
     ----------
@@ -146,11 +145,11 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     offset : float or "median"
         Subtracted from the force [N].
     gap : str
-        What is done with a gap in the record: "refuse", "zero" or "interpolate".
+        Treatment of a gap in the record: "refuse", "zero" or "interpolate".
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional
-        Called with the part that is done, 0 to 1.
+        Called with the fraction that is done, 0 to 1.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A measured force over time: checked, its offset and gaps dealt with as was asked, and as a function of time.
+"""A measured force over time: checked, with its offset and gaps treated as requested, and as a function of time.
 
 Between the samples the force is a monotone cubic (Fritsch & Carlson 1980, slopes of Fritsch & Butland 1984, as in
 scipy's PchipInterpolator): it passes through every sample, nowhere beyond its two neighbours, so that a force that is
@@ -38,8 +38,8 @@ def _number(index: int) -> str:
 class ForceRecord:
     """Samples of a force: time (T,) [s], force (T,) [N], measured output force (T,) [N] or None.
 
-    `place` names the place of a sample in its source, "Line 7" or "Sample 6", for sentences; `understood` says what
-    was read and what was done to it.
+    `place` names the place of a sample in its source, "Line 7" or "Sample 6", for messages; `understood` describes how
+    it was read and treated.
     """
 
     time: np.ndarray
@@ -55,7 +55,7 @@ class ForceRecord:
         return float(np.median(np.diff(self.time)))
 
     def thinned(self) -> ForceRecord:
-        """Every second sample, the first and the last among them: what a sensor half as fast would have seen."""
+        """Every second sample, the first and the last among them: the record of a sensor half as fast."""
         kept = np.unique(np.append(np.arange(0, len(self.time), 2), len(self.time) - 1))
         return ForceRecord(self.time[kept], self.force[kept], place=lambda i: self.place(int(kept[i])))
 
@@ -88,7 +88,7 @@ def _array(name: str, values: object) -> np.ndarray:
 
 
 def checked(record: ForceRecord) -> ForceRecord:
-    """The record itself if every number is finite and time only rises."""
+    """The record itself if every number is finite and times ascend."""
     if len(record.time) < FEWEST:
         raise BadInput(f"There are {len(record.time)} samples of the force; at least {FEWEST} are needed.")
     for name in ("time", "force", "output"):

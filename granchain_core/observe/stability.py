@@ -1,4 +1,4 @@
-"""What makes an observer stable: its largest multiplier against a knob, and where it crosses 1.
+"""Stability of an observer: its largest multiplier against a knob, and where it crosses 1.
 
 The orbit is followed from value to value, each Newton iteration starting from the orbit before; where that ends, the
 steady state from rest is tried. A crossing is narrowed down by bisection, again on orbits and not on the interpolated
@@ -18,7 +18,7 @@ from ..orbits import Orbit, periodic_orbit
 from ..scene import Scene
 from ..stop import Stop
 
-#: A crossing is located to this part of the distance between the two values it lies between.
+#: A crossing is located to this fraction of the distance between the two neighbouring values.
 LOCATED = 1e-3
 #: Most values of one scan.
 MOST_VALUES = 2000
@@ -42,7 +42,7 @@ class ObserverPoint:
 
 @dataclass(frozen=True)
 class Threshold:
-    """The observer becomes stable or unstable between `low` and `high`; `gains` says which with rising value."""
+    """The observer's stability changes between `low` and `high`; `gains`: it becomes stable as the value rises."""
 
     low: float
     high: float
@@ -98,7 +98,7 @@ def _follow(scene: Scene, before: Orbit | None, period: int | None,
         try:
             return periodic_orbit(scene, before.period, before.state, observer=True, stop=stop), ""
         except NumbersFailed:
-            pass  # the orbit before has ended or is too far away: what the chain does from rest comes next
+            pass  # the orbit before has ended or is too far away: the steady state from rest is tried next
     try:
         return periodic_orbit(scene, period, observer=True, stop=stop), ""
     except NumbersFailed as problem:

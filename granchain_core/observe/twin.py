@@ -1,8 +1,8 @@
-"""Does an observer find its chain? Model (4) of Zhang et al. 2016, from a start that is off by a little.
+"""Whether an observer converges to its chain: model (4) of Zhang et al. 2016, from a start slightly off.
 
 The distance between observer and chain, in scaled units |(Δu/A0, Δv/(A0 φ))|, changes by the observer's leading
 multiplier every period of the orbit as long as it is small. Here it is followed in time, where nothing is linearised,
-and the multiplier is read off from it: successive differences obey d_{k+1} = a d_k where one real multiplier leads, and
+and the multiplier is obtained from it: successive differences obey d_{k+1} = a d_k where one real multiplier leads, and
 d_{k+2} = a d_{k+1} + b d_k where two do, which then solve z² = a z + b.
 """
 
@@ -31,13 +31,13 @@ ROUNDING = 1e-11
 IN_STEP = 1e-12
 #: Most periods of one twin: a minute or so.
 MOST_PERIODS = 20_000
-#: Periods after which the fast multipliers are taken to have died out, as a part of the usable ones.
+#: Fraction of the usable periods after which fast multipliers count as decayed.
 _TRANSIENT = 1.0 / 3.0
 #: Fewest strobes from which a rate is taken.
 _FEWEST = 4
 #: Part that a fit by one multiplier may leave unexplained before two are fitted.
 _ONE_IS_ENOUGH = 0.03
-#: A difference is called a translation when the uniform shift is so much of it (squared cosine).
+#: Squared cosine between a difference and a uniform shift above which it is called a translation.
 TRANSLATION = 0.7
 
 
@@ -46,7 +46,7 @@ class Twin:
     """A chain x and its observer y in time: T samples of N beads in SI.
 
     `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is its
-    distance's factor per orbit period as measured in time, `measured` one or two leading multipliers read off from
+    distance's factor per orbit period as measured in time, `measured` one or two leading multipliers fitted to
     it (None and empty where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is
     not periodic, or cuts tension. `translation` is how much of the last linear difference is one shift of all beads.
     """
@@ -120,7 +120,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
 
     The chain starts on its settled orbit. `perturbation` is the observer's first distance: a number moves its beads at
     random (always the same) by that part of A0, root mean square; a `State` is where it starts, `rest(scene)` for one
-    that knows nothing. Raises `BadInput`, `NumbersFailed`, `Cancelled`.
+    without any knowledge of the chain. Raises `BadInput`, `NumbersFailed`, `Cancelled`.
     """
     _check(periods, samples)
     began = time.perf_counter()

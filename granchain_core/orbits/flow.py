@@ -22,13 +22,13 @@ from ..stop import Stop
 
 #: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
 TOLERANCE = 1e-13
-#: More changes of contact than this for each contact in one period are chatter.
+#: More contact events than this for each contact in one period are chatter.
 _EVENTS_PER_CONTACT = 500
 
 
 @dataclass(frozen=True, eq=False)
 class Flow:
-    """Where n periods lead: end (2N,) of displacements then w in scaled units, derivative (2N, columns).
+    """The flow over n periods: end (2N,) of displacements then w in scaled units, derivative (2N, columns).
 
     `log_determinant` is ∫ trace along the way, to be compared with the derivative's own (Liouville).
     `changes` (events, 2) are the contact events on the way: contact + 1, negative where it opened, and the time over
@@ -51,7 +51,7 @@ def refuse_cut(scene: Scene) -> None:
 class StroboscopicMap:
     """x → the state n drive periods later, for scaled x = (u, w) at phase 0.
 
-    Raises `BadInput` for a scene that cuts tension: it knows contacts that are open and contacts that press.
+    Raises `BadInput` for a scene that cuts tension: only open and pressed contacts are implemented.
     """
 
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None) -> None:
@@ -81,7 +81,7 @@ class StroboscopicMap:
     def second_route(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by tangents in (u, v) with their jumps at contact events, as one of (u, w).
 
-        Without `jumps` it is wrong: what one gets who forgets the saltation, to be shown beside the right one.
+        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison.
         Raises `BadInput` for a damping that is not the linear dashpot's.
         """
         lo = self.engine.lowered
@@ -96,7 +96,7 @@ class StroboscopicMap:
         return np.linalg.solve(velocity_from_w(lo, self.inner(self.engine.y)), tangent.matrix)
 
     def end(self, x: np.ndarray) -> np.ndarray:
-        """Where n periods lead from x, without tangents."""
+        """The state n periods after x, without tangents."""
         self._run(x, None)
         return self.inner(self.engine.y)
 

@@ -1,7 +1,8 @@
 """Long chains: Newton's step and the leading multipliers from products of the derivative with single directions.
 
 The derivative of a chain of a thousand beads has four million entries; its product with one direction costs little
-more than the motion. Disturbances shrink in almost all directions, so a Krylov space of a few dozen holds what matters.
+more than the motion. Disturbances shrink in almost all directions, so a Krylov space of a few dozen dimensions
+suffices.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from .flow import StroboscopicMap
 LEADING = 24
 #: Their error, relative to the largest.
 _EXACT = 1e-9
-#: Newton's step is solved to this; its error is that times the residual.
+#: Relative tolerance of GMRES; the error of Newton's step is this times the residual.
 _SOLVED = 1e-6
 #: Products with the derivative after which GMRES restarts.
 _RESTART = 80

@@ -1,7 +1,7 @@
 """Floquet modes: an eigenvector of the monodromy matrix carried along one period as a motion of the chain.
 
 A disturbance δx of an orbit of n drive periods T obeys δx(nT) = M δx(0). With M v = μ v it comes back as μ times
-itself, and in between it is what two neighbouring motions differ by:
+itself, and in between it is the difference of two neighbouring motions:
 
     δu(t) = [u(t; x0 + ε v) − u(t; x0 − ε v)] / 2ε
 

@@ -1,7 +1,7 @@
 """Periodic orbits by Newton's method on the stroboscopic map, with their Floquet multipliers.
 
 A fixed point of the n-period map is an orbit whether it is stable or not; its multipliers, the eigenvalues of the
-map's derivative, say which. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016,
+map's derivative, decide it. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016,
 is a second chain pushed by the first one's input force: linearised about the first its tangents are the chain's own
 without the driver's contact, so its multipliers come from the same orbit.
 """
@@ -28,9 +28,9 @@ CONVERGED = 1e-11
 MOST_ITERATIONS = 12
 #: Beads up to which the whole derivative is computed; of longer chains only the leading multipliers are.
 DENSE = 100
-#: Multipliers smaller than this part of the largest have no digit that is not rounding.
+#: Multipliers smaller than this part of the largest are rounding.
 _ROUNDING = 1e-13
-#: Damping of a Newton step is halved at most this often before it is called a failure.
+#: Most halvings of a Newton step before the iteration fails.
 _MOST_HALVINGS = 6
 
 
@@ -47,9 +47,9 @@ class Orbit:
     state : State
         Where the orbit is at drive phase 0.
     residual : float
-        What the map still changes, over the state's largest entry.
+        Change of the state by the map, over the state's largest entry.
     newton_residuals : tuple of float
-        Its history.
+        The residuals of all iterations.
     multipliers : numpy.ndarray of complex, shape (2N,)
         Sorted by modulus, largest first; of more than 100 beads the leading ones only.
     liouville : float or None
@@ -58,7 +58,7 @@ class Orbit:
     changes : numpy.ndarray
         Contact events along the orbit.
     observer_multipliers : numpy.ndarray of complex or None
-        Those of the observer of model (4), where they were asked for.
+        Those of the observer of model (4), where they were requested.
 
     Examples
     --------
@@ -186,7 +186,7 @@ def _dense(x: np.ndarray) -> bool:
 
 
 def _flow(strobe: StroboscopicMap, x: np.ndarray) -> Flow:
-    """Where the map leads, with the derivative where it is computed as a whole."""
+    """The flow from x, with the derivative where it is computed as a whole."""
     return strobe(x) if _dense(x) else strobe(x, directions=np.zeros((len(x), 0)))
 
 

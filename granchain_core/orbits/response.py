@@ -1,4 +1,4 @@
-"""What kind of response a periodic orbit is: 1:n resonance, 1:1 anti-resonance, or neither.
+"""Classification of a periodic orbit's response: 1:n resonance, 1:1 anti-resonance, or neither.
 
 Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives one strong push every n periods, at the
 moment at which the pulse reflected by the wall comes back to it; in an anti-resonance pulses interfere destructively,
@@ -11,8 +11,8 @@ rule       one strong push in n ≥ 2 periods is a 1:n resonance. One push a per
            at least a third, else an anti-resonance. Where less than `STOPS` of the input force arrives at the wall the
            chain is in its stop band and the response is neither.
 
-The drive's phase at contact alone does not tell the two apart: for section 2 it is 343° at the 1:1 peak and 355° in the
-valley behind it.
+The drive's phase at contact alone does not distinguish the two: for section 2 it is 343° at the 1:1 peak and 355° in
+the valley behind it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from ..steady.regime import Regime
 from ..steady.resonance import ENDED, STOPS, pushes
 from .orbit import Orbit
 
-#: A push is met by the reflected pulse if bead 1 comes back with this part of the drive's largest speed.
+#: The reflected pulse is in step if bead 1 comes back with this fraction of the drive's largest speed.
 IN_STEP = 1.0 / 3.0
 #: Samples a period: events are placed to about a degree of the drive.
 _SAMPLES = 480
@@ -64,7 +64,7 @@ class Response:
 
 
 def response(orbit: Orbit) -> Response:
-    """The response that a periodic orbit is."""
+    """The response of a periodic orbit."""
     run = recorded(orbit)
     counted = pushes(run)
     strong, periods = counted if counted is not None else (orbit.period, orbit.period)

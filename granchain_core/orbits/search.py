@@ -2,7 +2,7 @@
 
 A chaotic or quasi-periodic motion passes near unstable periodic orbits. States that nearly come back after n periods
 are near one of period n (Auerbach et al. 1987); and the orbit that a period doubling or a Neimark–Sacker bifurcation
-left unstable lies in the middle of what became of it. Newton's method on the stroboscopic map is started from the
+made unstable lies in the middle of the new attractor. Newton's method on the stroboscopic map is started from the
 present state, from the middle of the section and from the closest returns.
 """
 

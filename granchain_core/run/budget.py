@@ -1,9 +1,9 @@
-"""What a run will cost, before it is run, and a refusal with what would fit.
+"""The cost of a run, estimated before it starts, and a refusal that names what would fit.
 
 The number of steps of a fixed-step method is known; that of a method with error control, and the time of a step, are
 measured on `sec2` and `rig` (`StepCost` in integrate/methods.py) and scaled to this machine by the speed of its square
-roots. A run is computed at least twice, the second time finer, and about as often a third time: the estimate
-lies half way between on a logarithmic scale.
+roots. A run is computed at least twice, the second time finer, and in about half of all cases a third time: the
+estimate is the geometric mean of both.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from ..scene import Scene
 
 #: Default budget of a run [s].
 BUDGET = 86_400.0
-#: Seconds of one recorded sample, and of each bead in it.
+#: Time of one recorded sample [s], and of each bead in it [s].
 _SAMPLE = 0.6e-6, 40e-9
-#: Seconds of the measure of speed on the machine the figures above were taken on.
+#: Time of the 4096 square roots on the machine on which step costs were measured [s].
 _REFERENCE_SPEED = 5.0e-6
 
 
@@ -49,7 +49,7 @@ class _Compiler(event.Listener):
         return getattr(self._own, "seconds", 0.0)
 
     def on_start(self, event: event.Event) -> None:
-        """The compiler is asked for; kernels that call others ask again meanwhile."""
+        """The compiler starts; kernels that call others start it again meanwhile."""
         self._own.depth = getattr(self._own, "depth", 0) + 1
         if self._own.depth == 1:
             self._own.began = time.perf_counter()
@@ -114,7 +114,7 @@ def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, re
 
 
 def _share(setting: Setting) -> float:
-    """What a computation costs beside others of the same run."""
+    """Relative cost of a computation among those of the same run."""
     if METHODS[setting.method].adaptive:
         return float(max(setting.tolerance, 1e-16) ** -METHODS[setting.method].cost.power)
     return setting.refine
@@ -136,7 +136,7 @@ def check_budget(scene: Scene, setting: Setting, periods: int, record: int, samp
 
 
 def _what_fits(scene: Scene, total: int, part: float) -> list[str]:
-    """What one could ask for instead, where a part of the run fits."""
+    """Requests that would fit, where a part of the run does."""
     found, periods, beads = [], int(total * part), int(scene.N * part)
     if periods >= 1:
         found.append(f"{periods} period{'s' if periods > 1 else ''} in all")

@@ -1,4 +1,4 @@
-"""Frozen descriptions of a chain in SI: what there is, not how it is computed."""
+"""Frozen descriptions of a chain in SI: its physics, not how it is computed."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Description:
     Attributes
     ----------
     name, title, look_at, paper : str
-        What it is called, what to look at, and where in the paper it stands.
+        Its name and title, a hint what to observe, and the section of the paper.
     pattern : tuple of Bead
         Repeated to N beads: two entries make a dimer.
     N : int
@@ -177,7 +177,7 @@ class Description:
         return {name: getattr(self, name) for name in QUANTITIES}
 
     def differences(self) -> dict[str, Any]:
-        """Knobs that differ from the preset (kappa left out: k says it)."""
+        """Knobs that differ from the preset (without kappa, which follows from k)."""
         base = dict(self.preset)
         return {n: v for n, v in self.knobs.items() if n != "kappa" and n in base and base[n] != v}
 
@@ -193,5 +193,5 @@ class Description:
 
     @property
     def cuts_tension(self) -> bool:
-        """Whether contact forces are cut at zero: there has to be damping for them to be below."""
+        """Whether contact forces are cut at zero: only with damping can they be negative."""
         return self.tension == "cut" and self.has_dissipation

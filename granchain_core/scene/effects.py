@@ -1,4 +1,4 @@
-"""The effects a scene may have, each once: which knobs it has, when it is there, its term in the equation, its words.
+"""The effects of a scene, each once: its knobs, when it is present, its term in the equation, and its names.
 
 `Scene.effects`, the equation on screen, the slots that are filled (lower.py), the names of compiled kernels (warm.py),
 `--explain`, the page's switches and the kernels whose cost is measured are all read from this table.
@@ -30,9 +30,9 @@ class Effect:
     """One effect.
 
     `slot` is its field of the kernels' `Slots`. `off` are the knob values that switch it off; `knobs` are those that
-    come back when it is switched on, and `usual` what they are where neither the visitor nor the scene has said.
-    `latex` puts its term into the equation. `label` names it in a scene, `key` in the name of a compiled kernel, where
-    its laws are told apart. Where it is not `possible`, `refusal` says why.
+    come back when it is switched on, and `usual` their values where neither the visitor nor the scene has set them.
+    `latex` puts its term into the equation. `label` names it in a scene, `key` in the name of a compiled kernel, which
+    names the law too. Where it is not `possible`, `refusal` says why.
     """
 
     name: str

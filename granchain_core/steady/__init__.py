@@ -1,1 +1,1 @@
-"""What a driven chain does in the end: settling, regime, resonance curve."""
+"""Steady states of a driven chain: settling, regime, resonance curve."""

@@ -18,7 +18,7 @@ from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
 from .steady_state import SteadyState
 
-#: How the largest forces on an orbit are found where they jump: finer than the batch that found the orbit.
+#: Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
 _LOCATED = live(8)
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
@@ -38,7 +38,7 @@ class Job:
     """A scene on its way, from the scaled state y at phase 0, after `run` periods before.
 
     `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record, its
-    forces [N] and what a first measurement of its Lyapunov exponent said.
+    forces [N] and a first measurement of its Lyapunov exponent.
     """
 
     scene: Scene
@@ -59,7 +59,7 @@ class Job:
 
     @property
     def affordable(self) -> bool:
-        """Whether the budget of steps allows another long look."""
+        """Whether the budget of steps allows another measurement."""
         return self.run + MOST_PERIODS < self.affordable_periods
 
     def fine_result(self, block: Batch, lane: int) -> SteadyState:
@@ -96,7 +96,7 @@ class Job:
 
 
 def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:
-    """What the coarse run alone has come to."""
+    """The result of the coarse run alone."""
     run = int(block.state.periods[lane])
     period = block.state.seen[lane, 0]
     if period <= 0:
@@ -126,7 +126,7 @@ def check_coarse(job: Job, block: Batch, lane: int) -> SteadyState | Job | None:
 
 
 def _periodic(block: Batch, lane: int, run: int) -> Regime:
-    """The periodic regime that a coarse lane has come to; followed where extrapolations brought it there."""
+    """The periodic regime of a coarse lane; `followed` where extrapolations led to it."""
     period, rate, distance = block.state.seen[lane]
     return Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run,
                   followed=bool(block.state.slowest[lane] > 0.0))
@@ -140,7 +140,7 @@ def _in_doubt(job: Job, block: Batch, lane: int, run: int, record: np.ndarray) -
 
 
 def unsettled(job: Job, block: Batch, lane: int, run: int) -> SteadyState:
-    """What a lane has come to when its budget of steps is spent."""
+    """The result of a lane whose budget of steps is spent."""
     tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
     state = job.lowered.unscaled(block.state.y[:, lane])
     return SteadyState(job.scene, tops, Regime.unsettled(run), None, state,

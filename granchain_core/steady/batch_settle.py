@@ -28,8 +28,8 @@ from .nearby_orbit import MOST_BEADS, seen_modulus
 from .regime import agree, clearly_chaotic, find_period, irregular
 from .steady_state import SteadyState
 
-#: The finer run's steps for one of the coarse run: its force errors are then a tenth of the change between the two,
-#: which is what is claimed.
+#: Steps of the finer run for one of the coarse run: its force errors are then a tenth of the change between the two,
+#: and the change is claimed.
 _FINER = 3
 #: Periods after which a draft gives up.
 _DRAFT = 300
@@ -94,7 +94,7 @@ class _Lanes:
         return None
 
     def _free(self, lane: int) -> None:
-        """Leave a lane at rest with nothing to look at until it is filled again."""
+        """Leave a lane at rest, without checks, until it is filled again."""
         job = self.jobs.pop(lane)
         self.block.put(lane, job.lowered, np.zeros_like(job.y), 1, NEVER, NEVER)
 
@@ -107,7 +107,7 @@ class _Lanes:
         return [] if self.jobs else [job for job in jobs if _steps(job) <= MOST_APART * _steps(jobs[0])]
 
     def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
-        """Tell doubtful jobs apart; one whose neighbours come closer is given more time."""
+        """Classify doubtful jobs by their Lyapunov exponents; one whose neighbours come closer runs on."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
         found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], BLOCKS, BLOCK, self.stop)
         for job, (growth, strobes, tops, y) in zip(jobs, found, strict=True):
@@ -144,7 +144,7 @@ def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> I
 def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
-    What is found does not depend on which starts share the lanes, but for rounding. A draft ends with the coarse run
+    Up to rounding, results do not depend on which starts share the lanes. A draft ends with the coarse run
     and after few periods: without errors, and what is not periodic by then is called unsettled. Raises `Cancelled`.
     """
     first = next(starts, None)

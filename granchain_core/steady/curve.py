@@ -164,7 +164,7 @@ def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
 
 
 def second_look(doubtful: SteadyState, stop: Stop) -> SteadyState:
-    """What a batch left in doubt: the chain by itself, from where the batch left it."""
+    """The steady state of a chain that a batch left in doubt, settled alone from its last state."""
     found = safe_state(doubtful.scene, doubtful.state, stop)
     run = doubtful.regime.periods_run + found.regime.periods_run
     return replace(found, regime=replace(found.regime, periods_run=run), number=doubtful.number)
@@ -190,7 +190,7 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     start : str
         "rest": points come coarse first, from all cores; "up" or "down": the state is carried along in that direction.
     stop : Stop, optional
-        Looked at between points; once it is set the curve ends, and a running point is given up.
+        Once it is set the curve ends, and a running point is abandoned.
     workers : int, optional
         Threads; one for each core if not given.
 
@@ -248,7 +248,7 @@ def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
 
 
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
-    """A first impression of the curve from rest, on one core, to be drawn while a knob still moves.
+    """A draft of the curve from rest, on one core, to be drawn while a knob still moves.
 
     Coarse steps and few periods: no errors are claimed, and what is not periodic by then is unsettled. Empty for scenes
     that lanes cannot run. Raises `BadInput` and `Cancelled`.
@@ -274,7 +274,7 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
         "rest": every point begins at rest, all cores work; "up" or "down": the state is carried along that way, so
         that hysteresis shows.
     stop : Stop, optional
-        Looked at between points; once it is set the curve ends with what there is.
+        Once it is set the curve ends with the points found so far.
     on_point : callable, optional
         Called with each `CurvePoint` as it is finished.
     workers : int, optional

@@ -31,9 +31,9 @@ REMEMBERED = 420
 _MEASUREMENTS = 3
 #: Beads up to which every claim of `settled` is confirmed by multipliers; of longer chains those in doubt.
 _ALWAYS = 30
-#: A claim is in doubt if changes shrink by less than this a drive period: an orbit that grows slowly may look like it.
+#: A claim is in doubt if the decay per drive period is above this: a slowly unstable orbit may look like it.
 CLEAR_DECAY = 0.9
-#: Factor on the number of periods for a motion beside an unstable orbit: it departs as slowly as others approach.
+#: Factor on the largest number of periods for a motion beside an unstable orbit, since departures are slow too.
 _PATIENCE = 4
 #: Largest |μ| of a settled motion, by differences at its own state, below which Newton's method is not needed.
 _CLEAR = 0.97
@@ -59,7 +59,7 @@ class Decisions:
         self._measured: Regime | None = None
 
     def next(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
-        """What follows from the last strobes (P, 2, N) of `engine` and from the regime that they show."""
+        """The next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
         if regime.name == "periodic":
             return self._confirmed(engine, regime)
         if self.scene.N <= MOST_BEADS:
@@ -93,7 +93,7 @@ class Decisions:
                     multiplier=orbit.modulus))
 
     def _beside(self, orbit: NearbyOrbit, regime: Regime) -> Decision | None:
-        """What an orbit beside the motion decides, if anything."""
+        """The decision by an orbit beside the motion, if it allows one."""
         if orbit.approached():
             return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus, decay=None,
                                     distance=orbit.distance, followed=True, approaches=None), orbit.point.x)

@@ -15,8 +15,8 @@ from ..stop import Stop
 
 #: Distance of the shadow in drive amplitudes: far above rounding, far below the kinks of the contacts.
 _DISTANCE = 1e-8
-#: Most steps a period of one scene over those of another that may run side by side: what a faster one does beyond its
-#: own periods must not push them out of the record.
+#: Largest ratio of steps a period of two scenes that run side by side: the extra periods of the faster one must not
+#: push its own out of the record.
 MOST_APART = 2.5
 
 
@@ -25,7 +25,7 @@ def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, bl
     """`exponents` of up to four scenes side by side in lanes, each from its scaled state (2(N+2),) at phase 0.
 
     Of each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its last periods
-    (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. What is found
+    (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. The result
     for one does not depend on the others; their steps a period may differ by a factor `MOST_APART`.
     """
     steps = [lowered.steps_per_period() for lowered, _ in scenes]

@@ -43,7 +43,7 @@ _PART = 0.3
 _TURN = 16
 #: Directions whose |μ| is below this, or below this part of the largest, have decayed after those orbits.
 _SLOW = 0.3
-#: Length to which a departure is drawn out along the directions that grow.
+#: Length to which a departure is enlarged along the growing directions, relative to the motion.
 _DRAWN_OUT = 3e-3
 #: The orbit has a shorter period if it is back this near after a part of it.
 _BACK = 1e-6
@@ -65,12 +65,12 @@ class NearbyOrbit:
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers are inside the unit circle, by more than they may be wrong."""
+        """Whether all multipliers are inside the unit circle by more than their error."""
         return self.modulus < 1.0 - UNSURE
 
     @property
     def unstable(self) -> bool:
-        """Whether one is outside, by more than it may be wrong."""
+        """Whether one is outside by more than its error."""
         return self.modulus > 1.0 + UNSURE
 
     @property
@@ -80,7 +80,7 @@ class NearbyOrbit:
 
     @property
     def distance(self) -> float:
-        """How far the orbit found may be from the map's own: what is left of the residual over 1 − |μ|."""
+        """How far the orbit found may be from the map's own: its residual over 1 − |μ|."""
         return self.point.residual / max(UNSURE, 1.0 - self.modulus)
 
     def approached(self) -> bool:
@@ -109,14 +109,14 @@ class NearbyOrbit:
         return now, later
 
     def drawn_out(self) -> np.ndarray | None:
-        """The state to which a motion that leaves this orbit comes later: its part along what grows, made larger.
+        """A later state of a motion that leaves this orbit: its part along the growing directions, enlarged.
 
         None where it is that far already.
         """
         values, right = np.linalg.eig(self.point.derivative)
         grows = np.abs(values) > 1.0
         parts = np.linalg.solve(right, (self.x - self.point.x).astype(complex))[grows]
-        if not np.abs(parts).max() > 0.0:  # on the orbit itself: one way is as good as another
+        if not np.abs(parts).max() > 0.0:  # on the orbit itself: any direction will do
             parts = np.ones(len(parts), dtype=complex)
         leaving = np.real(right[:, grows] @ parts)
         length = float(np.abs(leaving / sizes(self.point.x)).max())

@@ -21,11 +21,11 @@ from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DIST
 _SLOW_WINDOW = 100
 #: Factor by which changes must shrink from one window to the next.
 _SHRINKS = 0.98
-#: A departure is small where changes are, relative to the largest displacement and velocity.
+#: A departure counts as small while changes are below this, relative to the largest displacement and velocity.
 _SMALL = 0.1
-#: Growth per period that no departure from an orbit keeps up for as long as a motion is given to settle.
+#: Lyapunov exponent per period that no departure from an orbit sustains over the periods in which a motion may settle.
 CLEAR_GROWTH = 0.05
-#: Strobes that it takes to see that.
+#: Strobes needed for the three windows.
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
 
@@ -40,7 +40,7 @@ class Regime:
     period : int or None
         In drive periods, where the motion is periodic.
     decay : float or None
-        By how much changes shrank per orbit, where that was seen.
+        Factor by which changes shrank per orbit, where that was observed.
     distance : float or None
         Bound on the relative distance to the orbit.
     periods_run : int
@@ -50,9 +50,9 @@ class Regime:
     multiplier : float or None
         Largest |μ| of the n-period map, where it was computed.
     followed : bool
-        The motion was still on its way, and the orbit it goes to was found ahead of it.
+        The motion was still on its way, and the orbit that it approaches was found by Newton's method or extrapolation.
     approaches : int or None
-        Period of an orbit that an unsettled motion goes to.
+        Period of an orbit that an unsettled motion approaches.
 
     Examples
     --------
@@ -74,12 +74,12 @@ class Regime:
 
     @classmethod
     def unsettled(cls, periods_run: int) -> Regime:
-        """A motion of which nothing is known after so many periods."""
+        """A motion of which nothing is known after `periods_run` periods."""
         return cls("unsettled", None, None, None, periods_run)
 
     @property
     def slowness(self) -> float:
-        """What is left per orbit of a distance from it: |μ|, else the decay seen, else a half."""
+        """Factor by which a distance shrinks per orbit: |μ|, else the observed decay, else a half."""
         if self.multiplier is not None:
             return min(1.0 - 1e-6, self.multiplier)
         return min(0.999, self.decay or 0.5)
@@ -109,7 +109,7 @@ class Regime:
 
 
 def modulus_words(modulus: float) -> str:
-    """A modulus with as many figures as tell it from 1 and from 0."""
+    """A modulus with enough figures to distinguish it from 1 and from 0."""
     if abs(modulus - 1.0) < 0.01:
         return f"{modulus:.6f}" if abs(modulus - 1.0) < 1e-4 else f"{modulus:.4f}"
     if modulus < 0.0095:
@@ -136,7 +136,7 @@ def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
 
 def look(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING,
          slowest: float = 0.0) -> tuple[Regime, Approach | None]:
-    """Periodic with the smallest n whose distance bound holds, else unsettled and what is approached, if anything.
+    """Periodic with the smallest n whose distance bound holds, else unsettled and the orbit approached, if any.
 
     Strobes (P + 1, 2, N). Changes below `rounding` are the method's own and count as none; `slowest` is a
     rate of decay per drive period that is known to be there.
@@ -148,7 +148,7 @@ def look(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = R
 
 def in_words(seen: Sequence[float] | np.ndarray, run: int,
              rounding: float = ROUNDING) -> tuple[Regime, Approach | None]:
-    """The six numbers of section.find after `run` periods as a regime and what is approached.
+    """The six numbers of section.find after `run` periods as a regime and the orbit approached, if any.
 
     Changes that are lost in rounding may still be those of a slow approach: the distance is no better known than
     rounding·r/(1 − r) with the decay r.
@@ -186,7 +186,7 @@ def irregular(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
 
 
 def clearly_chaotic(exponents: np.ndarray) -> bool:
-    """Whether one measurement is enough: both halves of it show a growth with which no orbit is still being left.
+    """Whether one measurement is enough: both halves show a growth that no departure from an orbit sustains.
 
     After 400 periods a growth of 0.05 a period has multiplied a distance by 5e8.
     """
@@ -211,7 +211,7 @@ def _windows(strobes: np.ndarray) -> Iterator[np.ndarray]:
 def slowing(strobes: np.ndarray) -> bool:
     """Whether the motion is still on its way: changes over some period shrink through three windows and none grow.
 
-    On a closed curve or a strange attractor their largest value stays what it is, or some grow while others shrink.
+    On a closed curve or a strange attractor their largest value does not change, or some grow while others shrink.
     """
     return _slowing(_windows(strobes))
 

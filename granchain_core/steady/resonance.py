@@ -34,7 +34,7 @@ STOPS = 0.15
 
 @dataclass(frozen=True)
 class Place:
-    """What the curve from rest has where a state lies on it.
+    """The place of a state on the curve from rest.
 
     `kind` is "peak", "valley", "flank", "stop band" or "" (neither, or the state is not on the curve); of a peak and of
     a flank the peak's frequency [Hz] and its period in drive periods, None where it is not periodic.

@@ -1,8 +1,8 @@
-"""The n-period stroboscopic map by the method that draws pictures, its derivative by differences, its fixed points.
+"""The n-period stroboscopic map by the live method, its derivative by differences, and its fixed points.
 
-Whether a claim near |μ| = 1 holds is asked here, in the middle of settling: with kernels that are compiled already, and
-for cut tensions too. The tangent flow (`granchain_core/orbits`) is for orbits that are asked for by name; both agree on
-|μ| to 1e-5 (tests/numerics/test_label_honesty.py).
+Claims near |μ| = 1 are tested with it while settling: its kernels are compiled already, and it allows cut tension. The
+tangent flow (`granchain_core/orbits`) is for orbits requested as such; both agree on |μ| to 1e-5
+(tests/numerics/test_label_honesty.py).
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from ..integrate import Engine, certified, live
 from ..scene import Scene
 from ..stop import Stop
 
-#: Steps for one of the live method's: multipliers are then right to some 1e-6, next to a tangent flow's.
+#: Steps for one of the live method's: multipliers then differ from those of a tangent flow by about 1e-6.
 _REFINE = 4.0
 #: Tolerance of the certified method, which scenes that cut tension need.
 _TOLERANCE = 1e-11
 #: Half the difference of two states over the largest displacement or w: the error is its square times the map's third
 #: derivative, and the method's noise, some 1e-10, over it.
 _DIFFERENCE = 1e-5
-#: The same for a difference to one side, whose error is the difference times the map's second derivative.
+#: The same for a one-sided difference, whose error is the difference times the map's second derivative.
 _TO_ONE_SIDE = 1e-6
 #: Relative residual at which a fixed point is found.
 _FOUND = 1e-9
@@ -31,7 +31,7 @@ _FOUND = 1e-9
 _MOST_ITERATIONS = 10
 #: The derivative is renewed if an iteration leaves more than this part of the residual.
 _ENOUGH = 0.1
-#: A step of Newton's method is halved so often at most.
+#: Most halvings of a step of Newton's method.
 _HALVINGS = 5
 
 
@@ -44,13 +44,13 @@ class StrobeMap:
         self.periods = periods
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
-        """Where the map leads."""
+        """The state n periods later."""
         self.engine.start_scaled(x)
         self.engine.periods(self.periods, watch=False)
         return self.inner(self.engine.y)
 
     def passed(self, x: np.ndarray, first: int, between: int) -> tuple[np.ndarray, np.ndarray]:
-        """The first so many states (first, 2N) on the way from x, and as many after `between` more."""
+        """The first `first` states (first, 2N) on the way from x, and as many after `between` more."""
         self.engine.start_scaled(x)
         early = self._next(first)
         self.engine.periods(self.periods * between, watch=False)
@@ -68,7 +68,7 @@ class StrobeMap:
         return self.engine.lowered.beads_of(y)
 
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
-        """The derivative (2N, 2N) by differences; those to one side take half the time and are right to some 1e-4."""
+        """The derivative (2N, 2N) by differences; one-sided ones take half the time and are good to about 1e-4."""
         matrix, width = np.zeros((len(x), len(x))), (_DIFFERENCE if central else _TO_ONE_SIDE) * sizes(x)
         middle = None if central else self(x)
         for i in range(len(x)):
@@ -83,7 +83,7 @@ class StrobeMap:
 
 @dataclass(frozen=True, eq=False)
 class FixedPoint:
-    """A fixed point of the n-period map with the map's derivative there and what is left of the residual."""
+    """A fixed point of the n-period map with the map's derivative there and the residual."""
 
     x: np.ndarray
     derivative: np.ndarray
@@ -103,13 +103,13 @@ def sizes(x: np.ndarray) -> np.ndarray:
 
 
 def fixed_point(strobe: StrobeMap, x: np.ndarray) -> FixedPoint | None:
-    """The fixed point that Newton's method leads to from x; None where it leads nowhere.
+    """The fixed point to which Newton's method converges from x; None where it does not.
 
-    The derivative is computed anew only where the one that is there does not gain enough.
+    The derivative is computed anew only where the present one does not reduce the residual enough.
     """
     try:
         return _newton(strobe, x)
-    except (NumbersFailed, np.linalg.LinAlgError):  # thrown where nothing can be followed, or |μ| = 1
+    except (NumbersFailed, np.linalg.LinAlgError):  # raised where a trial state cannot be followed, or |μ| = 1
         return None
 
 

@@ -1,4 +1,4 @@
-"""Independent work on all cores: threads that draw items from one iterator and hand on what they find.
+"""Independent work on all cores: threads that draw items from one iterator and yield their results.
 
 Kernels run without the interpreter's lock, so threads are enough, and a result needs no copy.
 """
@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar
 from ..errors import Cancelled
 from ..stop import Stop
 
-#: Seconds between looks whether the computation is still wanted.
+#: Time between two checks whether the computation is still wanted [s].
 _LOOK = 0.05
 
 Item = TypeVar("Item")
@@ -42,7 +42,7 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
                  pause: Callable[[], None] | None = None) -> Iterator[Result]:
     """What `work` yields from `items`, in one thread for each core, in the order found.
 
-    `stop` is looked at between results and may end it; closing the generator does too, and `ended`, which the kernels
+    `stop` is read between results and ends it; closing the generator does too, and `ended`, which the kernels
     of `work` poll, is then set. `pause` is called before an item is drawn and may wait. A problem in a thread is raised
     here.
     """

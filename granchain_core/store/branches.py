@@ -1,4 +1,4 @@
-"""Branches in HDF5: every orbit, every special point, and what it takes to go on.
+"""Branches in HDF5: every orbit, every special point, and the data needed to go on.
 
 /branch          point, component, bead, contact; knob (the knob's unit), arclength, max_input_force, max_output_force,
                  max_output_force_elastic [N], stable, unstable, residual, arm (point); state, multiplier_real,
@@ -53,7 +53,7 @@ def save_branch(branch: Branch, path: str | Path) -> Path:
 
 
 def load_branch(path: str | Path) -> Branch:
-    """The branch that `save_branch` wrote, ready to be gone on with. Raises `BadInput` for a file that is not one."""
+    """The branch that `save_branch` wrote, ready to be continued. Raises `BadInput` for a file that is not one."""
     try:
         with h5py.File(path, "r") as file:
             if int(file.attrs["granchain_schema"]) != SCHEMA:

@@ -49,7 +49,7 @@ _RUN = {  # name: (dimensions, unit, meaning)
 #: File systems take 255 bytes; the temporary name needs some of them.
 _LONGEST_NAME = 230
 _MAXIMA = ("max_input_force", "max_output_force", "max_output_force_elastic")
-#: Where the relative errors of the largest forces stand in a run's file.
+#: Attributes of a run's file with the relative errors of the largest forces.
 _ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
 
 
@@ -176,7 +176,7 @@ def load(path: str | Path) -> Run:
 
 
 def _read(path: str | Path) -> Run:
-    """The run in a file, or whatever h5py, json and the scene have to say about it."""
+    """The run in a file; errors of h5py, json and the scene pass through."""
     with h5py.File(path, "r") as file:
         if int(file.attrs["granchain_schema"]) != SCHEMA:
             raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")

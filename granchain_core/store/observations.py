@@ -1,4 +1,4 @@
-"""Observations in HDF5, laid out as runs are, so that what reads one reads the other.
+"""Observations in HDF5, laid out as runs are, so that one reader reads both.
 
 /observation    time (s), bead, contact; displacement, velocity (time, bead); force (time, contact); input_force,
                 output_force, output_force_elastic and, where there was one, measured_output_force (time)

@@ -1,7 +1,7 @@
 """The knob of a branch: which knobs are continuous, and the coordinate in which one is followed.
 
 A branch is a curve of points z = (x/√(2N), p): x is the scaled state (u, w) at drive phase 0 in the scales of its own
-chain, so that a new amplitude A0, which changes the scales, leaves it of order one; p is a logarithmic or linear
+scene, so that a new amplitude A0, which changes the scales, leaves it of order one; p is a logarithmic or linear
 coordinate of the knob. The length of an arc is that of z.
 """
 
@@ -14,7 +14,7 @@ from ...errors import BadInput, unknown_name
 from ...quantities import QUANTITIES
 from ...scene import Scene
 
-#: Knobs that move a chain continuously; N and the laws jump, `accuracy` changes no chain.
+#: Knobs that change a chain continuously; N and the laws are discrete, `accuracy` does not change the chain.
 CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
 #: Length of a factor e in a logarithmic knob: the state changes by about its own size where f changes by a tenth.
 _LOGARITHMIC = 10.0
@@ -47,7 +47,7 @@ class KnobAxis:
 
     @property
     def logarithmic(self) -> bool:
-        """Whether p goes with the knob's logarithm."""
+        """Whether p is proportional to the knob's logarithm."""
         return QUANTITIES[self.knob].scale == "log"
 
     @property
@@ -72,7 +72,7 @@ class KnobAxis:
         return _LINEAR * (value - self.low) / (self.high - self.low)
 
     def value(self, p: float) -> float:
-        """Knob value at p, kept inside what the knob may be at all."""
+        """Knob value at p, limited to the knob's allowed range."""
         if self.logarithmic:
             value = self.low * math.exp(p / _LOGARITHMIC)
         else:

@@ -80,10 +80,10 @@ class Branch:
 
 
 class Continuation(Iterator[BranchPoint]):
-    """A branch as it grows: each `next` is one more orbit; `branch` is what there is so far.
+    """A branch as it grows: each `next` is one more orbit; `branch` holds those found so far.
 
-    Of two arms the shorter one grows, so both go on by turns; `run` follows both at once. One may stop asking and go
-    on at any time. Where the stop flag is raised, `Cancelled` ends the present step only. An arm that closes on
+    Of two arms the shorter one grows, so both go on alternately; `run` follows both at once. Iteration may be left and
+    continued at any time. Where the stop flag is set, `Cancelled` ends the present step only. An arm that closes on
     itself is the whole branch: the other is dropped.
     """
 

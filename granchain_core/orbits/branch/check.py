@@ -1,4 +1,4 @@
-"""What has to hold on every branch, whatever chain and knob it is of."""
+"""Invariants of every branch, whatever its chain and knob."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .equations import ACCEPTED
 from .point import BranchPoint
 from .walk import LONGEST, Arm
 
-#: Neighbours may be so much farther apart than the longest step: correction goes across it.
+#: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
 _APART = 1.2
 #: Error of the tangents relative to the largest entry of the monodromy matrix. Where the smallest multiplier is below
 #: that error, Liouville's sum of logarithms says nothing.
@@ -19,10 +19,10 @@ _LIOUVILLE = 1e-5
 
 
 def check_branch(branch: Branch) -> list[str]:
-    """Sentences on what does not hold: none, for a branch that is right.
+    """Sentences for each violated invariant; empty for a correct branch.
 
     Residuals are small, neighbours are near, Liouville's formula holds, stability and contact sequence change at
-    reported special points only, and each of those lies in its interval, between two orbits it tells apart.
+    reported special points only, and each of those lies in its interval, between the two orbits that differ by it.
     """
     found = []
     for arm in branch.arms:

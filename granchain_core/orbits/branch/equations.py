@@ -41,7 +41,7 @@ class Solved:
 
 
 class BranchEquations:
-    """Everything that can be asked of the n-period map along one axis."""
+    """The n-period map along one axis: values, derivatives and Newton's method."""
 
     def __init__(self, axis: KnobAxis, period: int, stop: Stop | None = None) -> None:
         self.axis, self.period, self.stop = axis, period, stop
@@ -61,7 +61,7 @@ class BranchEquations:
         return self.axis.value(float(z[-1]))
 
     def strobe(self, value: float, periods: int | None = None) -> StroboscopicMap:
-        """The map at a knob value, always a new one, so that the same question has the same answer to the bit."""
+        """The map at a knob value, always a new one, so that equal calls give equal bits."""
         return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,

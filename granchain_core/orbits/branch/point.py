@@ -1,4 +1,4 @@
-"""One orbit of a branch with everything that tells it from its neighbours."""
+"""One orbit of a branch with everything in which it may differ from its neighbours."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class BranchPoint:
 
     @property
     def residual(self) -> float:
-        """What the orbit's state lacks to come back, relative to its largest entry."""
+        """Change of the orbit's state after its period, relative to the largest entry."""
         return self.residuals[-1]
 
     @property
@@ -73,7 +73,7 @@ class BranchPoint:
 
     @property
     def signature(self) -> tuple[int, ...]:
-        """What changes at special points and nowhere else."""
+        """Numbers that change at special points and nowhere else."""
         return (self.turning, self.unstable, *(int(n) for n in self.closings))
 
 

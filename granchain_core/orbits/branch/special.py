@@ -1,12 +1,12 @@
-"""Special points of a branch: what changes between two neighbouring orbits, found to a narrow interval of the knob.
+"""Special points of a branch: changes between two neighbouring orbits, enclosed in a narrow interval of the knob.
 
 fold             the knob turns; a real multiplier passes +1
 period_doubling  a real multiplier passes −1
 neimark_sacker   a complex pair passes the unit circle
 grazing          a contact touches or separates once more, or less, along the orbit
 
-Each is enclosed between two orbits that have the change between them, however it was approached: every guess is checked
-by the orbit there, so an interval is never wrong because a test function was.
+Each is enclosed between two computed orbits that differ by the change. Test functions only choose the next orbit to
+compute, so a wrong test function cannot make an interval wrong.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ Between = Callable[[BranchPoint, BranchPoint, float], BranchPoint]
 class SpecialPoint:
     """A special point: its kind, the knob there, the interval that holds it, and the two orbits around it.
 
-    `contact` and `event` ("touch" or "separation") say what grazes; `multiplier` is the one that passes the unit
+    `contact` and `event` ("touch" or "separation") belong to a grazing; `multiplier` is the one that passes the unit
     circle.
     """
 
@@ -94,7 +94,7 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 
 def _fraction(a: BranchPoint, b: BranchPoint, depth: int) -> float:
-    """Where to look next: beside where a test function vanishes, or the middle."""
+    """Fraction of the next orbit: beside the root of a test function, or the middle."""
     beside, root = _BESIDE[depth % len(_BESIDE)], _root(a, b)
     if beside is None or root is None:
         return 0.5
@@ -144,7 +144,7 @@ def _changes(point: BranchPoint, contact: int) -> int:
 
 
 def _classified(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> list[SpecialPoint]:
-    """What happens inside a narrow bracket; most often one thing."""
+    """The special points inside a narrow bracket, usually one."""
     low, high = _interval(axis, a, b)
     found = []
     left = _passing(a, b)

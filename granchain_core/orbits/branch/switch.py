@@ -1,7 +1,7 @@
 """From a period doubling to the branch of doubled orbits.
 
 At a multiplier −1 with eigenvector v the orbits of twice the period lie at x ± εv + O(ε²), p + O(ε²): Newton's method
-on the doubled map in the plane at distance ε along v finds one, and there the trivial solution is not.
+on the doubled map in the plane at distance ε along v finds one, because the trivial solution is not in that plane.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from .walk import Arm
 
 #: Distances ε along the eigenvector that are tried, in arclength.
 _DISTANCES = (0.02, 0.005, 0.05, 0.001)
-#: The knob may move so far for it: with ε², but that may have a large factor.
+#: Largest change of the knob's coordinate: of order ε², but possibly with a large factor.
 _FARTHEST = 0.3
-#: The orbit's halves have to differ by this part of what ε makes them differ.
+#: Smallest difference of the orbit's halves, relative to the one expected from ε.
 _DOUBLED = 0.5
 
 

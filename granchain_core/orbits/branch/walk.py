@@ -1,6 +1,6 @@
 """A walk along a branch: predict along the tangent, correct by Newton's method, find the special points in between.
 
-The step grows while Newton's method needs few iterations and the tangent hardly turns, and shrinks where not. A
+The step grows while Newton's method needs few iterations and the tangent hardly turns, and shrinks otherwise. A
 failed step is halved; at the smallest step the branch ends, and the last residuals are reported.
 """
 
@@ -49,8 +49,8 @@ _AWAY = 4
 class Arm:
     """One direction of a branch from its seed: points (the seed first), special points, and how it ended.
 
-    `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` says
-    it in a sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if it had
+    `ended` is "" while there is more to come, else "reached", "returned", "closed", "merged" or "lost"; `reason` is
+    a sentence. `step` is the next step in arclength: with it and the last point the walk goes on as if it had
     never stopped.
     """
 
@@ -65,7 +65,7 @@ class Arm:
 class Walk(Iterator[BranchPoint]):
     """The points of one arm, one after the other; each `next` adds one to the arm, with the special points before it.
 
-    A walk that is left alone is paused; one whose stop flag is raised throws `Cancelled` and can go on later.
+    A walk that is not iterated is paused; one whose stop flag is set raises `Cancelled` and can go on later.
     """
 
     def __init__(self, equations: BranchEquations, arm: Arm) -> None:
@@ -95,7 +95,7 @@ class Walk(Iterator[BranchPoint]):
     # --- one step ------------------------------------------------------------------------------------------
 
     def _step(self, last: BranchPoint) -> None:
-        """Add the next orbit and what is special before it; `NumbersFailed` where the step is too long."""
+        """Add the next orbit and the special points before it; `NumbersFailed` where the step is too long."""
         arm, equations = self.arm, self.equations
         solved = equations.solve(self._predicted(last), last.tangent, last.slope, _OFF * arm.step)
         self._refuse_shorter(solved)
@@ -195,7 +195,7 @@ class Walk(Iterator[BranchPoint]):
         return replace(point, knob=end)
 
     def _merging(self, special: list[SpecialPoint]) -> int | None:
-        """Which fold is none: there the difference of an orbit's two halves changes sign, so it vanishes in between."""
+        """Index of a fold that is a merging: the difference of the orbit's two halves changes sign there."""
         if self.equations.period % 2:
             return None
         for place, one in enumerate(special):
@@ -204,7 +204,7 @@ class Walk(Iterator[BranchPoint]):
         return None
 
     def _halves(self, point: BranchPoint) -> np.ndarray:
-        """How far the state half an orbit later is from the state now."""
+        """Difference of the state half an orbit later from the state now."""
         return self.equations.strobe(point.knob, self.equations.period // 2).end(point.x) - point.x
 
     def _closing(self, last: BranchPoint, point: BranchPoint) -> BranchPoint | None:
@@ -224,7 +224,7 @@ class Walk(Iterator[BranchPoint]):
 
 
 def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
-    """The seed seen at each of its drive periods: the same orbit."""
+    """The seed's orbit started at each of its drive periods."""
     x, images = seed.x, []
     for _ in range(equations.period):
         images.append(equations.point(x, seed.knob))
