@@ -1,4 +1,4 @@
-"""What the naive method would have drawn: the output force in (u, v) with plain steps, beside the certified one.
+"""Naive results: the output force in (u, v) with plain steps, beside the certified one.
 
 The lesson of the accuracy page: the picture looks like a result, and nothing in it shows that it is wrong.
 """
@@ -54,7 +54,7 @@ class Naive:
 
 @dataclass(eq=False)
 class Lesson:
-    """The certified output force [N] over time [s], the last periods of a run from rest, and what was drawn instead."""
+    """The certified output force [N] over time [s] at the end of a run from rest, and the naive methods' results."""
 
     time: np.ndarray
     force: np.ndarray

@@ -83,7 +83,7 @@ class WorkPrecision:
     reference, second : str
         The method whose motion counts as true, and the independent one with which it is compared.
     agreement : float
-        Largest difference of the two over the largest displacement; NaN as long as it is not known.
+        Largest difference of the two over the largest displacement; NaN while it is not known.
     rows : list of Row
         One for each method and setting: `method`, `setting`, `error`, `wall_s` [s], `rhs`, and `failure`, a sentence.
     lesson : Lesson or None

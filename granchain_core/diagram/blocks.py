@@ -1,8 +1,8 @@
 """Finished blocks of a diagram on disk: a killed map loses only the cells that were not written yet.
 
-A folder beside the result holds `map.json`, which says what the map is, and one file per block of finished cells. Every
-file is written under a temporary name, synced and renamed, and carries the SHA-256 of its content: a block that is not
-whole is computed again.
+A folder beside the result holds `map.json`, which identifies scene and grid, and one file per block of finished cells.
+Every file is written under a temporary name, synced and renamed, and carries the SHA-256 of its content: a block that
+is not whole is computed again.
 """
 
 from __future__ import annotations

@@ -269,7 +269,7 @@ def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
 
 
 def _extrapolated(way: list[BoundaryPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
-    """Knob x and state at y: on the line through the last two points; from one alone by f ∝ A0^{1/4}, else as it is.
+    """Knob x and state at y: on the line through the last two points; from one alone by f ∝ A0^{1/4}, else unchanged.
 
     (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit unchanged where D and k go along, and nearly where they do not.
     """

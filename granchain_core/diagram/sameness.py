@@ -62,7 +62,7 @@ def found(result: SteadyState) -> Found:
 
 
 def _section(result: SteadyState) -> np.ndarray:
-    """Stroboscopic states of displacement and velocity, scaled, of what is not periodic, (P, 2, N)."""
+    """Stroboscopic states of displacement and velocity of a motion that is not periodic, scaled, (P, 2, N)."""
     engine = Engine(result.scene, LIVE, 1)
     engine.start(result.state)
     engine.periods(_SECTION)

@@ -1,6 +1,6 @@
 """A user's measured resonance curve from a simple CSV, read strictly.
 
-The lines are read by table.py; here stands what the columns mean and what a measurement can be.
+The lines are read by table.py; this file defines the columns and the limits of a measurement.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _EXPECTED = Expected(
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Measured points in ascending frequency [Hz]: force [N], error [N] or None; `understood` says what was read."""
+    """Measured points in ascending frequency [Hz]: force [N], error [N] or None; `understood` describes the file."""
 
     frequency: np.ndarray
     force: np.ndarray
@@ -48,7 +48,7 @@ def read_measured_csv(text: str | bytes) -> Measured:
 
 
 def _checked(found: Table) -> Measured:
-    """Columns in their meaning, checked for what a measurement can be."""
+    """Columns by their meaning, checked against the limits of a measurement."""
     rows, at = found.rows, {meaning: place for place, meaning in enumerate(found.order)}
     for number, row in rows:
         if row[at["frequency"]] <= 0.0:

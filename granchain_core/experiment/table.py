@@ -2,7 +2,7 @@
 
 A lenient reader misreads ``0,5;1,5e-6`` silently. Here the separator is found once,
 every line has to fit, and a file has one decimal mark: where a point and a comma both occur in numbers, 1.100 may be
-1.1 or 1100, and nobody but its writer knows.
+1.1 or 1100, and only its writer knows which.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ _GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}\Z", re.ASCII)
 class Expected:
     """What a file holds: header words of every column in its usual order, which are needed, and how sentences say it.
 
-    `naming` and `short` are how columns are to be named, `content` what a line holds, `widths` how many columns there
-    may be. `units` are those of a column, the usual one first; a header word may end in another.
+    `naming` and `short` describe in messages how columns are named, `content` what a line holds, `widths` how many
+    columns there may be. `units` are those of a column, the usual one first; a header word may end in another.
     """
 
     columns: dict[str, set[str]]

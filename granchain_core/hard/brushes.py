@@ -21,10 +21,10 @@ from ..kernels.effects.preload import Preload
 from ..kernels.equations.motion import Forces, Slots, copy
 from ..kernels.jit import kernel
 
-#: Columns of what is drawn: the driver's rate β (or the bead's own ω), depth, phase it starts at, tolerance, largest
+#: Columns of a drawn case: the driver's rate β (or the bead's own ω), depth, phase it starts at, tolerance, largest
 #: step as a part of the period, first step as a part of the largest.
 RATE, DEPTH, PHASE, TOLERANCE, LARGEST, FIRST = range(6)
-#: Columns of what is found: touches counted by onsets, error of the onset and of the release as parts of the period.
+#: Columns of a result: touches counted by onsets, error of the onset and of the release as parts of the period.
 ONSETS, ONSET_ERROR, RELEASE_ERROR = range(3)
 
 

@@ -14,7 +14,7 @@ from ..errors import BadInput, NumbersFailed
 
 @dataclass(frozen=True)
 class Figure:
-    """One number that must not be above its bar; NaN is above every bar. `note` says what was found, in words."""
+    """One number that must not be above its bar; NaN is above every bar. `note` is the finding in words."""
 
     name: str
     value: float
@@ -24,7 +24,7 @@ class Figure:
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """One line of a picture: its label and what is drawn over the picture's x."""
+    """One line of a picture: its label and its values over the picture's x."""
 
     label: str
     values: np.ndarray
@@ -32,7 +32,7 @@ class Trace:
 
 @dataclass(frozen=True, eq=False)
 class Picture:
-    """A small picture: ours and what a naive solver draws, over a common x."""
+    """A small picture: our result and a naive solver's, over a common x."""
 
     x: np.ndarray
     x_label: str

@@ -100,7 +100,7 @@ EFFECTS = (
 )
 #: The one effect that is no knob of a scene: it changes nothing in the motion.
 ACCOUNT = Effect("account", "balance", "energy account",
-                 "Work, loss and stored energy are integrated along: how well they close is told in the badge.",
+                 "Work, loss and stored energy are integrated along: the badge shows how well they close.",
                  lambda scene: False)
 #: Slots that every scene fills, with what they hold.
 ALWAYS = {"chain": "Hertz contact", "driver": "driver"}

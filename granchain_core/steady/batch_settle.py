@@ -145,7 +145,8 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
     Up to rounding, results do not depend on which starts share the lanes. A draft ends with the coarse run
-    and after few periods: without errors, and what is not periodic by then is called unsettled. Raises `Cancelled`.
+    and after few periods: without errors, and motions that are not periodic by then are called unsettled. Raises
+    `Cancelled`.
     """
     first = next(starts, None)
     if first is None:

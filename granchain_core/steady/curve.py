@@ -190,7 +190,7 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     start : str
         "rest": points come coarse first, from all cores; "up" or "down": the state is carried along in that direction.
     stop : Stop, optional
-        Once it is set the curve ends, and a running point is abandoned.
+        Once it is set the curve ends, and a running point is given up.
     workers : int, optional
         Threads; one for each core if not given.
 
@@ -250,8 +250,8 @@ def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
     """A draft of the curve from rest, on one core, to be drawn while a knob still moves.
 
-    Coarse steps and few periods: no errors are claimed, and what is not periodic by then is unsettled. Empty for scenes
-    that lanes cannot run. Raises `BadInput` and `Cancelled`.
+    Coarse steps and few periods: no errors are claimed, and motions that are not periodic by then are unsettled. Empty
+    for scenes that lanes cannot run. Raises `BadInput` and `Cancelled`.
     """
     if not can_share_batch(scene):
         return []
@@ -274,7 +274,7 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
         "rest": every point begins at rest, all cores work; "up" or "down": the state is carried along that way, so
         that hysteresis shows.
     stop : Stop, optional
-        Once it is set the curve ends with the points found so far.
+        Once it is set the curve ends with what there is; a running point is given up.
     on_point : callable, optional
         Called with each `CurvePoint` as it is finished.
     workers : int, optional

@@ -37,7 +37,7 @@ _SMALLEST = 1e-5
 _TAKEN = 0.2
 #: Orbits for that at most.
 _MOST_ORBITS = 3000
-#: Factor on the predicted decay: so much of it must really be seen.
+#: Fraction of the predicted decay that must be observed.
 _PART = 0.3
 #: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
 _TURN = 16

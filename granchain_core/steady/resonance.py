@@ -56,7 +56,7 @@ def pushes(run: Run) -> tuple[int, int] | None:
     quiet = np.flatnonzero(force < ENDED * largest)
     if len(quiet) == 0:
         return None
-    force = np.roll(force, -quiet[0])  # the orbit is closed, so begin where nothing is pushed
+    force = np.roll(force, -quiet[0])  # the orbit is closed, so start at a sample without a push
     pushed = np.concatenate([[False], force >= ENDED * largest, [False]])
     begins, ends = np.flatnonzero(pushed[1:] & ~pushed[:-1]), np.flatnonzero(~pushed[1:] & pushed[:-1])
     strong = sum(float(force[a:b].max()) >= STRONG * largest for a, b in zip(begins, ends, strict=True))
@@ -112,7 +112,7 @@ def extrema(force: np.ndarray) -> list[int]:
 
 
 def place_words(pushed: tuple[int, int] | None, place: Place | None) -> str:
-    """A periodic motion in the paper's words: strong pushes in how many periods, and what the curve has there.
+    """A periodic motion in the paper's words: strong pushes per periods, and its place on the curve.
 
     `place` is None while there is no whole curve. Peak and valley have the paper's names where the pushes are those it
     gives them: one strong push in n periods on a peak, one in every period in a valley.

@@ -1,8 +1,8 @@
 """Bringing a chain to its steady state, and deciding whether it is there.
 
-The live method runs from the start until the distance bound is small (regime.py) or until it is decided in another way
-what the motion is (decide.py); a periodic orbit is then handed to the certified method, which relaxes onto its own
-orbit and records it. What is not periodic is recorded as it is, without a claim on its error.
+The live method runs from the start until the distance bound is small (regime.py) or the regime is decided otherwise
+(decide.py); a periodic orbit is then handed to the certified method, which relaxes onto its own
+orbit and records it. Other motions are recorded without a claim on their error.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
 from .regime import Regime, changes, find_period
 
-#: Steps of the live method after which settling is given up in any case: about half a minute.
+#: Most steps of the live method while settling: about half a minute.
 MOST_STEPS = 100_000_000
 #: Samples a period of a picture.
 PICTURE_SAMPLES = 96
 #: Periods shown of a motion that is not periodic.
 _SHOWN = 4
-#: Seconds after which a first picture is shown though nothing is decided yet.
+#: Time after which a first picture is shown although nothing is decided yet [s].
 _PREVIEW_AFTER = 0.012
 #: Rounds of relaxation onto the certified orbit at most, each of as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
@@ -37,7 +37,7 @@ _MOST_ROUNDS = 12
 
 @dataclass(frozen=True, eq=False)
 class Settled:
-    """A steady state, or how far one got.
+    """A steady state, or the motion when settling ended.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class Settled:
 
 
 class Settling:
-    """The live method on its way to the steady state, chunk by chunk, until it is decided what that is."""
+    """The live method on its way to the steady state, chunk by chunk, until the regime is decided."""
 
     def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
         self.scene = scene
@@ -97,7 +97,7 @@ class Settling:
         return len(self.strobes) - 1
 
     def go_on(self, seconds: float) -> None:
-        """Run until it is decided what the motion is, the budget is spent, or about `seconds` have passed."""
+        """Run until the regime is decided, the budget is spent, or about `seconds` have passed."""
         end = time.perf_counter() + seconds
         while not self.decided and self.run(end - time.perf_counter()):
             self._decide()
@@ -129,7 +129,7 @@ class Settling:
         return MOST_STEPS - self.engine.counts.steps
 
     def _until_next_look(self) -> float:
-        """Periods until the regime is looked for again: an eighth of those run, so that looking costs little."""
+        """Periods until the next test of the regime: an eighth of those run, so that tests cost little."""
         return max(8.0, self._here / 8)
 
     @property
@@ -208,8 +208,8 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
             stop: Stop | None = None) -> Settled:
     """The steady state that a chain reaches. Also called `settle`.
 
-    The live method runs until the distance to the orbit is bounded, or until it is decided otherwise what the motion
-    is; a periodic orbit is then computed by the certified method (docs/design.md, "Settled is a bound").
+    The live method runs until the distance to the orbit is bounded or the regime is decided otherwise; a periodic orbit
+    is then computed by the certified method (docs/design.md, "Settled is a bound").
 
     Parameters
     ----------
@@ -306,7 +306,7 @@ def certified_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
 
 
 def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
-    """The certified method on its own orbit, and the bound on what is left to go.
+    """The certified method on its own orbit, and the bound on the distance left.
 
     The orbit of the live method differs from the true one by its error; a few more periods remove it. With r the
     slowness of the regime (|μ| where it was computed, else the decay) and `change` from one n-period map to the next,

@@ -21,7 +21,7 @@ _REFINE = 4.0
 #: Tolerance of the certified method, which scenes that cut tension need.
 _TOLERANCE = 1e-11
 #: Half the difference of two states over the largest displacement or w: the error is its square times the map's third
-#: derivative, and the method's noise, some 1e-10, over it.
+#: derivative, and the method's noise, about 1e-10, over it.
 _DIFFERENCE = 1e-5
 #: The same for a one-sided difference, whose error is the difference times the map's second derivative.
 _TO_ONE_SIDE = 1e-6

@@ -20,8 +20,8 @@ from ..status import EVALUATIONS
 from .step import dense_value, evaluate, prepare_dense
 from .tableau import STAGES
 
-#: Golden sections around the top of a force; each shrinks the bracket to 0.618 and the top's error, as it is flat, to
-#: 0.382.
+#: Golden sections around a maximum of a force; each shrinks the bracket by 0.618 and, since a maximum is flat, its
+#: error by 0.382.
 _SECTIONS = 24
 #: A step whose ends are below this part of the largest force so far is not searched.
 _FAINT = 0.3

@@ -42,7 +42,7 @@ class Width32(NamedTuple):
 #: The widths there are, by their number of bodies.
 WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
 
-#: A step's beginning and its end in the workspace, and what is kept of each, one row a vector.
+#: A step's beginning and its end in the workspace, and the vectors kept of each, one a row.
 BEGIN, END = 0, 1
 U, W, DU, NET_FORCE, ELASTIC, KEPT = range(6)
 #: Steps whose forces are searched together.
@@ -164,7 +164,7 @@ def row_at(row, u0, v0, u, w):
 def row_step(row, ua, ub, vb, h, x, path, impulse):
     """One RK4 step from x; the driver at ua at mid-step, at ub, moving at vb, at the end.
 
-    `path` and `impulse` are what is added to displacements and w at the end.
+    `path` and `impulse` are added to displacements and w at the end.
     """
     half, sixth = 0.5 * h, h / 6.0
     half_m, whole_m, sixth_m = half * row.inverse_mass, h * row.inverse_mass, sixth * row.inverse_mass
