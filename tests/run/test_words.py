@@ -1,0 +1,26 @@
+"""Words in results and files: where a motion began, and its regime in one sentence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from granchain_core import State, scene
+from granchain_core.run.run import _origin
+from granchain_core.state import rest
+from granchain_core.steady.regime import Regime
+
+
+def test_a_run_says_where_it_began() -> None:
+    chain = scene("sec2")
+    assert _origin(chain, None) == "rest"
+    assert _origin(replace(chain, start_velocity=((1, 0.01),)), None) == "initial velocity"
+    given: State = rest(chain)
+    assert _origin(chain, given) == "given state"
+
+
+def test_the_sentence_claims_no_more_than_the_periods_show() -> None:
+    """`run` runs a given number of periods, so a motion settled within them, not after them."""
+    settled = Regime("periodic", 3, 0.54, 1e-8, 303)
+    assert settled.sentence == "period 3, settled within 303 periods (decay 0.54 per 3 periods)"
+    followed = replace(settled, followed=True, multiplier=0.99, periods_run=400)
+    assert followed.sentence == "period 3, followed to its orbit after 400 periods (|μ| 0.9900)"
