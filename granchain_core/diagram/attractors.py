@@ -33,10 +33,9 @@ _PASS = 150
 _AWAY = 0.08
 #: Size of the box of random states, in units of the largest displacements and velocities of the motion from rest.
 _BOX = 1.5
-#: Displacement from an unstable orbit, relative to the motion.
-_BESIDE = 1e-2
-#: Drive periods before the next check: enough to leave an orbit with |μ| = 1.003.
-_RUN_ON = 3000
+#: Displacement from an unstable orbit, relative to the motion, and drive periods before the next check: enough to
+#: leave an orbit with |μ| = 1.003.
+_BESIDE, _RUN_ON = 1e-2, 3000
 #: Mean exponents per drive period above which a group is chaotic, and below which it may be quasi-periodic.
 _CLEARLY, _UNCLEAR = 0.01, 5e-3
 #: Most random states.
@@ -246,7 +245,7 @@ def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
 def _regime(regimes: list[Regime]) -> Regime:
     """The regime of a group, of irregular motions by the mean of their Lyapunov exponents with its standard error.
 
-    The rule is that of steady/regime.py; the mean of many is no better known than its part that decays as 1/periods.
+    The rule is that of steady/regime.py; the mean of many is not known better than its part that dies as 1/periods.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     if regimes[0].period is not None or not known:

@@ -16,12 +16,10 @@ import numpy as np
 from ..kernels.strobes import periodicity as section
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 
-#: Drive periods in one of the three windows in which a slow approach must show. A closed curve sampled a hundred times
-#: shows its extent to about a per cent.
-_SLOW_WINDOW = 100
-#: Factor by which changes must shrink from one window to the next.
-_SHRINKS = 0.98
-#: A departure counts as small while changes are below this, relative to the largest displacement and velocity.
+#: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
+#: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
+_SLOW_WINDOW, _SHRINKS = 100, 0.98
+#: A departure is small where changes are, relative to the largest displacement and velocity.
 _SMALL = 0.1
 #: Lyapunov exponent per period that no departure from an orbit sustains over the periods in which a motion may settle.
 CLEAR_GROWTH = 0.05

@@ -37,7 +37,7 @@ class Path(NamedTuple):
 
 @by_slot
 def keep_gaps(tangent, slots, state, stage):
-    """Keep the overlaps of one stage for the tangents. Absent: there are no tangents."""
+    """Keep the overlaps of one stage for the tangents. Absent: nobody needs them."""
 
 
 @kernel

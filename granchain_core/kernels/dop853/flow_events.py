@@ -19,10 +19,8 @@ _LANDED = 1e-14
 #: A release is located in advance if it is at most this many steps away.
 _AIM = 1.5
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
-#: Attempts to locate one event.
-_TRIALS = 8
-#: Attempts to take one step.
-_ATTEMPTS = 60
+#: Attempts to locate one event, and to take one step.
+_TRIALS, _ATTEMPTS = 8, 60
 #: Shortest next step to try, in t: two events that rounding brings together do not shrink it further.
 _LEAST = 1e-9
 #: A first step after an onset covers at most this part of the time to the next release.

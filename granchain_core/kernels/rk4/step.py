@@ -58,7 +58,7 @@ class Stages(NamedTuple):
     simd: Any
 
 
-#: Most steps between two readings of the stop flag.
+#: Steps after which the stop flag is asked at the latest.
 PATIENCE = 4096
 
 
