@@ -6,31 +6,33 @@ equation on screen, the names of effects and the reference solutions read this t
 
 from __future__ import annotations
 
+import importlib
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from .kernels.effects.dissipation import LAWS as SLOTS
-from .kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji, exponent
-
 
 @dataclass(frozen=True)
 class Law:
-    """The damping force D (δ/δ_r)^a δ̇ of a closed contact: its name, its slot class, and its title."""
+    """The damping force D (δ/δ_r)^a δ̇ of a closed contact: its name, the name of its slot class, and its title."""
 
     name: str
-    slot: Any
+    slot_class: str
     title: str
 
-    def __post_init__(self) -> None:
-        if self.slot not in SLOTS:
-            raise TypeError(f"damping law {self.name!r}: {self.slot.__name__} has no `exponent` and no `power` in "
+    @property
+    def slot(self) -> Any:
+        """Its slot class. Loaded when it is first asked for, because the compiler comes with it."""
+        slots = {one.__name__: one for one in _dissipation().LAWS}
+        if self.slot_class not in slots:
+            raise TypeError(f"damping law {self.name!r}: {self.slot_class} has no `exponent` and no `power` in "
                             "kernels/effects/dissipation.py.")
+        return slots[self.slot_class]
 
     @property
     def exponent(self) -> float:
         """a."""
-        return float(exponent(self.slot(1.0)))
+        return float(_dissipation().exponent(self.slot(1.0)))
 
     @property
     def jumps(self) -> bool:
@@ -45,14 +47,20 @@ class Law:
         return r"D\,(\delta_j/\delta_r)_+^{" + str(Fraction(self.exponent)) + r"}\,\dot\delta_j"
 
 
-_TABLE = (
-    Law("linear", LinearDashpot, "dashpot"),
-    Law("tsuji", Tsuji, "Tsuji damping"),
-    Law("kuwabara-kono", KuwabaraKono, "Kuwabara–Kono damping"),
-)
+LAWS: dict[str, Law] = {law.name: law for law in (
+    Law("linear", "LinearDashpot", "dashpot"),
+    Law("tsuji", "Tsuji", "Tsuji damping"),
+    Law("kuwabara-kono", "KuwabaraKono", "Kuwabara–Kono damping"),
+)}
 
-LAWS: dict[str, Law] = {law.name: law for law in _TABLE}
 
-for _slot in SLOTS:
-    if _slot not in [law.slot for law in _TABLE]:
-        raise TypeError(f"damping law {_slot.__name__} has no line in laws.py: no scene can name it.")
+def require_complete() -> None:
+    """Check that the table and the compiled laws are the same; TypeError names the one that is missing."""
+    named = [law.slot for law in LAWS.values()]
+    for slot in _dissipation().LAWS:
+        if slot not in named:
+            raise TypeError(f"damping law {slot.__name__} has no line in laws.py: no scene can name it.")
+
+
+def _dissipation() -> Any:
+    return importlib.import_module("granchain_core.kernels.effects.dissipation")

@@ -23,7 +23,7 @@ from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import no_tension
 from .kernels.equations.motion import Forces, Slots, place
-from .laws import LAWS
+from .laws import LAWS, require_complete
 from .scene import Scene
 from .scene.effects import EFFECTS, effects_of
 from .state import State
@@ -182,6 +182,7 @@ _FILLED: dict[str, Callable[[Scene, Scales], Any]] = {
     "preload": lambda scene, scales: Preload(scene.static_overlap() / scales.length),
 }
 
+require_complete()
 for _effect in EFFECTS:
     if _effect.slot not in _FILLED:
         raise TypeError(f"effect {_effect.name!r}: lower.py does not say how its slot {_effect.slot!r} is filled.")

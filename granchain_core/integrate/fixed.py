@@ -17,7 +17,7 @@ from ..kernels.forces.largest import new_log
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.rk4.contact_events import ENDS
 from ..kernels.rk4.long_chain import LongChain
-from ..kernels.rk4.run import run_periods, run_samples
+from ..kernels.rk4.run import Kept, run_steps
 from ..kernels.rk4.short_chain import BLOCK, KEPT, WIDTHS, ShortChain
 from ..kernels.rk4.step import Stages
 from ..kernels.samples import Samples
@@ -41,6 +41,8 @@ class FixedStep:
         self.h = lowered.period / self.grid
         self._every = self.grid // samples
         self._simd = simd
+        self._no_samples = empty_samples(lowered, 0)
+        self._no_periods = np.zeros((0, 2, 0)), np.zeros((0, 3))
         self.drive = self._driver_table()
         self.work: Any = Stages(np.zeros((4, lowered.size)), np.zeros(lowered.size), np.zeros(lowered.size),
                                 np.zeros((ENDS, lowered.row - 1)), lowered.forces(), self.new_simd_workspace())
@@ -65,6 +67,7 @@ class FixedStep:
     def use(self, lowered: Lowered) -> None:
         """Go on with other values in the same slots, or with other effects."""
         self.lowered = lowered
+        self._no_samples = empty_samples(lowered, 0)
         self.drive = self._driver_table()
         self.work = self.work._replace(forces=lowered.forces(), simd=self.new_simd_workspace())
 
@@ -77,15 +80,16 @@ class FixedStep:
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from step `first`, filling the samples; status and number of rows filled."""
-        status, rows = run_samples(self.method, self.lowered.slots, self.drive, self.h, y, self.work, first,
-                                   self._every, samples, *out)
-        return status, rows
+        return self._run(y, first, self._every, Kept(samples, *self._no_periods), out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
         """Advance whole periods, filling strobes and largest forces, which cost nothing; status and periods done."""
-        status, done = run_periods(self.method, self.lowered.slots, self.drive, self.h, y, self.work, strobes, out.log,
-                                   tops, out.counts, out.stop)
+        return self._run(y, 0, self.grid, Kept(self._no_samples, strobes, tops), out)
+
+    def _run(self, y: np.ndarray, first: int, stride: int, kept: Kept, out: Output) -> tuple[int, int]:
+        status, done = run_steps(self.method, self.lowered.slots, self.drive, self.h, y, self.work, first, stride, kept,
+                                 *out)
         return status, done
 
     def step_at(self, grid_index: int) -> int | None:
@@ -125,7 +129,8 @@ class FixedStep:
         j = first
         while j < last:
             stride = min(last, (j // n + 1) * n) - j
-            run_samples(self.method, self.lowered.slots, self.drive, self.h, now, work, j % n, stride, kept, *out)
+            run_steps(self.method, self.lowered.slots, self.drive, self.h, now, work, j % n, stride,
+                      Kept(kept, *self._no_periods), *out)
             j += stride
         return now, work.k
 

@@ -10,6 +10,7 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import os
 import tempfile
@@ -19,10 +20,39 @@ from typing import Any
 import llvmlite.binding
 import numba
 from numba import types
+from numba.core import event
 from numba.extending import overload
 
-#: Kernels allocate nothing, so arrays in them are not counted: that is less code to compile and to run.
-_OPTIONS: Any = {"fastmath": {"nsz", "arcp", "contract", "reassoc"}, "error_model": "numpy", "_nrt": False}
+#: Kernels allocate nothing, so arrays in them are not counted, and they are never passed as function pointers, so they
+#: need no C entry: that is less code to compile and to run.
+_OPTIONS: Any = {"fastmath": {"nsz", "arcp", "contract", "reassoc"}, "error_model": "numpy", "_nrt": False,
+                 "no_cfunc_wrapper": True}
+
+
+class _CollectorPause(event.Listener):
+    """No garbage collection while Numba compiles: it makes millions of objects that live until it is done, and looking
+    through them again and again takes a sixth of the time. Compilations are nested, and one thread compiles at a time.
+    """
+
+    def __init__(self) -> None:
+        self._depth = 0
+        self._was_on = False
+
+    def on_start(self, event: Any) -> None:
+        """Pause at the outermost compilation."""
+        if self._depth == 0:
+            self._was_on = gc.isenabled()
+            gc.disable()
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """Collect again behind the outermost one."""
+        self._depth -= 1
+        if self._depth == 0 and self._was_on:
+            gc.enable()
+
+
+event.register("numba:compile", _CollectorPause())
 
 
 def _sources_hash() -> str:

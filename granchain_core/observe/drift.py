@@ -8,10 +8,9 @@ the sides if it is negative (at 200 Hz).
 
 from __future__ import annotations
 
-import numpy as np
-
 from ..orbits import Orbit
 from ..orbits.flow import StroboscopicMap
+from ..orbits.modes import eigenpair
 
 #: A multiplier this near to the unit circle counts as on it: the error of the tangents.
 _NEAR = 1e-6
@@ -23,13 +22,10 @@ def observer_drift(orbit: Orbit) -> str | None:
     if found is None or abs(found[0]) < 1.0 - _NEAR:
         return None
     strobe = StroboscopicMap(orbit.scene, orbit.period)
-    flow = strobe(strobe.inner(strobe.engine.lowered.scaled(orbit.state)), observer=True)
-    values, vectors = np.linalg.eig(flow.derivative)
-    leading = int(np.argmax(np.abs(values)))
-    moved = vectors[: orbit.scene.N, leading].real
-    real = values[leading].imag == 0.0
-    if not real or not ((moved > 0.0).all() or (moved < 0.0).all()):
+    value, vector = eigenpair(strobe, strobe.inner(strobe.engine.lowered.scaled(orbit.state)), 0, observer=True)
+    moved = vector[: orbit.scene.N].real
+    if value.imag != 0.0 or not ((moved > 0.0).all() or (moved < 0.0).all()):
         return None
-    way = "the same way" if values[leading].real > 0.0 else "the same way, to either side by turns"
-    return (f"The observer drifts: its leading multiplier {values[leading].real:.4g} is real and moves all beads "
+    way = "the same way" if value.real > 0.0 else "the same way, to either side by turns"
+    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads "
             f"{way}, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")

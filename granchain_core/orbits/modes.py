@@ -57,7 +57,7 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
                        f"{min(max(rank, 0), len(orbit.multipliers) - 1)}.")
     strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
     x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
-    value, vector = _eigenpair(strobe, x, rank)
+    value, vector = eigenpair(strobe, x, rank)
     if value.imag < 0.0:
         value, vector = value.conjugate(), vector.conj()
     beads = len(x) // 2
@@ -71,21 +71,25 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
     return Mode(complex(value), orbit.period, samples, moved / np.abs(moved).max(), closure)
 
 
-def _eigenpair(strobe: StroboscopicMap, x: np.ndarray, rank: int) -> tuple[complex, np.ndarray]:
-    """The multiplier at place `rank` by modulus with its eigenvector; of a long chain by Arnoldi iteration."""
+def eigenpair(strobe: StroboscopicMap, x: np.ndarray, rank: int, observer: bool = False) -> tuple[complex, np.ndarray]:
+    """The multiplier at place `rank` by modulus with its eigenvector; of a long chain by Arnoldi iteration.
+
+    With `observer`, those of the observer of model (4), Zhang et al. 2016.
+    """
     if len(x) <= 2 * DENSE:
-        values, vectors = np.linalg.eig(strobe(x).derivative)
+        values, vectors = np.linalg.eig(strobe(x, observer=observer).derivative)
     else:
-        values, vectors = leading_pairs(strobe, x, rank + 2)
+        values, vectors = leading_pairs(strobe, x, rank + 2, observer)
     place = np.argsort(-np.abs(values), kind="stable")[rank]
     return complex(values[place]), vectors[:, place]
 
 
-def leading_pairs(strobe: StroboscopicMap, x: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+def leading_pairs(strobe: StroboscopicMap, x: np.ndarray, count: int,
+                  observer: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """At least `count` leading multipliers with their eigenvectors (2N, count). Raises `NumbersFailed`."""
     start = np.random.default_rng(0).standard_normal(len(x))
     try:
-        return tuple(eigs(derivative_at(strobe, x), k=max(count, _FEWEST), which="LM", v0=start, tol=_EXACT))
+        return tuple(eigs(derivative_at(strobe, x, observer), k=max(count, _FEWEST), which="LM", v0=start, tol=_EXACT))
     except ArpackNoConvergence:
         raise NumbersFailed(f"The mode of multiplier {count - 1} did not converge: too many lie close together.",
                             "no-convergence") from None

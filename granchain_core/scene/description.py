@@ -56,44 +56,8 @@ class Description:
     """The values of a driven chain, immutable and hashable, and what follows from them.
 
     The model is eq. (1) of Zhang et al. 2016: N spheres in Hertz contact between a harmonic driver and a wall
-    (docs/model.md). Contact 0 joins driver and bead 1, contact N joins bead N and the wall.
-
-    Attributes
-    ----------
-    name, title, look_at, paper : str
-        Its name and title, a hint what to observe, and the section of the paper.
-    pattern : tuple of Bead
-        Repeated to N beads: two entries make a dimer.
-    N : int
-        Number of beads.
-    f : float
-        Drive frequency [Hz].
-    A0 : float
-        Drive amplitude [m]: the driver is at A0 sin 2πft.
-    D : float
-        Damping coefficient of a contact [N s/m].
-    k : float
-        Stiffness of each bead's foundation spring [N/m].
-    F0 : float
-        Static preload [N].
-    wall : str or float
-        "bead", "same-material", "rigid", or the wall contact's stiffness over that of two beads.
-    dissipation : str
-        "linear", "tsuji", "kuwabara-kono" or "none".
-    tension : str
-        "allowed", or "cut" where a contact must not pull.
-    accuracy : float
-        Relative error of the displacements that is asked for.
-    reference_overlap : float
-        Overlap at which D of a law that depends on it is stated [m].
-    impurities : tuple of (int, Bead)
-        Beads in place of the pattern's, by number from 1.
-    start_velocity : tuple of (int, float)
-        Beads that move at t = 0, by number, with their velocities [m/s].
-    ranges : tuple of (str, float, float)
-        Ranges of the sliders.
-    preset : tuple
-        The knobs of the preset it comes from.
+    (docs/model.md). Contact 0 joins driver and bead 1, contact N joins bead N and the wall. `Scene` documents each
+    field.
     """
 
     name: str

@@ -19,7 +19,42 @@ from .validity import warnings
 class Scene(Description):
     """A driven chain, immutable and hashable; `evolve` gives one with other knobs.
 
-    Its fields are those of `Description`.
+    Attributes
+    ----------
+    name, title, look_at, paper : str
+        Its name and title, a hint what to observe, and the section of the paper.
+    pattern : tuple of Bead
+        Repeated to N beads: two entries make a dimer.
+    N : int
+        Number of beads.
+    f : float
+        Drive frequency [Hz].
+    A0 : float
+        Drive amplitude [m]: the driver is at A0 sin 2πft.
+    D : float
+        Damping coefficient of a contact [N s/m].
+    k : float
+        Stiffness of each bead's foundation spring [N/m].
+    F0 : float
+        Static preload [N].
+    wall : str or float
+        "bead", "same-material", "rigid", or the wall contact's stiffness over that of two beads.
+    dissipation : str
+        "linear", "tsuji", "kuwabara-kono" or "none".
+    tension : str
+        "allowed", or "cut" where a contact must not pull.
+    accuracy : float
+        Relative error of the displacements that is asked for.
+    reference_overlap : float
+        Overlap at which D of a law that depends on it is stated [m].
+    impurities : tuple of (int, Bead)
+        Beads in place of the pattern's, by number from 1.
+    start_velocity : tuple of (int, float)
+        Beads that move at t = 0, by number, with their velocities [m/s].
+    ranges : tuple of (str, float, float)
+        Ranges of the sliders.
+    preset : tuple
+        The knobs of the preset it comes from.
 
     Examples
     --------

@@ -66,7 +66,7 @@ def test_what_the_law_forgets_is_named(tree: Path, path: str, right: str, wrong:
     file.write_text(text.replace(right, wrong), encoding="utf-8")
     try:
         with pytest.raises(AssertionError) as told:
-            follow(tree, "-c", "import granchain_core")
+            follow(tree, "-c", "from granchain_core import run")
     finally:
         file.write_text(text, encoding="utf-8")
     assert f"TypeError: {sentence}" in str(told.value)

@@ -15,7 +15,7 @@ import granchain_core
 
 #: Names that are another name's second one.
 SECOND = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch"}
-NAMES = [name for name in granchain_core.__all__ if name not in SECOND]
+NAMES = [name for name in granchain_core.__all__ if name not in SECOND and name != "__version__"]
 FUNCTIONS = [name for name in NAMES if not isinstance(getattr(granchain_core, name), type)]
 
 

@@ -95,7 +95,7 @@ class HardPage:
             job.later(self._measured, case.name, next(answers))
             job.later(self._draw, case.name, next(answers))
         except Ended:
-            raise NumbersFailed(_FAULT, "failed") from None
+            raise NumbersFailed(_FAULT, "worker-failed") from None
 
     # In the document's turn
 

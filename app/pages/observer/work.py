@@ -7,15 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
+from granchain_core.observe.drift import observer_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import (
     IN_STEP,
     LINEAR,
-    TRANSLATION,
     linear_window,
     observer_start,
     rates,
-    share_of_translation,
 )
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.state import rest
@@ -51,6 +50,7 @@ class ObserverRun:
     def __init__(self, scene: Scene, picture: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
         self.scene = scene
         self.orbit: Orbit | None = None
+        self.drifts = False
         self.failure = ""
         self.samples = min(_MOST_ROWS, samples_for(scene))
         self.pair = Pair(scene, self.samples, stop)
@@ -84,6 +84,7 @@ class ObserverRun:
         try:
             self.orbit = periodic_orbit(self.scene, picture.regime.period, picture.state, observer=True,
                                         stop=self.pair.engine.stop)
+            self.drifts = self.scene.k == 0.0 and observer_drift(self.orbit) is not None
         except (NumbersFailed, BadInput) as problem:  # the latter where tension is cut
             self.failure = str(problem)
 
@@ -120,14 +121,6 @@ class ObserverRun:
         strobes = np.array(self.strobes).reshape(len(self.strobes), -1)[:: self._every]
         first, end = linear_window(np.sqrt((strobes**2).sum(axis=1)))
         return strobes[first:end]
-
-    @property
-    def drifts(self) -> bool:
-        """Whether what grows is an offset of the whole observer, and there is no foundation to pull it back."""
-        linear = self._linear
-        if self.scene.k > 0.0 or len(linear) < 3:
-            return False
-        return share_of_translation(linear[-1, : self.scene.N]) >= TRANSLATION
 
     def step(self) -> Step:
         """One period on."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..effects.contact import elastic_force, positive_part
@@ -10,7 +12,7 @@ from ..equations.motion import contact_force, copy, motion
 from ..forces.largest import SAMPLE, watch_state
 from ..forces.peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
 from ..jit import by_slot_inlined, kernel
-from ..samples import first_not_finite, keep, keep_strobe
+from ..samples import Samples, first_not_finite, keep, keep_strobe
 from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS
 from .long_chain import LongChain, steps_without_events
 from .short_chain import ShortChain
@@ -67,53 +69,53 @@ def watch_equal(slots, y, dy, e, peaks):
     watch(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
 
 
-@kernel
-def run_periods(method, slots, drive, h, y, stages, strobes, log, tops, counts, stop):
-    """Run whole periods with a fixed-step method, keeping the state and the largest forces of each.
+class Kept(NamedTuple):
+    """Arrays that a run fills: either samples, or strobes and tops of whole periods; the others have no rows.
 
-    strobes (P+1, 2, N+2) hold displacement and velocity, the start first; tops (P, 3) in the order of `peaks`.
-    Returns (status, periods done).
+    `samples` has T rows, the start first. `strobes` (P + 1, 2, N + 2) are displacement and velocity, the start first,
+    `tops` (P, 3) the largest forces in the order of `peaks`.
     """
-    n = method.steps_per_period
-    dtheta = 2.0 * np.pi / n
-    m = slots.chain.inverse_mass.size
-    keep_strobe(y, stages.k[0], strobes[0])
-    watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
-    for p in range(tops.shape[0]):
-        if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
-            return NOT_FINITE, p
-        next_period(log.peaks)
-        advance(stages.simd, method, slots, drive, 0, n, dtheta, h, y, stages, log, counts, stop)
-        if stop[0] != 0:
-            return CANCELLED, p
-        if first_not_finite(y, m) != 0:
-            return NOT_FINITE, p
-        keep_strobe(y, stages.k[0], strobes[p + 1])
-        copy(log.peaks[:MEMORY:ROWS], tops[p])
-    return DONE, tops.shape[0]
+
+    samples: Samples
+    strobes: np.ndarray
+    tops: np.ndarray
 
 
 @kernel
-def run_samples(method, slots, drive, h, y, stages, first_step, stride, samples, log, counts, stop):
+def run_steps(method, slots, drive, h, y, stages, first_step, stride, kept, log, counts, stop):
     """Run with a fixed-step method from step index `first_step` of the period, keeping every stride-th state.
 
-    Row 0 of `samples` is the state it starts from. Closings are recorded in `log`. Returns (status, rows filled).
+    One kernel for samples and for whole periods, because the steps are most of its code. Closings are recorded in
+    `log`.
+    Returns (status, samples filled or periods done).
     """
     n = method.steps_per_period
     dtheta = 2.0 * np.pi / n
     m = slots.chain.inverse_mass.size
     j = first_step
+    sampled = kept.samples.displacement.shape[0] > 0
     watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
-    keep(slots, 0, y, stages.k[0], stages.forces.e, samples)
-    for row in range(1, samples.displacement.shape[0]):
-        if first_not_finite(y, m) != 0:
-            return NOT_FINITE, row - 1
-        log.met[SAMPLE] = row - 1
+    if sampled:
+        keep(slots, 0, y, stages.k[0], stages.forces.e, kept.samples)
+    else:
+        keep_strobe(y, stages.k[0], kept.strobes[0])
+    for i in range(kept.samples.displacement.shape[0] - 1 if sampled else kept.tops.shape[0]):
+        if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
+            return NOT_FINITE, i
+        if sampled:
+            log.met[SAMPLE] = i
+        else:
+            next_period(log.peaks)
         advance(stages.simd, method, slots, drive, j, stride, dtheta, h, y, stages, log, counts, stop)
         j = 0 if j + stride == n else j + stride
+        done = i + 1 if sampled else i
         if stop[0] != 0:
-            return CANCELLED, row
+            return CANCELLED, done
         if first_not_finite(y, m) != 0:
-            return NOT_FINITE, row
-        keep(slots, row, y, stages.k[0], stages.forces.e, samples)
-    return DONE, samples.displacement.shape[0]
+            return NOT_FINITE, done
+        if sampled:
+            keep(slots, i + 1, y, stages.k[0], stages.forces.e, kept.samples)
+        else:
+            keep_strobe(y, stages.k[0], kept.strobes[i + 1])
+            copy(log.peaks[:MEMORY:ROWS], kept.tops[i])
+    return DONE, max(kept.samples.displacement.shape[0], kept.tops.shape[0])
