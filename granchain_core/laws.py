@@ -22,7 +22,7 @@ class Law:
 
     @property
     def slot(self) -> Any:
-        """Its slot class. Loaded when it is first asked for, because the compiler comes with it."""
+        """Its slot class, loaded at first use because it imports the compiler."""
         slots = {one.__name__: one for one in _dissipation().LAWS}
         if self.slot_class not in slots:
             raise TypeError(f"damping law {self.name!r}: {self.slot_class} has no `exponent` and no `power` in "

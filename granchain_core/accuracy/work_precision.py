@@ -241,7 +241,7 @@ def _within(what: str, stop: Stop, seconds: float, measure: Measure) -> Measured
     except Cancelled:
         if stop:
             raise
-        raise NumbersFailed(f"{what} was not done after {seconds:g} s and was given up.", "too-slow") from None
+        raise NumbersFailed(f"{what} was not done after {seconds:g} s and was stopped.", "too-slow") from None
 
 
 def _ours(scene: Scene, setting: Setting, stop: Stop) -> Measured:

@@ -124,7 +124,7 @@ def long_chain_error(beads: int) -> float:
 
 
 def cost_growth(beads: int, rounds: int = 5) -> float:
-    """Seconds per step and bead of a long chain over those of one of 100 beads, by turns, the fastest of each."""
+    """Seconds per step and bead of a long chain over those of one of 100 beads; the fastest of alternating runs."""
     import time
 
     engines = [Engine(scene("sec2").evolve(N=n, f=3000.0, F0=1.0), live(), 1) for n in (100, beads)]

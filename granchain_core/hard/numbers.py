@@ -102,8 +102,8 @@ def injections(count: int) -> tuple[int, int]:
 def slowing(method: str, beads: int, rounds: int) -> float:
     """Time of an evaluation of the equations with subnormal numbers ahead of a wave, over that with ordinary ones.
 
-    Displacements fall from 1 by the same factor from bead to bead, to 1e-310 or to 1e-280; by turns, the fastest of
-    each by the thread's own time. Per evaluation, because the two motions have contact events of their own.
+    Displacements fall from 1 by the same factor from bead to bead, to 1e-310 or to 1e-280; alternating runs, the
+    fastest of each by the thread's own time. Per evaluation, because the two motions have contact events of their own.
     """
     best = [np.inf, np.inf]
     chosen = scene("sec2").evolve(N=beads, f=3000.0, k=1e4)

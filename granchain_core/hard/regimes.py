@@ -196,7 +196,7 @@ def drifting(quick: bool) -> list[Figure]:
             wrong.append((observer_drift(periodic_orbit(chosen, observer=True)) is not None) != drifts)
     bead = scene("fig11-free").evolve(N=1, f=340.0)
     alone = observer_drift(periodic_orbit(bead, observer=True))
-    return [Figure("observers of whose drift the wrong thing is said", float(sum(wrong)), 0.0),
+    return [Figure("observers with a wrong verdict on drift", float(sum(wrong)), 0.0),
             Figure("free beads whose drift is not named", float(alone is None), 0.0, str(alone))]
 
 

@@ -26,6 +26,6 @@ def observer_drift(orbit: Orbit) -> str | None:
     moved = vector[: orbit.scene.N].real
     if value.imag != 0.0 or not ((moved > 0.0).all() or (moved < 0.0).all()):
         return None
-    way = "the same way" if value.real > 0.0 else "the same way, to either side by turns"
+    way = "the same way" if value.real > 0.0 else "the same way, alternating between the sides"
     return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads "
             f"{way}, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")

@@ -5,8 +5,8 @@ itself, and in between it is the difference of two neighbouring motions:
 
     δu(t) = [u(t; x0 + ε v) − u(t; x0 − ε v)] / 2ε
 
-by the certified method. Its noise (some 1e-13) grows with 1/ε and the shift of contact events with ε; between the
-two, at ε = 1e-5, about 1e-8 is left. How near δx(nT) comes to μ δx(0) is measured for each mode (`closure`).
+by the certified method. Its noise (about 1e-13) grows with 1/ε and the shift of contact events with ε; between the
+two, at ε = 1e-5, about 1e-8 is left. The difference of δx(nT) and μ δx(0) is measured for each mode (`closure`).
 """
 
 from __future__ import annotations

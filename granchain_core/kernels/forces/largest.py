@@ -200,7 +200,8 @@ def _(law, rate, c, last, theta, log):
 def note_closings(law, slots, y, dy, end, end_slope, theta, dtheta, log):
     """Record the contacts that closed in a located step from y at drive phase θ to `end`. Absent: no force jumps there.
 
-    The step ends just behind an event; one that was too near to its start to be told from it belongs to that.
+    The step ends just behind an event; an event too near to the step's start to be distinguished from it belongs to
+    the start.
     """
 
 
