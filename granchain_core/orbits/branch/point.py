@@ -8,8 +8,9 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...integrate import Engine, State, certified
-from ...kernels.dop853.orbit_record import FULL, OrbitRecord, record_orbit
+from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from ...kernels.forces.peaks import MEMORY, PEAKS, ROWS
+from ...kernels.status import FULL
 from ...lower import lower
 from ...scene import Scene
 from ..orbit import sorted_multipliers
