@@ -19,7 +19,8 @@ COPY app ./app
 COPY assets ./assets
 RUN pip install .
 
-# Numba's cache holds the place and the time of the source it was made from. The place: work from another folder, so that
+# Numba's cache, and the marks of what is compiled (granchain_core/warm.py), hold the place and the time of the sources they
+# were made from. The place: work from another folder, so that
 # the installed package is compiled and not the source beside it. The time: image layers keep whole seconds only, so the
 # sources get whole seconds before they are compiled.
 WORKDIR /opt/granchain

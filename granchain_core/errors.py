@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from typing import Any
 
 #: Names of the outcomes of computations whose numbers failed.
-FAILURES = ("not-finite", "step-too-small", "chatter", "no-convergence", "same-orbit", "another-orbit", "no-point",
-            "contacts", "contradicted", "solver-gave-up", "too-slow", "worker-failed")
+FAILURES = ("not-finite", "step-too-small", "too-many-steps", "chatter", "no-convergence", "same-orbit",
+            "another-orbit", "no-point", "contacts", "contradicted", "solver-gave-up", "too-slow", "worker-failed")
 
 
 class BadInput(ValueError):

@@ -7,7 +7,10 @@ which can be compiled in its own process: `python -m granchain_core.warm PIECE`,
 
 from __future__ import annotations
 
+import functools
+import hashlib
 import json
+import os
 import sys
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
@@ -20,6 +23,7 @@ from .accuracy.effect_cost import CODE, MOTION
 from .accuracy.work_precision import compile_methods
 from .integrate import Engine, Setting, certified, live
 from .integrate.batch import Batch, can_share_batch, is_uniform
+from .kernels import jit
 from .kernels.jit import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
 from .lower import lower
@@ -132,7 +136,20 @@ def is_warm(shown: Scene, pieces: Iterable[str] = (LIVE, CERTIFIED)) -> bool:
 
 
 def _marker(name: str, piece: str) -> Path:
-    return CACHE_FOLDER / f"compiled-{name}-{piece}".replace(" ", "-").replace(",", "")
+    return CACHE_FOLDER / f"compiled-{_sources_stamp()}-{name}-{piece}".replace(" ", "-").replace(",", "")
+
+
+@functools.cache
+def _sources_stamp() -> str:
+    """What Numba tells its compiled code apart by, beside the content of the sources: their place and their times.
+
+    The same sources in another clone, or after a checkout that touched them, are compiled once more.
+    """
+    folder = Path(os.path.abspath(jit.__file__)).parent
+    digest = hashlib.sha256(f"{sys.implementation.cache_tag} {folder}".encode())
+    for path in sorted(folder.rglob("*.py")):
+        digest.update(f" {path.name} {path.stat().st_mtime_ns}".encode())
+    return digest.hexdigest()[:12]
 
 
 def _compile(job: tuple[Scene, str]) -> str:

@@ -156,8 +156,10 @@ def run(arguments: argparse.Namespace) -> None:
     errors = result.force_errors
     inward, outward, elastic = ("none claimed" if e is None else f"{e:.1e}"
                                 for e in (errors.input, errors.output, errors.elastic))
+    energy = ("no energy account" if result.energy_residual is None
+              else f"energy closes to {result.energy_residual:.1e}")
     print(f"relative errors: displacement {result.error_estimate:.1e}, output force {outward} (elastic {elastic}), "
-          f"input force {inward}; energy closes to {result.energy_residual:.1e}; "
+          f"input force {inward}; {energy}; "
           f"{result.cost.method}, {result.cost.steps} steps, {result.cost.events} contact events, "
           f"{1e3 * result.cost.wall_s:.1f} ms")
 

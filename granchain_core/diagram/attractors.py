@@ -19,7 +19,7 @@ from ..result import ForceErrors
 from ..scene import Scene
 from ..state import rest
 from ..steady.batch_job import Start
-from ..steady.regime import Regime
+from ..steady.regime import Regime, grows, is_neutral
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .compute import settle_on_all_cores
@@ -36,8 +36,6 @@ _BOX = 1.5
 #: Displacement from an unstable orbit, relative to the motion, and drive periods before the next check: enough to
 #: leave an orbit with |μ| = 1.003.
 _BESIDE, _RUN_ON = 1e-2, 3000
-#: Mean exponents per drive period above which a group is chaotic, and below which it may be quasi-periodic.
-_CLEARLY, _UNCLEAR = 0.01, 5e-3
 #: Most random states.
 MOST_STATES = 10_000
 
@@ -245,16 +243,18 @@ def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
 def _regime(regimes: list[Regime]) -> Regime:
     """The regime of a group, of irregular motions by the mean of their Lyapunov exponents with its standard error.
 
-    The rule is that of steady/regime.py; the mean of many is not known better than its part that dies as 1/periods.
+    The rule is that of steady/regime.py. What dies as 1/periods is alike in all of them and no smaller in their mean:
+    an exponent is zero within the errors of one.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     if regimes[0].period is not None or not known:
         return regimes[0]
     mean, error = sum(value for value, _ in known) / len(known), math.sqrt(sum(e**2 for _, e in known)) / len(known)
-    if mean > max(3.0 * error, _CLEARLY):
+    if grows(mean, error):
         name = "chaotic"
     else:
-        quasi = abs(mean) <= max(3.0 * error, _UNCLEAR) and any(one.name == "quasi-periodic" for one in regimes)
+        neutral = is_neutral(mean, error * math.sqrt(len(known)))
+        quasi = neutral and any(one.name == "quasi-periodic" for one in regimes)
         name = "quasi-periodic" if quasi else "unsettled"
     return replace(regimes[0], name=name, lyapunov=(mean, error))
 

@@ -14,7 +14,7 @@ from ..kernels.effects.unequal import Unequal
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.simd.vector import aligned
-from ..kernels.status import CANCELLED
+from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..lower import Lowered, lower
@@ -114,7 +114,7 @@ class Batch:
         status, lane = kernels.run_batch(self.lanes, self.state, self.stop.flag)
         if status == CANCELLED:
             raise Cancelled
-        return int(lane), status == 0
+        return int(lane), status == DONE
 
     def run_pairs(self, start: float, periods: int) -> np.ndarray:
         """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (4, periods)."""
@@ -122,7 +122,7 @@ class Batch:
         status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop.flag)
         if status == CANCELLED:
             raise Cancelled
-        return growth if status == 0 else np.full_like(growth, np.nan)
+        return growth if status == DONE else np.full_like(growth, np.nan)
 
     def strobes(self, lane: int, most: int = REMEMBERED) -> np.ndarray:
         """The last `most` remembered strobes of a lane in order, (P, 2, N), displacement and w in scaled units."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Cancelled, NumbersFailed
-from ..kernels.status import CANCELLED, NOT_FINITE, STEP_TOO_SMALL
+from ..kernels.status import CANCELLED, CHATTER, NOT_FINITE, STEP_TOO_SMALL, TOO_MANY_STEPS
 from ..scene import Scene
 
 
@@ -29,7 +29,7 @@ class Failure:
 
     @property
     def error(self) -> Cancelled | NumbersFailed:
-        """The outcome as something to raise."""
+        """The outcome as something to raise. `ValueError` for a status that is no failure."""
         if self.status == CANCELLED:
             return Cancelled()
         time = self.periods * self.scene.period
@@ -43,8 +43,13 @@ class Failure:
             return NumbersFailed(f"The step of {self.method} shrank to nothing {when}; ask for less accuracy than "
                                  f"{self.scene.accuracy:g} or use method rk4-split.", "step-too-small",
                                  time=time, cost=self.cost)
-        return NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D or "
-                             f"use method rk4-split.", "chatter", time=time, cost=self.cost)
+        if self.status == TOO_MANY_STEPS:
+            return NumbersFailed(f"A drive period takes {self.method} millions of steps {when}; raise the frequency f.",
+                                 "too-many-steps", time=time, cost=self.cost)
+        if self.status == CHATTER:
+            return NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D "
+                                 f"or use method rk4-split.", "chatter", time=time, cost=self.cost)
+        raise ValueError(f"{self.status} is not the status of a computation that failed")
 
 
 def not_finite(state: np.ndarray, row: int) -> int:

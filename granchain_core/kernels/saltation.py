@@ -40,7 +40,7 @@ class VelocityTangent(NamedTuple):
 
 
 @keep_gaps.of(VelocityTangent)
-def _(tangent, slots, state, stage):
+def _(tangent, slots, state, slope, stage):
     stage_gaps(slots, state, stage, tangent.gaps)
 
 

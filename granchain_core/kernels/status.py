@@ -12,6 +12,15 @@ NOT_FINITE = 2
 STEP_TOO_SMALL = 3
 #: A contact opens and closes more often than time can resolve.
 CHATTER = 4
+#: A period took more steps than are worth waiting for.
+TOO_MANY_STEPS = 5
+#: What is kept of a run did not fit into the places for it.
+FULL = 6
+#: A release was aimed at where the contact does not open; the step is taken in another way.
+LOST = -1
+
+#: Fixed steps after which the stop flag is asked at the latest; with error control it is asked after each.
+STEPS_BETWEEN_STOP_CHECKS = 4096
 
 #: Places in an array of counts (4,): accepted steps, evaluations of the equations, contact events, rejected steps.
 STEPS, EVALUATIONS, EVENTS, REJECTED = 0, 1, 2, 3

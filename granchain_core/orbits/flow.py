@@ -148,6 +148,13 @@ def velocity_from_w(lowered: Lowered, x: np.ndarray) -> np.ndarray:
     return matrix
 
 
+def relative_change(change: np.ndarray, x: np.ndarray) -> float:
+    """The larger of the changes of displacements and of w, each relative to its largest entry."""
+    half = len(x) // 2
+    return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
+               for part in (slice(0, half), slice(half, None)))
+
+
 def _columns(tangent: Tangent, columns: int) -> np.ndarray:
     """The tangents as an ordinary matrix (2N, columns)."""
     rows = len(tangent.state)

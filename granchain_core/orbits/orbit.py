@@ -19,7 +19,7 @@ from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settle import run_until_settled
 from ..stop import Stop
-from .flow import Flow, StroboscopicMap, refuse_cut
+from .flow import Flow, StroboscopicMap, refuse_cut, relative_change
 from .krylov import leading_multipliers, newton_step
 
 #: Residual at which an orbit is found, relative to the largest displacement and w.
@@ -159,7 +159,7 @@ def random_state(scene: Scene, seed: int) -> State:
 def _newton(strobe: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, list[float]]:
     """Damped Newton iterations; the residual is taken relative to the largest displacement and the largest w."""
     flow = _flow(strobe, x)
-    history = [_residual(flow.end - x, x)]
+    history = [relative_change(flow.end - x, x)]
     while history[-1] > CONVERGED and len(history) <= MOST_ITERATIONS:
         step = _newton_step(strobe, x, flow)
         for halving in range(_MOST_HALVINGS):
@@ -168,12 +168,12 @@ def _newton(strobe: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, l
                 after = _flow(strobe, trial)
             except NumbersFailed:  # a state too far away to be followed: a shorter step is nearer
                 continue
-            if _residual(after.end - trial, trial) < history[-1]:
+            if relative_change(after.end - trial, trial) < history[-1]:
                 break
         else:
             break
         x, flow = trial, after
-        history.append(_residual(flow.end - x, x))
+        history.append(relative_change(flow.end - x, x))
     if history[-1] > 100.0 * CONVERGED:
         shown = ", ".join(f"{r:.1e}" for r in history)
         raise NumbersFailed(f"Newton's method found no orbit of {strobe.periods} drive periods near this start: its "
@@ -200,12 +200,6 @@ def _newton_step(strobe: StroboscopicMap, x: np.ndarray, flow: Flow) -> np.ndarr
                             "no-convergence") from None
 
 
-def _residual(change: np.ndarray, x: np.ndarray) -> float:
-    half = len(x) // 2
-    return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
-               for part in (slice(0, half), slice(half, None)))
-
-
 def _orbit(scene: Scene, n: int, strobe: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
            observer: bool) -> Orbit:
     liouville = None
@@ -222,10 +216,16 @@ def _orbit(scene: Scene, n: int, strobe: StroboscopicMap, x: np.ndarray, flow: F
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:
+    """The error, None where the smallest multiplier is only rounding."""
     sizes = np.abs(multipliers)
-    if sizes.min() < _ROUNDING * sizes.max():
-        return None
-    return abs(float(np.sum(np.log(sizes))) - log_determinant) / max(1.0, abs(log_determinant))
+    return None if sizes.min() < _ROUNDING * sizes.max() else liouville_error(multipliers, log_determinant)
+
+
+def liouville_error(multipliers: np.ndarray, log_determinant: float) -> float:
+    """Difference of ln |det| and ∫ trace, relative to the latter where that is above 1."""
+    with np.errstate(divide="ignore"):
+        found = float(np.sum(np.log(np.abs(multipliers))))
+    return abs(found - log_determinant) / max(1.0, abs(log_determinant))
 
 
 def sorted_multipliers(derivative: np.ndarray) -> np.ndarray:

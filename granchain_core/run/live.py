@@ -8,10 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..integrate import Engine, State, live
+from ..kernels.forces.peaks import next_period
 from ..result import Cost, Jumps, Run, run_from
 from ..scene import Scene
 from ..state import rest
 from ..steady.regime import Regime
+from ..stop import Stop
 
 _NOT_ASKED = Regime.unsettled(0)
 
@@ -31,6 +33,8 @@ class LiveChain:
         Recorded samples a drive period, an even number.
     start : State, optional
         Where it begins; at rest if not given.
+    stop : Stop, optional
+        Ends `advance` with `Cancelled` when another thread sets it; the chain cannot be used any more then.
 
     Raises
     ------
@@ -49,9 +53,10 @@ class LiveChain:
     True
     """
 
-    def __init__(self, scene: Scene, samples: int = 96, start: State | None = None) -> None:
+    def __init__(self, scene: Scene, samples: int = 96, start: State | None = None, stop: Stop | None = None) -> None:
         if samples % 2:
             raise ValueError("samples must be even, so that the driver's middle position is one of them")
+        self.stop = Stop() if stop is None else stop
         self.samples = samples
         self.scene = scene
         self.time = 0.0
@@ -62,7 +67,7 @@ class LiveChain:
             self._index = round(start.phase * samples) % samples
 
     def _new_engine(self, scene: Scene, state: State) -> Engine:
-        engine = Engine(scene, live(2), self.samples)
+        engine = Engine(scene, live(2), self.samples, stop=self.stop)
         engine.start(state)
         return engine
 
@@ -90,7 +95,10 @@ class LiveChain:
         self._engine = self._new_engine(self.scene, rest(self.scene))
 
     def advance(self, count: int) -> Run:
-        """Go on by `count` samples: count + 1 rows, the present state first; `time` goes on from call to call."""
+        """Go on by `count` samples: count + 1 rows, the present state first; `time` goes on from call to call.
+
+        The largest forces are those of this stretch. Raises `NumbersFailed`, `Cancelled`.
+        """
         began = time.perf_counter()
         pieces = []
         left = count
@@ -111,6 +119,7 @@ class LiveChain:
     def _advance_piece(self, count: int, began: float) -> Run:
         engine, first = self._engine, self._index
         engine.counts.array[:] = 0
+        next_period(engine.log.peaks)
         record = engine.record(count)
         cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)
         run = run_from(engine, record, first, _NOT_ASKED, None, cost)

@@ -39,6 +39,9 @@ _CLOSES = 10.0
 _KEPT = 420
 #: Time of the next finer computation over that of the last.
 _TWICE = 2.0
+#: Factors on the changes of largest forces before those of stated.py, where no force jumps and where some do: caution
+#: found by trial (`python -m tests.numerics.forces run`). At jumps the error is uneven from one step size to the next.
+_FORCES, _FORCES_THAT_JUMP = 1.5, 3.0
 #: Fewest periods on which a run is called anything but unsettled.
 _ENOUGH = 40
 
@@ -200,10 +203,9 @@ def _difference(now: _Attempt, before: _Attempt) -> float:
 def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
     """Relative differences (4,) of the displacements and of the largest input, output and elastic output force.
 
-    F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force. Where forces jump their error is
-    uneven from one step size to the next (`jump_errors`), and twice the change is taken for it.
+    The differences of forces are taken with a factor for caution.
     """
-    factor = 3.0 if now.engine.lowered.scene.forces_jump else 1.5
+    factor = _FORCES_THAT_JUMP if now.engine.lowered.scene.forces_jump else _FORCES
     return np.array([_difference(now, before), *(factor * relative_changes(now.engine.tops, before.engine.tops))])
 
 

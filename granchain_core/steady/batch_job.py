@@ -10,10 +10,12 @@ from ..integrate import Engine, State, live
 from ..integrate.batch import Batch
 from ..integrate.methods import AT_A_JUMP, jump_errors
 from ..lower import Lowered
-from ..result import CAUTION, relative_changes
+from ..result import relative_changes
 from ..scene import Scene
 from ..state import rest
+from ..stop import Stop
 from .decide import MOST_PERIODS, SLOW_PERIODS
+from .orbit_errors import orbit_force_errors
 from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
 from .steady_state import SteadyState
@@ -63,31 +65,32 @@ class Job:
         return self.run + MOST_PERIODS < self.affordable_periods
 
     def fine_result(self, block: Batch, lane: int) -> SteadyState:
-        """The result of the finer run."""
+        """The result of the finer run. Raises `Cancelled`."""
         assert self.coarse is not None
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
         y, distance = block.state.y[:, lane], float(block.state.seen[lane, 2])
         tops, jumps = block.tops(lane, regime.period), block.jumps(lane, regime.period)
-        errors = CAUTION * relative_changes(tops, before)
+        change, further = relative_changes(tops, before), np.zeros(3)
         at_jump = np.append(jumps > AT_A_JUMP * tops[:2], False)
         if at_jump.any():
-            located, moved = self._located_tops(y, regime)
-            tops, errors = np.where(at_jump, located, tops), np.where(at_jump, moved, errors)
-        # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
-        errors += 1.5 * max(distance, regime.distance)
+            located, moved = self._located_tops(y, regime, block.stop)
+            tops, change = np.where(at_jump, located, tops), np.where(at_jump, 0.0, change)
+            further = np.where(at_jump, moved, 0.0)
+        # either run has come to its own orbit: the change is that of the orbits
+        errors = orbit_force_errors(change, max(distance, regime.distance), further=further)
         tops = tops * self.lowered.scales.force
         return SteadyState(self.scene, tops, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
                           number=self.number)
 
-    def _located_tops(self, y: np.ndarray, regime: Regime) -> tuple[np.ndarray, np.ndarray]:
+    def _located_tops(self, y: np.ndarray, regime: Regime, stop: Stop) -> tuple[np.ndarray, np.ndarray]:
         """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
         Lanes take their steps across events: what they see of a jump is off by an order of the step. A second orbit
         shows by how much the forces still change on the way from the lanes' orbit to this method's.
         """
         assert regime.period is not None
-        engine = Engine(self.scene, _LOCATED, 1, lowered=self.lowered)
+        engine = Engine(self.scene, _LOCATED, 1, stop=stop, lowered=self.lowered)
         engine.start_scaled(self.lowered.beads_of(y))
         first = engine.largest_forces(regime.period)
         tops = engine.largest_forces(regime.period)

@@ -122,7 +122,7 @@ class _Lanes:
                 self.waiting.append(job)
                 continue
             regime, before = irregular(growth, job.record, job.run), job.measured
-            if before is None and growth.mean() > 0.01 and regime.name != "unsettled" and not clearly_chaotic(growth):
+            if before is None and regime.name != "unsettled" and not clearly_chaotic(growth):
                 job.measured, job.in_doubt = regime, True
                 self.doubtful.append(job)
             elif regime.name == "unsettled" and growth.mean() < 0.0 and job.run < SLOW_PERIODS and job.affordable:

@@ -10,14 +10,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed, unknown_name
+from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
 from ..integrate import Engine, State
 from ..integrate.batch import can_share_batch
 from ..integrate.methods import jump_errors
-from ..result import CAUTION, ForceErrors, relative_changes
+from ..result import ForceErrors, relative_changes
 from ..scene import Scene
 from ..stop import Stop
 from .batch_settle import batch_results
+from .orbit_errors import orbit_force_errors
 from .regime import Regime
 from .settle import Settling, relax, run_until_settled
 from .steady_state import SteadyState
@@ -139,7 +140,7 @@ def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
 
 
 def _certified(way: Settling) -> SteadyState:
-    """Largest forces on the certified orbit; the error is what they still change plus the distance's share."""
+    """Largest forces on the certified orbit, and their errors from a finer computation of it."""
     engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
     n = way.regime.period
     assert n is not None
@@ -147,9 +148,8 @@ def _certified(way: Settling) -> SteadyState:
     finer = Engine(way.scene, engine.setting.finer(), 1, stop=way.stop)
     finer.start(engine.state)
     tops = finer.largest_forces(n)
-    # F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force
-    errors = CAUTION * relative_changes(tops, before) + 1.5 * distance
-    errors += jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
+    jumps = jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
+    errors = orbit_force_errors(relative_changes(tops, before), distance, way.regime.slowness, jumps)
     return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
 
 
@@ -214,22 +214,30 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     if start not in STARTS:
         raise unknown_name("start", start, STARTS)
     scenes = checked_frequencies(scene, frequencies)
-    ended = Stop()
     if start == "rest":
-        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], ended, stop, workers)
-        return
+        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], stop, workers)
+    else:
+        yield from _carried(sorted(scenes, key=lambda s: s.f, reverse=start == "down"), stop)
+
+
+def _carried(scenes: list[Scene], stop: Stop | None) -> Iterator[CurvePoint]:
+    """Points one after another, each from the state of the one before; from rest after one that failed."""
+    stop = Stop() if stop is None else stop
     state: State | None = None
-    for one in sorted(scenes, key=lambda s: s.f, reverse=start == "down"):
+    for one in scenes:
         if stop:
             return
-        found = safe_state(one, state, ended)
+        try:
+            found = safe_state(one, state, stop)
+        except Cancelled:
+            return
         state = found.state if not found.failure else None
         yield CurvePoint.of(found)
 
 
-def _from_rest(scenes: list[Scene], ended: Stop, stop: Stop | None,
-               workers: int | None) -> Iterator[CurvePoint]:
+def _from_rest(scenes: list[Scene], stop: Stop | None, workers: int | None) -> Iterator[CurvePoint]:
     """Independent points on all cores: by lanes where they can, else one by one; closing the generator stops them."""
+    ended = Stop()
     yield from on_all_cores(lambda shared: _points(shared, ended), scenes, ended, stop,
                             min(workers or os.cpu_count() or 1, len(scenes)))
 

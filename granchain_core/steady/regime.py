@@ -16,6 +16,9 @@ import numpy as np
 from ..kernels.strobes import periodicity as section
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 
+#: Mean exponents per period above which a motion may be chaotic, and within which it may be quasi-periodic, however
+#: small the standard error: what a finite record leaves dies as 1/periods.
+_CHAOTIC, _NEUTRAL = 0.01, 5e-4
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
 _SLOW_WINDOW, _SHRINKS = 100, 0.98
@@ -165,18 +168,28 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: fl
     return look(strobes, longest, rounding)[0]
 
 
+def grows(mean: float, error: float) -> bool:
+    """Whether neighbours part, by a mean exponent per period and its standard error."""
+    return mean > max(3.0 * error, _CHAOTIC)
+
+
+def is_neutral(mean: float, error: float) -> bool:
+    """Whether neighbours neither part nor come together, by a mean exponent per period and its standard error."""
+    return abs(mean) <= max(3.0 * error, _NEUTRAL)
+
+
 def irregular(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
 
     Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
-    errors, the section comes back near itself as it does on a closed curve, and the record is long enough to show that
-    it is neither shrinking nor growing. Anything else is on its way, however slowly.
+    errors or 5e-4, the section comes back near itself as it does on a closed curve, and the record is long enough to
+    show that it is neither shrinking nor growing. Anything else is on its way, however slowly.
     """
     mean = float(exponents.mean())
     error = float(exponents.std(ddof=1) / math.sqrt(len(exponents)))
-    if mean > max(3.0 * error, 0.01):
+    if grows(mean, error):
         name = "chaotic"
-    elif abs(mean) <= max(3.0 * error, 5e-4) and stays(strobes) and returns_near(strobes):
+    elif is_neutral(mean, error) and stays(strobes) and returns_near(strobes):
         name = "quasi-periodic"
     else:
         name = "unsettled"

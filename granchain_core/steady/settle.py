@@ -15,12 +15,13 @@ import numpy as np
 
 from ..integrate import Engine, Setting, State, live, method_for
 from ..integrate.methods import jump_errors
-from ..result import CAUTION, Cost, Run, relative_changes, run_from
+from ..result import Cost, Run, relative_changes, run_from
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
+from .orbit_errors import orbit_force_errors
 from .regime import Regime, changes, find_period
 
 #: Most steps of the live method while settling: about half a minute.
@@ -291,12 +292,11 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     fine.counts.array += way.engine.counts.array + engine.counts.array + coarse.counts.array
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(way.regime, distance=distance)
-    # an error e of the n-period map moves its fixed point by e/(1 − |μ|), and the forces with it
     still = 1.0 / (1.0 - way.regime.slowness)
-    forces = CAUTION * still * relative_changes(fine.tops, coarse.tops)
-    forces += jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
     integration *= still
-    run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces + 1.5 * distance)
+    jumps = jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
+    forces = orbit_force_errors(relative_changes(fine.tops, coarse.tops), distance, way.regime.slowness, jumps)
+    run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces)
     return Settled(run, regime, start, origin, False, True)
 
 

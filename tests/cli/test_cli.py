@@ -43,6 +43,11 @@ def test_curve_prints_the_contracts_keys_and_writes_its_file(tmp_path: Path, cap
         assert list(written["curve/max_output_force"][()]) == data["max_output_force"]
 
 
+def test_a_naive_method_has_no_energy_account(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "sec2", "--method", "rk4-naive", *SHORT]) == 0
+    assert "; no energy account; rk4-naive, " in capsys.readouterr().out
+
+
 def test_run_writes_r_times_s_plus_one_rows(tmp_path: Path) -> None:
     file = tmp_path / "a.h5"
     assert main(["run", "sec2", "--periods", "0", "--record", "3", "--samples", "8", "--out", str(file)]) == 0

@@ -7,8 +7,10 @@ import pytest
 
 from granchain_core import BadInput, Scene, resonance_curve, scene, settled
 from granchain_core.diagram import Attractor, attractors, listing
+from granchain_core.diagram.attractors import _regime as irregular_regime
 from granchain_core.diagram.attractors import share
 from granchain_core.orbits import periodic_orbit, response
+from granchain_core.steady.regime import Regime
 
 #: Where rest, a sweep up and a sweep down lead to three different motions of sec2.
 MANY = 893.0
@@ -87,6 +89,14 @@ def test_what_only_seems_to_rest_is_not_an_attractor() -> None:
     found = attractors(scene("sec2").evolve(f=1936.0), random_states=24)
     assert all(one.stable is not False for one in found)
     assert {one.regime.period for one in found} == {5, None}
+
+
+@pytest.mark.parametrize(("mean", "error", "name"), [(0.0, 1e-4, "quasi-periodic"), (3e-3, 1e-4, "unsettled"),
+                                                     (3e-3, 2e-3, "quasi-periodic"), (2e-2, 1e-3, "chaotic")])
+def test_a_group_is_judged_by_the_rule_for_one(mean: float, error: float, name: str) -> None:
+    """Nine alike: their mean's standard error is a third of one's, but what a finite record leaves is the same in all."""
+    one = Regime("quasi-periodic", None, None, None, 800, (mean, error))
+    assert irregular_regime([one] * 9).name == name
 
 
 def test_shares_without_a_single_hit_still_have_an_error() -> None:

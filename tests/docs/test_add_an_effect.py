@@ -19,13 +19,38 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_page_edits_and_writes_as_many_files_as_it_says() -> None:
     edits, new = files_of(PAGE)
-    assert (len(edits), len(new)) == (8, 3)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 8 files, write 3"
+    assert (len(edits), len(new)) == (7, 3)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 7 files, write 3"
 
 
 def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
     """Force, energy and tangent of the page's effect are right in every kernel."""
     assert "3 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics/test_drag.py")
+
+
+def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
+    """v̇ of every bead, of which Ḟ is made, against the velocities a moment later and earlier along the motion."""
+    told = follow(tree, "-c", """
+import numpy as np
+from granchain_core import scene
+from granchain_core.integrate import Engine, State, live
+from granchain_core.kernels.forces.largest import acceleration
+one = scene("drag").evolve(N=3, c=100.0)
+engine = Engine(one, live(), 1)
+lo, work = engine.lowered, engine.stepper.work
+engine.start(State(np.array([3.0, 2.0, 1.0]) * lo.scales.length, np.array([1.0, -0.5, 2.0]) * lo.scales.velocity))
+y, dy, h = engine.y.copy(), work.k[0].copy(), 1e-5
+engine.place()
+found = [acceleration(lo.slots, y, dy, work.forces.e, i, -1, False) for i in range(1, 4)]
+there = []
+for sign in (1.0, -1.0):
+    moved = y + sign * h * dy
+    engine.stepper.place(sign * h * lo.beta, moved, False)
+    there.append(work.k[0][1:4].copy())
+exact = (there[0] - there[1]) / (2.0 * h)
+print(np.abs(found - exact).max() / np.abs(exact).max())
+""")
+    assert float(told) < 1e-6  # h² of the difference, and 1e-16/h
 
 
 def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> None:

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from granchain_core import Cancelled, State, run, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, Setting, live
+from granchain_core.steady.lyapunov import exponents
 from granchain_core.stop import Stop
 
 METHODS = [("rk4", 2e-6), ("rk4-split", 2e-6), ("dop853", 1e-9)]
@@ -119,6 +120,37 @@ def test_stop_flag_ends_a_long_run_soon(method, recording):
     with pytest.raises(Cancelled):
         slow.record(20) if recording else slow.periods(20)
     assert slow.counts.steps - steps[0] <= 2 * 4096
+
+
+def test_stop_flag_ends_a_lyapunov_exponent_soon():
+    """Two chains side by side for a period of a hundred thousand steps: the flag is asked every 4096 steps of both."""
+    stop = Stop()
+    exponents(Engine(scene("sec2").evolve(f=1e5, N=300), live(), 1), 1, 1)  # compiling asks no flag
+    slow = Engine(scene("sec2").evolve(f=0.5, N=300), live(16), 1, stop=stop)
+    steps: list[int] = []
+
+    def raise_flag() -> None:
+        while slow.counts.rhs == 0:
+            time.sleep(0.001)
+        steps.append(slow.counts.steps)
+        stop.set()
+
+    threading.Thread(target=raise_flag, daemon=True).start()
+    with pytest.raises(Cancelled):
+        exponents(slow, 1, 1)
+    assert slow.counts.steps - steps[0] <= 2 * 2 * 4096
+
+
+@pytest.mark.parametrize("beads", [11, 300])
+def test_a_stopped_period_counts_the_steps_that_were_taken(beads):
+    """A flag that is up from the start is seen after 4096 steps at most, of a period of some ten thousand."""
+    stop = Stop()
+    stop.set()
+    engine = Engine(scene("sec2").evolve(f=1.0, N=beads), live(), 1, stop=stop)
+    assert engine.grid > 3 * 4096
+    with pytest.raises(Cancelled):
+        engine.periods(1)
+    assert engine.counts.steps <= 4096
 
 
 def test_run_passes_its_stop_flag_on():

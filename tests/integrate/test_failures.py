@@ -7,6 +7,10 @@ import pytest
 
 from granchain_core import NumbersFailed, run, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.failure import Failure
+from granchain_core.kernels.dop853 import flow
+from granchain_core.kernels.status import CHATTER, DONE, TOO_MANY_STEPS
+from granchain_core.orbits.flow import StroboscopicMap
 
 
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
@@ -72,3 +76,32 @@ def test_extreme_but_valid_knobs_give_a_finite_motion(knobs, accuracy):
     assert result.status == "done"
     assert np.isfinite(result.force).all()
     assert np.isfinite(result.displacement).all()
+
+
+def failure(status: int) -> Failure:
+    """A computation that ended with this status."""
+    return Failure(status, 1.0, 0, None, {}, scene("sec2"), "dop853")
+
+
+def test_a_status_nobody_knows_is_no_chatter() -> None:
+    with pytest.raises(ValueError, match="99 is not the status"):
+        _ = failure(99).error
+    assert failure(CHATTER).error.status == "chatter"
+
+
+def test_a_period_of_too_many_steps_is_no_step_that_shrank(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The flow's own loop, with steps that lead nowhere and patience for three of them."""
+    def step(*words: object) -> tuple[int, None, float, int]:
+        return DONE, None, 0.0, -1
+
+    monkeypatch.setattr(flow, "_MOST_STEPS", 3)
+    monkeypatch.setattr(flow, "begin", lambda *words: None)
+    monkeypatch.setattr(flow, "evaluate", lambda *words: None)
+    monkeypatch.setattr(flow, "flow_step", step)
+    strobe = StroboscopicMap(scene("sec2"), 1)
+    engine = strobe.engine
+    status, done, _ = flow.run_flow.py_func(engine.stepper.method, engine.lowered.slots, 1.0, 1.0, 1, engine.y,
+                                            strobe._work, strobe._path, engine.stepper.clock, None,
+                                            engine.counts.array, engine.stop.flag)
+    assert (status, done) == (TOO_MANY_STEPS, 0)
+    assert failure(status).error.status == "too-many-steps"

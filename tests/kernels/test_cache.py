@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
+
+import granchain_core
 
 PROGRAM = """
 import json, sys
@@ -30,6 +34,46 @@ def hits_and_misses(cache: str) -> tuple[int, int]:
     assert done.returncode == 0, done.stderr
     hits, misses = json.loads(done.stdout)
     return hits, misses
+
+
+#: Notes that a piece is compiled, or asks whether it is, without compiling anything.
+MARK = """
+import sys
+from granchain_core import scene, warm
+warm.PIECES[warm.LIVE] = lambda short: None
+if sys.argv[1] == "compile":
+    warm.compile_piece(scene("sec2"), warm.LIVE)
+print(warm.is_warm(scene("sec2"), [warm.LIVE]))
+"""
+
+
+def copied_core(tree: Path) -> Path:
+    """A copy of the core with its scenes, files with the same times."""
+    root = Path(granchain_core.__path__[0]).parent
+    for name in ("granchain_core", "assets"):
+        shutil.copytree(root / name, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
+    return tree
+
+
+def is_warm(tree: Path, cache: Path, word: str = "ask") -> bool:
+    """What a new process in a copy of the core says."""
+    environment = {**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(cache)}
+    done = subprocess.run([sys.executable, "-c", MARK, word], env=environment, cwd=tree, text=True, capture_output=True,
+                          timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip() == "True"
+
+
+def test_what_numba_would_compile_again_is_not_called_compiled(tmp_path: Path) -> None:
+    """Numba knows a source by its place and its time: from another clone, and after a touch, it compiles anew."""
+    tree, clone, cache = copied_core(tmp_path / "one"), copied_core(tmp_path / "two"), tmp_path / "cache"
+    assert is_warm(tree, cache, "compile")
+    assert is_warm(tree, cache)
+    assert not is_warm(clone, cache)
+    touched = tree / "granchain_core" / "kernels" / "samples.py"
+    os.utime(touched, ns=(0, touched.stat().st_mtime_ns + 1))
+    assert not is_warm(tree, cache)
+    assert len(list(cache.iterdir())) == 1  # the content is the same, so all of it was in one folder
 
 
 def test_second_process_compiles_nothing(tmp_path):

@@ -38,6 +38,14 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
         assert found.tops[1] == pytest.approx(top, rel=2e-3)
 
 
+def test_what_lanes_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At 1640 Hz from rest: one measurement of a zero exponent is not enough, as for a chain by itself."""
+    real, measured = batch_settle.exponents_in_pairs, []
+    monkeypatch.setattr(batch_settle, "exponents_in_pairs", lambda *words: measured.append(True) or real(*words))
+    found = results([1640.0])[1640.0]
+    assert (found.regime.name, found.doubtful, len(measured)) == ("quasi-periodic", False, 2)
+
+
 def test_up_and_down_really_differ_there() -> None:
     """So the test above could fail: the attractor at 1600 Hz depends on the start."""
     frequencies = np.array([1560.0, 1580.0, 1600.0, 1620.0, 1640.0, 1660.0])

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from granchain_core import State, run, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import Engine, Setting, certified
 from granchain_core.kernels.strobes import periodicity as section
-from granchain_core.steady import regime, settle
+from granchain_core.steady import curve, regime, settle
 
 
 def turning(rate: float, count: int = 420) -> np.ndarray:
@@ -84,6 +86,20 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     for decay in (0.1, 0.9):
         monkeypatch.setattr(regime.Regime, "slowness", decay)
         stated.append(settle.certified_picture(way, 16, 0.0, "rest").run.error_estimate)
+    assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
+
+
+def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same factor 1/(1 − |μ|) for a point of a curve that was settled by itself."""
+    way = settle.settle(scene("sec2"), None, None)
+    monkeypatch.setattr(curve, "settle", lambda *words: way)
+    stated = []
+    for modulus in (0.1, 0.9):
+        engine = Engine(way.scene, certified(1e-6), 1)
+        engine.start(way.engine.state)
+        monkeypatch.setattr(curve, "relax", lambda *words, engine=engine: (engine, 0.0))
+        way.regime = replace(way.regime, multiplier=modulus)
+        stated.append(curve.steady_state(way.scene, None, way.stop).errors)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 

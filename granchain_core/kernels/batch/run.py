@@ -18,13 +18,10 @@ from ..effects.preload import batch_overlap
 from ..jit import inline_numba, kernel
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import LANES, load, store
-from ..status import CANCELLED, DONE, NOT_FINITE
+from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_ends
-
-#: Steps between two checks of the stop flag at most.
-_PATIENCE = 4096
 
 
 class Lanes(NamedTuple):
@@ -124,7 +121,7 @@ def batch_steps(lanes, state, count):
 def run_batch(lanes, state, stop):
     """Run until a lane is due for a check; returns (status, lane)."""
     while True:
-        count = _PATIENCE
+        count = STEPS_BETWEEN_STOP_CHECKS
         for lane in range(LANES):
             count = min(count, state.left[lane])
         batch_steps(lanes, state, count)
@@ -160,7 +157,7 @@ def run_pairs(lanes, state, start, growth, stop):
     """
     m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
     while busy:
-        count = _PATIENCE
+        count = STEPS_BETWEEN_STOP_CHECKS
         for lane in range(LANES):
             count = min(count, state.left[lane])
         batch_steps(lanes, state, count)

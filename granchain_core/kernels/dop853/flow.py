@@ -13,7 +13,7 @@ from ..equations.motion import copy
 from ..equations.tangent import Tangent, carry
 from ..jit import by_slot, kernel
 from ..samples import first_not_finite
-from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEP_TOO_SMALL, STEPS
+from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
 from .flow_events import flow_step
 from .step import evaluate, new_scale
 from .time_map import time_at
@@ -67,7 +67,7 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
             if stop[0] != 0:
                 return CANCELLED, p, trace
             if steps > _MOST_STEPS:
-                return STEP_TOO_SMALL, p, trace
+                return TOO_MANY_STEPS, p, trace
             evaluate(slots, beta, t, y, path.first, work.forces)
             status, time, h, contact = flow_step(method, slots, beta, t, period, onset, y, work, path, clock, tangent,
                                                  counts)

@@ -12,12 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..effects.driver import driver_displacement
 from ..effects.preload import overlap
 from ..jit import by_slot, inline_numba, kernel
 from ..status import EVALUATIONS
 from .run import may_turn
-from .step import combine, dense_value, error_norm
+from .step import combine, error_norm, overlap_inside
 from .tableau import STAGES, C
 from .time_map import prepare_dense_in_time, rate_at, slope_in_x, time_at
 
@@ -36,8 +35,8 @@ class Path(NamedTuple):
 
 
 @by_slot
-def keep_gaps(tangent, slots, state, stage):
-    """Keep the overlaps of one stage for the tangents. Absent: nobody needs them."""
+def keep_gaps(tangent, slots, state, slope, stage):
+    """Keep what tangents need of one stage, its overlaps; `slope` has its velocities. Absent: nobody needs them."""
 
 
 @kernel
@@ -49,23 +48,18 @@ def attempt_in_time(method, slots, beta, time, h, y, work, path, tangent):
     rate = rate_at(time, 0.0)
     for i in range(y.size):
         work.k[0, i] = rate * path.first[i]
-    keep_gaps(tangent, slots, y, 0)
+    keep_gaps(tangent, slots, y, path.first, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, work.k, s, work.end)
         slope_in_x(slots, beta, time, C[s] * h, work.end, s, work)
-        keep_gaps(tangent, slots, work.end, s)
+        keep_gaps(tangent, slots, work.end, work.slope, s)
     return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
 
 
 @kernel
 def overlap_at(slots, beta, time, h, y, work, c, x):
-    """δ_c at fraction x of the step in x; the driver's own motion is taken exactly."""
-    probe = work.probe
-    for i in range(c, c + 2):
-        probe[i] = dense_value(work.dense, y[i], x, i)
-    if c == 0:
-        probe[0] = driver_displacement(slots.driver, beta * time_at(time, x * h))
-    return overlap(slots.preload, probe, c)
+    """δ_c at fraction x of the step in x."""
+    return overlap_inside(slots, beta * time_at(time, x * h), y, work, c, x)
 
 
 @inline_numba

@@ -8,9 +8,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..effects.preload import overlap
-from ..jit import inline_numba, kernel
-from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
+from ..jit import inline_numba
+from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .flow_attempt import attempt_in_time, first_change
+from .step import growth, shrunk
 from .tableau import STAGES
 from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
@@ -18,15 +19,12 @@ from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, tim
 _LANDED = 1e-14
 #: A release is located in advance if it is at most this many steps away.
 _AIM = 1.5
-_GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 #: Attempts to locate one event, and to take one step.
 _TRIALS, _ATTEMPTS = 8, 60
 #: Shortest next step to try, in t: two events that rounding brings together do not shrink it further.
 _LEAST = 1e-9
 #: A first step after an onset covers at most this part of the time to the next release.
 _PART = 0.5
-#: Status of a release that could not be located, beside those of kernels/status.py.
-_LOST = -1
 
 
 @inline_numba
@@ -58,23 +56,11 @@ def locate_change(method, slots, beta, time, h, y, work, path, tangent, c, count
     return h
 
 
-@kernel
-def shrunk(h, error):
-    """A smaller step after one with too large an error."""
-    return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
-
-
-@inline_numba
-def grown(h, error):
-    """The step to try after one with a tolerable error."""
-    return h * min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
-
-
 @inline_numba
 def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
     """Step from t towards the release of contact c, estimated at `goal`: onto it, or part of the way.
 
-    Returns (status, time, size, c or −1, goal), with a status of _LOST where the contact does not open there.
+    Returns (status, time, size, c or −1, goal), with a status of LOST where the contact does not open there.
     """
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
     time = time_from(BEFORE, goal, t, power)
@@ -86,16 +72,16 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
             return NOT_FINITE, time, 0.0, -1, goal
         d, speed = overlap(slots.preload, work.end, c), work.slope[c] - work.slope[c + 1]
         if not speed < 0.0:
-            return _LOST, time, 0.0, -1, goal
+            return LOST, time, 0.0, -1, goal
         landed = abs(d) <= _LANDED * max(1.0, work.scale[0]) or goal - d / speed == goal
         if landed:
             break
         goal -= d / speed
         if not t < goal < farthest:
-            return _LOST, time, 0.0, -1, goal
+            return LOST, time, 0.0, -1, goal
         time = time_from(BEFORE, goal, t, power)
     if not landed:
-        return _LOST, time, 0.0, -1, goal
+        return LOST, time, 0.0, -1, goal
     h = size_of(time, min(goal, limit) - t)
     if goal > limit:
         landed = False
@@ -131,7 +117,7 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
         if aiming:
             status, time, h, landed, goal = aim(method, slots, beta, t, limit, goal, y, work, path, tangent, target,
                                                 counts)
-            if status == _LOST:
+            if status == LOST:
                 aiming, lost = False, True
                 time, h = usual, size_of(usual, dt)
                 continue
@@ -174,5 +160,5 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
 def next_dt(time, h, error, before, limit):
     """The next step in t after an accepted one of size h in x; not less than before where only the limit cut it."""
     end = time_at(time, h)
-    dt = time_at(time, h + grown(h, error)) - end
+    dt = time_at(time, h + h * growth(error)) - end
     return max(dt, before, _LEAST) if end >= limit else max(dt, _LEAST)

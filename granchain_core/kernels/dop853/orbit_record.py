@@ -14,14 +14,11 @@ import numpy as np
 from ..equations.motion import copy
 from ..jit import inline_numba, kernel
 from ..samples import first_not_finite
-from ..status import CANCELLED, DONE, NOT_FINITE
+from ..status import CANCELLED, DONE, FULL, NOT_FINITE
 from .force_search import follow_step
 from .run import certified_step, inner_extremum, overlap_in_step
 from .step import evaluate, new_scale, prepare_dense
 from .tableau import STAGES
-
-#: Outcome: there were more turning points than places to keep them.
-FULL = 5
 
 
 class OrbitRecord(NamedTuple):

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from ..effects.balance import add_to_account, slack_loss
-from ..effects.driver import driver_displacement
 from ..effects.preload import overlap
 from ..effects.tension import NoTension
 from ..equations.motion import copy
@@ -21,7 +20,17 @@ from ..status import CANCELLED, CHATTER, DONE, EVALUATIONS, EVENTS, NOT_FINITE, 
 from .bracket import between, narrowed
 from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
-from .step import STAGES, attempt, dense_value, evaluate, new_scale, prepare_dense
+from .step import (
+    STAGES,
+    attempt,
+    dense_value,
+    evaluate,
+    growth,
+    new_scale,
+    overlap_inside,
+    prepare_dense,
+    shrunk,
+)
 
 #: Target overlap just past an event, in units of the largest displacement: a few roundings.
 _BEHIND = 1e-15
@@ -34,19 +43,12 @@ _NEAR_CUT = 100.0
 _LONGER = 1.01
 #: No contact opens and closes more often than this in one period unless it chatters.
 _EVENTS_PER_CONTACT = 2000
-#: Growth and shrinkage of the step from one to the next.
-_GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 
 
 @kernel
 def overlap_in_step(slots, beta, t, h, y, work, c, x):
-    """δ_c at fraction x of the step; the driver's own motion is taken exactly."""
-    probe = work.probe
-    for i in range(c, c + 2):
-        probe[i] = dense_value(work.dense, y[i], x, i)
-    if c == 0:
-        probe[0] = driver_displacement(slots.driver, beta * (t + x * h))
-    return overlap(slots.preload, probe, c)
+    """δ_c at fraction x of the step from t."""
+    return overlap_inside(slots, beta * (t + x * h), y, work, c, x)
 
 
 @inline_numba
@@ -184,11 +186,11 @@ def certified_step(method, slots, beta, t, limit, y, work, clock, counts):
         if error > 1.0:
             aimed, kinked = -1, False
             counts[REJECTED] += 1
-            h *= max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
+            h = shrunk(h, error)
             if t + 0.1 * h == t:
                 return STEP_TOO_SMALL, h, -1
             continue
-        factor = min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
+        factor = growth(error)
         if aimed >= 0 or kinked:
             break
         aimed, x = first_crossing(slots, beta, t, h, y, work, counts)

@@ -8,9 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..effects.driver import driver_displacement, driver_velocity
+from ..effects.preload import overlap
 from ..equations.motion import motion
 from ..jit import inline_numba, kernel
 from .tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
+
+#: Growth and shrinkage of the step from one to the next.
+_GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 
 
 class Dop853(NamedTuple):
@@ -64,6 +68,18 @@ def attempt(method, slots, beta, t, h, y, work):
         combine(y, h, work.k, s, work.end)
         evaluate(slots, beta, t + C[s] * h, work.end, work.k[s], work.forces)
     return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
+
+
+@kernel
+def shrunk(h, error):
+    """A smaller step after one with too large an error."""
+    return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
+
+
+@kernel
+def growth(error):
+    """The next step over one whose error was tolerable."""
+    return min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
 
 
 @inline_numba
@@ -127,6 +143,17 @@ def dense_value(dense, y0, x, i):
     value = (value + dense[2, i]) * x
     value = (value + dense[1, i]) * (1.0 - x)
     return y0 + (value + dense[0, i]) * x
+
+
+@kernel
+def overlap_inside(slots, theta, y, work, c, x):
+    """δ_c at fraction x of the step, at drive phase θ; the driver's own motion is taken exactly."""
+    probe = work.probe
+    for i in range(c, c + 2):
+        probe[i] = dense_value(work.dense, y[i], x, i)
+    if c == 0:
+        probe[0] = driver_displacement(slots.driver, theta)
+    return overlap(slots.preload, probe, c)
 
 
 @kernel

@@ -1,4 +1,6 @@
-"""The energy account: work of the driver and energy lost in the contacts, integrated beside the motion.
+"""The energy account, and the forces on beads that come from no contact: what such a force takes is accounted for here.
+
+The account is the work of the driver and the energy lost in the contacts, integrated beside the motion.
 
 Equation   Ẇ = F_0 v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
 Method     Both integrands jump with the dashpot force. Integrated by parts they do not: with dG = g δ̇ dt,
@@ -16,6 +18,7 @@ from typing import NamedTuple
 from ..jit import by_slot, kernel
 from .contact import elastic_force, positive_part
 from .driver import driver_acceleration
+from .foundation import add_foundation_force
 from .preload import overlap
 from .tension import contact_primitive, lost_in, unless_slack
 
@@ -24,6 +27,12 @@ class Balance(NamedTuple):
     """Slot of the energy account; it has no values."""
 
     present: int
+
+
+@kernel
+def force_on_bead(slots, contacts, u, v):
+    """Force on a bead at displacement u and velocity v, on which its two contacts act with `contacts`."""
+    return add_foundation_force(slots.foundation, contacts, u)
 
 
 @by_slot

@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..effects.balance import account
+from ..effects.balance import account, force_on_bead
 from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
 from ..effects.dissipation import damping, keep_primitive, shifted, velocity
 from ..effects.driver import driver_displacement, driver_velocity
-from ..effects.foundation import add_foundation_force, foundation_energy
+from ..effects.foundation import foundation_energy
 from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
 from ..effects.tension import cut_tension, keep_slack_primitive, unless_slack
@@ -70,7 +70,7 @@ def motion(slots, u0, v0, y, dy, forces):
     cut_tension(slots.tension, slots, y, dy, e)
     prescribe_force(slots.driver, dy, e)
     for i in range(1, m - 1):
-        dy[m + i] = inverse_mass[i] * add_foundation_force(slots.foundation, e[i - 1] - e[i], y[i])
+        dy[m + i] = inverse_mass[i] * force_on_bead(slots, e[i - 1] - e[i], y[i], dy[i])
     account(slots.balance, slots, y, dy, e)
 
 

@@ -53,7 +53,7 @@ def stage_gaps(slots, state, stage, gaps):
 
 
 @keep_gaps.of(Tangent)
-def _(tangent, slots, state, stage):
+def _(tangent, slots, state, slope, stage):
     stage_gaps(slots, state, stage, tangent.gaps)
 
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ..effects.balance import force_on_bead
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import damping
-from ..effects.foundation import add_foundation_force
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import end_overlaps, watch_crossings
@@ -47,7 +47,7 @@ def naive_motion(slots, u0, v0, y, dy, forces):
         force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped)
         forces.e[c] = force - damped
         if c > 0:
-            dy[m + c] = inverse_mass[c] * add_foundation_force(slots.foundation, left - force, y[c])
+            dy[m + c] = inverse_mass[c] * force_on_bead(slots, left - force, y[c], dy[c])
         left = force
 
 

@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..effects.balance import force_on_bead
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, damping, damping_slope
 from ..effects.driver import driver_acceleration
-from ..effects.foundation import add_foundation_force
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..equations.motion import contact_force
@@ -84,7 +84,7 @@ def acceleration(slots, y, dy, e, i, event, closed):
     if slots.chain.inverse_mass[i] == 0.0:
         return 0.0
     force = force_beside(slots, y, dy, e, i - 1, event, closed) - force_beside(slots, y, dy, e, i, event, closed)
-    return slots.chain.inverse_mass[i] * add_foundation_force(slots.foundation, force, y[i])
+    return slots.chain.inverse_mass[i] * force_on_bead(slots, force, y[i], dy[i])
 
 
 @kernel

@@ -9,7 +9,7 @@ import numpy as np
 from ..equations.motion import place
 from ..jit import kernel
 from ..samples import first_not_finite, keep_strobe
-from ..status import CANCELLED, DONE, NOT_FINITE
+from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .step import step
 
 
@@ -29,6 +29,8 @@ def run_two_trajectories(method, slots, drive, h, y, other, stages, shadow_stage
         for j in range(n):
             step(method, slots, drive, j, j * dtheta, dtheta, h, y, stages, forces, counts)
             step(method, slots, drive, j, j * dtheta, dtheta, h, other, shadow_stages, forces, counts)
+            if j % STEPS_BETWEEN_STOP_CHECKS == 0 and stop[0] != 0:
+                return CANCELLED, p
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p
         now = max(distance(y, other, m), 1e-300)
@@ -37,8 +39,6 @@ def run_two_trajectories(method, slots, drive, h, y, other, stages, shadow_stage
             other[i] = y[i] + (other[i] - y[i]) * (start / now)
         place(slots, 0.0, other, shadow_stages.k[0], shadow_stages.forces, False)
         keep_strobe(y, stages.k[0], strobes[p])
-        if stop[0] != 0:
-            return CANCELLED, p + 1
     return DONE, growth.size
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 from ..forces.largest import watch_state
 from ..jit import kernel
 from ..samples import first_not_finite, keep
-from ..status import CANCELLED, DONE, NOT_FINITE
-from .step import PATIENCE, step
+from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
+from .step import step
 
 
 @kernel
@@ -31,7 +31,7 @@ def run_observed(method, slots, spans, pieces, substeps, y, stages, drive, sampl
             left = step(method, slots, drive, j, j * h, h, h, y, stages, log, counts)
             watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
             taken += 1
-            if taken % PATIENCE == 0 and stop[0] != 0:
+            if taken % STEPS_BETWEEN_STOP_CHECKS == 0 and stop[0] != 0:
                 return CANCELLED, i + 1
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, i + 1

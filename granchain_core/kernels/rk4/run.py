@@ -13,11 +13,11 @@ from ..forces.largest import SAMPLE, watch_state
 from ..forces.peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
 from ..jit import by_slot_inlined, kernel
 from ..samples import Samples, first_not_finite, keep, keep_strobe
-from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS
+from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS, STEPS_BETWEEN_STOP_CHECKS
 from .long_chain import LongChain, steps_without_events
 from .short_chain import ShortChain
 from .short_chain_steps import run_short_chain
-from .step import PATIENCE, drive_displacement, drive_velocity, step
+from .step import drive_displacement, drive_velocity, step
 
 
 @by_slot_inlined
@@ -29,7 +29,7 @@ def advance(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, cou
     for i in range(j, j + count):
         left = step(method, slots, drive, i, i * dtheta, dtheta, h, y, stages, log, counts)
         watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
-        if i % PATIENCE == 0 and stop[0] != 0:
+        if i % STEPS_BETWEEN_STOP_CHECKS == 0 and stop[0] != 0:
             break
 
 
@@ -42,8 +42,8 @@ def _(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, s
 def _(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
     done = 0
     while done < count and stop[0] == 0:
-        smooth = steps_without_events(simd, slots, drive, j + done, min(count - done, PATIENCE), dtheta, h, y,
-                                      log.peaks)
+        most = min(count - done, STEPS_BETWEEN_STOP_CHECKS)
+        smooth = steps_without_events(simd, slots, drive, j + done, most, dtheta, h, y, log.peaks)
         if smooth > 0:
             done += smooth
             counts[STEPS] += smooth

@@ -105,6 +105,7 @@ def run_short_chain(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, coun
     x = row_at(row, drive_displacement(slots, drive, 2 * j, dtheta), drive_velocity(slots, drive, 2 * j, dtheta),
                load_row(wide.width, rows, U), load_row(wide.width, rows, W))
     closed, rising, nothing = positive_mask(x.gap), positive_mask(x.rate), blank(x.w)
+    taken = count
     for first in range(j, j + count, BLOCK):
         block = min(BLOCK, j + count - first)
         top_in, top_out, top_elastic = -np.inf, -np.inf, -np.inf
@@ -129,15 +130,16 @@ def run_short_chain(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, coun
         watch_block(wide.forces[1], block, top_out, log.peaks, OUTPUT)
         watch_block(wide.forces[2], block, top_elastic, log.peaks, OUTPUT_ELASTIC)
         if stop[0] != 0:
+            taken = first + block - j
             break
     restore_subnormals(before)
-    counts[STEPS] += count
-    counts[EVALUATIONS] += 4 * count
+    counts[STEPS] += taken
+    counts[EVALUATIONS] += 4 * taken
     store_state(wide, BEGIN, x)
     for i in range(1, m - 1):
         y[i], y[m + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
         dy[m + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
         e[i] = rows[ELASTIC, i]
     e[0] = rows[ELASTIC, 0]
-    y[0] = drive_displacement(slots, drive, 2 * (j + count), dtheta)
-    dy[0] = drive_velocity(slots, drive, 2 * (j + count), dtheta)
+    y[0] = drive_displacement(slots, drive, 2 * (j + taken), dtheta)
+    dy[0] = drive_velocity(slots, drive, 2 * (j + taken), dtheta)

@@ -58,9 +58,6 @@ class Stages(NamedTuple):
     simd: Any
 
 
-#: Steps after which the stop flag is asked at the latest.
-PATIENCE = 4096
-
 
 @kernel
 def drive_displacement(slots, drive, i, dtheta):

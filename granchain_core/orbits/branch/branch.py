@@ -18,9 +18,10 @@ from ...errors import BadInput
 from ...integrate import State
 from ...scene import Scene
 from ...stop import Stop
+from ..flow import relative_change
 from ..orbit import periodic_orbit
 from .axis import KnobAxis
-from .equations import BranchEquations, relative_change
+from .equations import BranchEquations
 from .point import BranchPoint, branch_point, state_at
 from .special import SpecialPoint
 from .walk import SHORTER, Arm, Walk

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...stop import Stop
-from ..flow import Flow, StroboscopicMap
+from ..flow import Flow, StroboscopicMap, relative_change
 from .axis import KnobAxis
 
 #: Relative residual at which Newton's method stops.
@@ -114,13 +114,6 @@ class BranchEquations:
         if moved == value:  # at the knob's largest value the difference is taken downwards
             moved = self.axis.value(p - _DIFFERENCE)
         return (self.strobe(moved).end(x) - flow.end) / (self.axis.coordinate(moved) - p)
-
-
-def relative_change(change: np.ndarray, x: np.ndarray) -> float:
-    """The larger of the changes of displacements and of w, each relative to its largest entry."""
-    half = len(x) // 2
-    return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
-               for part in (slice(0, half), slice(half, None)))
 
 
 def said(residuals: list[float] | tuple[float, ...]) -> str:

@@ -8,11 +8,12 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...integrate import Engine, State, certified
-from ...kernels.dop853.orbit_record import FULL, OrbitRecord, record_orbit
+from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from ...kernels.forces.peaks import MEMORY, PEAKS, ROWS
+from ...kernels.status import FULL
 from ...lower import lower
 from ...scene import Scene
-from ..orbit import sorted_multipliers
+from ..orbit import liouville_error, sorted_multipliers
 from .equations import BranchEquations, Solved
 
 #: Tolerance of one step of the run that records forces and contacts: they are then good to about 1e-9.
@@ -88,7 +89,7 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
         max_input_force=float(tops[0]), max_output_force=float(tops[1]), max_output_force_elastic=float(tops[2]),
         closings=_counts(len(x) // 2 + 1, record, solved.flow.changes), slope=solved.knob_slope,
         residuals=solved.residuals,
-        liouville=_liouville(multipliers, solved.flow.log_determinant), turns=record.turns)
+        liouville=liouville_error(multipliers, solved.flow.log_determinant), turns=record.turns)
 
 
 def state_at(scene: Scene, x: np.ndarray) -> State:
@@ -123,10 +124,3 @@ def _counts(contacts: int, record: OrbitRecord, changes: np.ndarray) -> np.ndarr
         if len(overlaps) and overlaps.max() > 0.0:
             closings[contact] = _CLOSED
     return closings
-
-
-def _liouville(multipliers: np.ndarray, log_determinant: float) -> float:
-    """Difference of ln |det| and ∫ trace, relative to the latter where that is above 1."""
-    with np.errstate(divide="ignore"):
-        found = float(np.sum(np.log(np.abs(multipliers))))
-    return abs(found - log_determinant) / max(1.0, abs(log_determinant))

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...errors import NumbersFailed
-from .equations import BranchEquations, Solved, relative_change, said
+from ..flow import relative_change
+from .equations import BranchEquations, Solved, said
 from .point import BranchPoint, branch_point
 from .special import SpecialPoint, special_between
 

@@ -1,0 +1,63 @@
+"""A stop that another thread sets ends steady states wherever they are."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from granchain_core import CurvePoint, iter_curve, scene
+from granchain_core.errors import Cancelled
+from granchain_core.integrate import Engine
+from granchain_core.steady import batch_job, settle
+from granchain_core.steady.batch_settle import batch_results
+from granchain_core.stop import Stop
+
+
+@pytest.mark.parametrize("start", ["up", "down"])
+def test_a_stop_ends_a_carried_point_that_would_run_for_ever(start: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten seconds of drive a period and no budget of steps: one point is hours of work. It is given up, without a result."""
+    monkeypatch.setattr(settle, "MOST_STEPS", 10**15)
+    stop, begun, points = Stop(), threading.Event(), list[CurvePoint]()
+    real = Engine.periods
+
+    def periods(engine: Engine, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:
+        begun.set()
+        return real(engine, count, watch)
+
+    monkeypatch.setattr(Engine, "periods", periods)
+    slow = scene("sec2").evolve(N=11)
+    work = threading.Thread(target=lambda: points.extend(iter_curve(slow, [0.1, 0.11], start, stop)), daemon=True)
+    work.start()
+    begun.wait()
+    time.sleep(0.1)  # the kernel is inside its first period
+    stop.set()
+    work.join(60.0)
+    assert not work.is_alive()
+    assert points == []
+
+
+def test_a_stop_between_carried_points_leaves_those_that_are_done() -> None:
+    stop, points = Stop(), []
+    for point in iter_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0, 2200.0], "up", stop):
+        points.append(point.frequency)
+        if len(points) == 2:
+            stop.set()
+    assert points == [1800.0, 2000.0]
+
+
+def test_a_stop_reaches_the_located_jumps_of_a_batch(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Set when the orbit with located events is begun, the last computation of a point whose force jumps."""
+    stop, located = Stop(), []
+
+    def engine(*words: object, **names: object) -> Engine:
+        located.append(True)
+        stop.set()
+        return Engine(*words, **names)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(batch_job, "Engine", engine)
+    with pytest.raises(Cancelled):
+        list(batch_results(iter([scene("sec2").evolve(D=300.0, f=100.0)]), stop))
+    assert located == [True]
