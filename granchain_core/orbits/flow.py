@@ -82,6 +82,8 @@ class StroboscopicMap:
         """The derivative (2N, 2N) by tangents in (u, v) with their jumps at contact events, as one of (u, w).
 
         Without `jumps` it is wrong: what one gets who forgets the saltation, to be shown beside the right one.
+        Only tests ask for it. Its kernels are in the package all the same: compiled code is kept on disk with its
+        types, and every process that reads it must be able to import them.
         Raises `BadInput` for a damping that is not the linear dashpot's.
         """
         lo = self.engine.lowered
