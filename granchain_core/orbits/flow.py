@@ -81,7 +81,9 @@ class StroboscopicMap:
     def second_route(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by tangents in (u, v) with their jumps at contact events, as one of (u, w).
 
-        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison.
+        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests ask for it. Its
+        kernels are in the package all the same: compiled code is kept on disk with its types, and every process that
+        reads it must be able to import them.
         Raises `BadInput` for a damping that is not the linear dashpot's.
         """
         lo = self.engine.lowered

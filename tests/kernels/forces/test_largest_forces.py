@@ -139,7 +139,7 @@ def test_a_long_chain_sees_the_jumps_at_its_ends() -> None:
     for force, stated, true in zip(
             (long.max_input_force, long.max_output_force, long.max_output_force_elastic), long.force_errors.row,
             (exact.max_input_force, exact.max_output_force, exact.max_output_force_elastic), strict=True):
-        assert abs(force / true - 1.0) < stated < 1e-3
+        assert abs(force / true - 1.0) < stated < 2e-3  # of which 1/(1 − |μ|) is a part
 
 
 #: How near the top of the driver's way a bead stands that it brushes.
