@@ -196,7 +196,6 @@ export function render({ model }) {
     next.focus();
   });
   tabs.prepend(larger); // it floats: the second line of tabs has the whole width
-  model.on("state", show);
   window.granchain.on("observer", () => {
     if (chosen === "observer") drawObserver();
   });

@@ -249,6 +249,26 @@ def test_measured_data_is_read_strictly(visit: Visit) -> None:
     expect(page.get_by_role("alert")).to_contain_text("Line 3")
 
 
+def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit) -> None:
+    """The map keeps itself up to date by messages: drawn anew, it would lose what the pointer is on."""
+    page = visit()
+    page.get_by_role("tab", name="map").click()
+    page.locator(".maphost").evaluate("host => { host.dataset.same = 1; }")
+    page.locator("select.scene").select_option("rig")
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("60")
+    page.evaluate("shown()")
+    assert page.locator(".maphost").get_attribute("data-same") == "1"
+    page.get_by_role("tab", name="data").click()
+    page.locator("[role=tabpanel]").evaluate("""(body) => {
+      window.drawn = 0;
+      new MutationObserver((records) => { window.drawn += records.length; }).observe(body, { childList: true });
+    }""")
+    content = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
+    page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": content})
+    expect(page.locator("#corner")).to_contain_text("2 points")
+    assert page.evaluate("drawn") == 1
+
+
 def test_the_picture_can_be_saved(visit: Visit, tmp_path: Path) -> None:
     page = visit()
     settled(page)
