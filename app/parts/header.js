@@ -128,8 +128,14 @@ export function render({ model }) {
     if (!event.composedPath().includes(root)) toggle(helpBox, false);
   });
 
+  // The look of the link comes with the first state; from then on the button alone says it.
+  let linked = false;
   const show = () => {
     const { state } = model;
+    if (!linked && state.look) {
+      linked = true;
+      page.setLook(state.look, false); // "auto" is none of the looks and changes nothing
+    }
     scene.replaceChildren(...(state.scenes ?? []).map(({ name, title }) => new Option(`${name} — ${title}`, name)));
     scene.value = state.scene ?? "";
     speed.replaceChildren(
@@ -156,7 +162,6 @@ export function render({ model }) {
       send({ do: "again", speed: value, playing: goesOn });
     }
   };
-  if (model.state.look && model.state.look !== "auto") page.setLook(model.state.look, false);
   model.on("state", show);
   model.on("msg:custom", (message) => {
     if (message.type === "link") {

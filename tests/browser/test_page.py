@@ -287,6 +287,24 @@ def test_another_scene_can_be_opened(visit: Visit) -> None:
     expect(page.locator("#foot b")).to_contain_text("period 3", timeout=20_000)
 
 
+# Whether a mark of a picture that the server draws has this colour.
+INK = """(ink) => Bokeh.documents.some((one) => [...(one.all_models ?? one._all_models.values())].some(
+  ({ line_color }) => (line_color?.value ?? line_color) === ink))"""
+
+
+@pytest.mark.parametrize(("look", "ink"), [("dark", "#eef1f6"), ("projector", "#000000")])
+def test_a_link_says_how_the_page_looks(visit: Visit, look: str, ink: str) -> None:
+    page = visit(f"?look={look}")
+    page.wait_for_function(f"document.documentElement.dataset.look === '{look}'")
+    assert page.evaluate("localStorage.getItem('granchain-look')") is None  # another page looks as it did
+    # the pictures too, which the server draws
+    page.wait_for_function(INK, arg=ink)
+    page.get_by_role("button", name="Light, dark, projector").click()
+    page.locator("select.speed").select_option("5")
+    page.wait_for_function("granchain.kept.speed === 5")
+    assert page.evaluate("document.documentElement.dataset.look") != look
+
+
 def test_dark_on_a_dark_system(visit: Visit) -> None:
     page = visit(color_scheme="dark")
     assert page.evaluate("document.documentElement.dataset.look") == "dark"
