@@ -56,13 +56,12 @@ class Controller:
         self.stability = StabilityPage(self, views.stability)
         self.map = MapTab(self, views.corner)
         self.pages = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
-        self._covered = False
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ping": lambda _: views.chain.tell(type="pong"),
             "ready": self._ready, "visible": lambda _: self.pictures.restart(),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
-            "understood": self._understood, "cover": self._cover,
+            "understood": self._understood,
             **Transport(session, self.pictures, self._compute, self._header, self.say).actions,
             **Exchange(session, views, self.curves, self.pictures).actions, **self.looks.actions,
             **{name: action for page in self.pages for name, action in page.actions.items()},
@@ -154,7 +153,7 @@ class Controller:
     def _activities(self) -> list[Activity]:
         """Everything that is computed for this visitor, or could be."""
         return [
-            *picture_activities(self.session, self.busy, self._covered), *self.curves.activities(),
+            *picture_activities(self.session, self.busy), *self.curves.activities(),
             account_activity(self.session, self.busy), self.accuracy.activity, self.stability.activity,
             self.hard.activity, self.effects.activity,
         ]
@@ -226,12 +225,6 @@ class Controller:
             self.say("")
         self._describe()
         self.curves.moved(self.session.scene)
-
-    def _cover(self, message: dict[str, Any]) -> None:
-        """A page over the pictures was opened or closed."""
-        self._covered = message.get("name") is not None
-        if message.get("name") == "accuracy":
-            self.accuracy.open()
 
     def _choose_frequency(self, frequency: float) -> None:
         low, high = slider_range(self.session.scene, "f")
