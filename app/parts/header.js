@@ -80,9 +80,7 @@ export function render({ model }) {
   });
   start.add(new Option("from rest", "rest"));
   start.add(new Option("from where it was", "previous"));
-  const share = button(icon("share", "share"), "Link to this picture", () =>
-    send({ do: "share", origin: location.href }),
-  );
+  const share = button(icon("share", "share"), "Link to this picture", () => send({ do: "share" }));
   const save = button(icon("save", "save"), "Save this picture as HDF5", () => send({ do: "save" }), "save");
   const help = button(icon("help"), "Help", () => toggle(helpBox), "icon");
   const look = button(icon("look"), "Light, dark, projector", () => page.nextLook(), "icon");

@@ -43,8 +43,8 @@ class Hard(Component):
 
 def described_cases() -> list[dict[str, Any]]:
     """The cases as they stand before anything was measured."""
-    return [{"name": case.name, "hard": case.hard, "naive": case.naive, "oracle": case.oracle,
-             "drawn": case.picture is not None} for case in CASES]
+    return [{"name": case.name, "hard": case.hard, "naive": case.naive, "oracle": case.oracle}
+            for case in CASES]
 
 
 def figures(value: float, digits: int) -> str:

@@ -95,9 +95,5 @@ class ObserverPage:
 
     def _show(self, moved: _Moved) -> None:
         run = moved.run
-        mu = run.leading
-        self._view.display(
-            status="", sentence=run.sentence, predicted=run.predicted, measured=run.measured, since=run.since,
-            mu=None if mu is None else [mu.real, mu.imag], period=None if run.orbit is None else run.orbit.period,
-            broken=run.broken, in_step=run.in_step)
+        self._view.display(status="", sentence=run.sentence, predicted=run.predicted, measured=run.measured)
         self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

@@ -119,8 +119,7 @@ class StabilityPage:
             return
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
-        self._view.display(stale=True, regime=picture.regime.name, regime_period=picture.regime.period or 1,
-                           beads=picture.run.scene.N)
+        self._view.display(stale=True, beads=picture.run.scene.N)
         if picture.regime.name == "periodic" and picture.regime.period is not None:
             self._follow(Target(picture.run.scene, picture.regime.period, picture.state, followed=True))
         else:
