@@ -22,9 +22,9 @@ from ..pages.stability.page import StabilityPage
 from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..serve.websocket import in_its_turn, send_at_once
-from .exchange import Exchange
 from .job_list import Activity, account_activity, picture_activities
 from .layout import Views
+from .links_and_files import LinksAndFiles
 from .live import LiveRun
 from .pictures import Pictures
 from .playback import Transport
@@ -55,6 +55,7 @@ class Controller:
         self.hard = HardPage(self, views.hard)
         self.stability = StabilityPage(self, views.stability)
         self.map = MapTab(self, views.corner)
+        self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pages = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ping": lambda _: views.chain.tell(type="pong"),
@@ -63,7 +64,7 @@ class Controller:
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood,
             **Transport(session, self.pictures, self._compute, self._header, self.say).actions,
-            **Exchange(session, views, self.curves, self.pictures).actions, **self.looks.actions,
+            **self.files.actions, **self.looks.actions,
             **{name: action for page in self.pages for name, action in page.actions.items()},
         }
 
@@ -118,7 +119,7 @@ class Controller:
 
     def close(self, session_context: object) -> None:
         """The visitor left."""
-        for one in (self.pictures, self.curves, *self.pages):
+        for one in (self.pictures, self.curves, self.files, *self.pages):
             one.close()
 
     # What the pages ask for
@@ -226,9 +227,12 @@ class Controller:
         self._describe()
         self.curves.moved(self.session.scene)
 
-    def _choose_frequency(self, frequency: float) -> None:
-        low, high = slider_range(self.session.scene, "f")
-        self.session.change("f", round(min(max(frequency, low), high), 1))
+    def _choose_frequency(self, frequency: object) -> None:
+        """A click on the curve; for what is no number the knob has the sentence."""
+        if isinstance(frequency, (int, float)) and not isinstance(frequency, bool):
+            low, high = slider_range(self.session.scene, "f")
+            frequency = round(min(max(frequency, low), high), 1)
+        self.session.change("f", frequency)
         self._echo()
         self._turned()
 

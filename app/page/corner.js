@@ -8,7 +8,6 @@ import { stabilityTab } from "../pages/stability/stabilitysmall.js";
 import { Embedded, fillAccuracy, fillDistance, showAccuracy, showDistance } from "../parts/embedded.js";
 
 const MARKS = { circle: "●", diamond: "◆", triangle: "▲", square: "■", star: "★", circle_dot: "◉", x: "✕", dash: "–" };
-const LARGEST_FILE = 2_000_000;
 
 const paragraph = (text, className = "") =>
   Object.assign(document.createElement("p"), { textContent: text, className });
@@ -116,7 +115,7 @@ const TABS = {
     file.addEventListener("change", async () => {
       const [chosen] = file.files;
       if (!chosen) return;
-      if (chosen.size > LARGEST_FILE) model.send_msg({ do: "csv-too-large", name: chosen.name });
+      if (chosen.size > model.state.largest_file) model.send_msg({ do: "csv-too-large", name: chosen.name });
       else model.send_msg({ do: "csv", name: chosen.name, text: await chosen.text() });
       file.value = "";
     });
@@ -201,6 +200,7 @@ export function render({ model }) {
   });
   // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
   model.on("state", () => {
+    window.granchain.kept = { ...window.granchain.kept, uploaded: Boolean(model.state.understood) };
     if (chosen !== "map") show();
   });
   model.on("msg:custom", mapMessage);

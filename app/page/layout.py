@@ -10,6 +10,7 @@ import panel as pn
 from bokeh.models import Range1d
 
 from granchain_core import Settled
+from granchain_core.experiment.measured import MOST_BYTES
 
 from ..pages.accuracy.view import Accuracy
 from ..pages.branches.view import Branches
@@ -39,7 +40,7 @@ _HERE = Path(__file__).resolve().parent
 class Views:
     """Every part of the page; all their messages go to `received`."""
 
-    def __init__(self, received: Callable[[dict[str, Any]], None], choose: Callable[[float], None]) -> None:
+    def __init__(self, received: Callable[[dict[str, Any]], None], choose: Callable[[object], None]) -> None:
         self.time = Range1d(start=1.0, end=0.0)
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
@@ -49,7 +50,7 @@ class Views:
         self.energy = EnergyMap(self.time)
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
-        self.corner = Corner(received, sizing_mode="stretch_both", state={"regimes": [
+        self.corner = Corner(received, sizing_mode="stretch_both", state={"largest_file": MOST_BYTES, "regimes": [
             {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
         self.accuracy = Accuracy(received, sizing_mode="stretch_both")
         self.stability = Stability(received, sizing_mode="stretch_both")

@@ -247,6 +247,11 @@ def test_measured_data_is_read_strictly(visit: Visit) -> None:
     bad = b"frequency_Hz,force_N\n40,5.5\n60,twelve\n"
     chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": bad})
     expect(page.get_by_role("alert")).to_contain_text("Line 3")
+    # the largest file that is sent, in the characters that take most room in a message: refused, not disconnected
+    chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_000})
+    expect(page.get_by_role("alert")).to_contain_text("Line 1", timeout=20_000)
+    chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_001})
+    expect(page.get_by_role("alert")).to_contain_text("larger than 2 MB")
 
 
 def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit) -> None:

@@ -27,7 +27,7 @@ _COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "error")
 class Curve:
     """The figure with, for every direction, the curve being computed and the one before it in grey."""
 
-    def __init__(self, choose: Callable[[float], None]) -> None:
+    def __init__(self, choose: Callable[[object], None]) -> None:
         self._points: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
         self._before: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
         self._scale = (1.0, "")

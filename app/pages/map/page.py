@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 from panel.io import unlocked
 
-from granchain_core import BadInput, Scene
+from granchain_core import Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
 from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 
+from ...page.borders import listed
 from ...page.host import Host
 from ...page.session import slider_range
 from ...page.task import Job, Task
@@ -196,11 +197,9 @@ class MapTab:
 
     def _load(self, message: dict[str, Any]) -> None:
         """Put the chain on one of the attractors; from there knobs move it along."""
-        number = message.get("number")
-        if not isinstance(number, int) or isinstance(number, bool) or not 0 <= number < len(self._found):
-            raise BadInput("That attractor is not in the list any more; look for them again.")
+        found = listed("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
-        self._host.show(self._found[number].scene, self._found[number].state)
+        self._host.show(found.scene, found.state)
 
 
 def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:
