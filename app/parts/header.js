@@ -151,13 +151,13 @@ export function render({ model }) {
       page.emit("play", playing);
     }
     drawPlay();
-    page.kept = { speed: state.speed, playing };
+    page.kept = { ...page.kept, speed: state.speed, playing };
     if (!state.query) return;
     page.told(state.query, ["scene", "mode", "start"]);
     if (page.again) {
-      const { speed: value = 1, playing: goesOn = true } = page.again;
+      const { speed: value = 1, playing: goesOn = true, uploaded = false } = page.again;
       page.again = null;
-      send({ do: "again", speed: value, playing: goesOn });
+      send({ do: "again", speed: value, playing: goesOn, uploaded });
     }
   };
   model.on("state", show);
