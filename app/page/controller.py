@@ -36,7 +36,7 @@ log = logging.getLogger("granchain")
 
 
 class Controller:
-    """One dashboard: its session, its pictures, its pages, and the way of every message to one of them.
+    """One visitor's dashboard: owns session, pictures and pages, and passes each message to the action of its name.
 
     It is the `Host` of its pages. Everything here runs in the document's turn.
     """

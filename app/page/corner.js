@@ -27,7 +27,7 @@ const TABS = {
       item.innerHTML = `<b style="color:${colour}">${MARKS[marker]}</b> ${name}`;
       list.append(item);
     }
-    return [list, paragraph("solid from rest, dashed sweeping up, dotted sweeping down; ● with a ring is now", "soft")];
+    return [list, paragraph("Solid line: from rest; dashed: frequency rising; dotted: frequency falling. The ringed dot is the present setting.", "soft")];
   },
   stability: () => {
     const { show, content } = stabilityTab();
@@ -100,7 +100,7 @@ const TABS = {
     const said = paragraph("");
     drawSmall = () => {
       said.textContent =
-        page.hard || "Where solvers of such chains lie quietly: sixteen cases, each against something that is known.";
+        page.hard || "Cases in which solvers of granular chains go wrong without warning, each compared with a known result.";
     };
     drawSmall();
     const row = Object.assign(document.createElement("div"), { className: "row top" });

@@ -9,7 +9,7 @@ from .session import Session
 #: Name, state and detail of a view or an analysis.
 Activity = tuple[str, str, str]
 
-OFF, IDLE, RUNNING = "off", "there", "computing"
+OFF, IDLE, RUNNING = "off", "ready", "computing"
 
 
 def picture_activities(session: Session, busy: bool) -> list[Activity]:

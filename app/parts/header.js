@@ -7,8 +7,8 @@ const HELP = [
   ["time", "Runs downwards in all pictures; drag a picture to stop it, space plays on."],
   ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
   ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
-  ["accuracy", "Click it in the badge: every method's error against its time, measured here and now."],
-  ["effects", "In the corner: switch an effect, see its slot in the kernel and what it costs."],
+  ["accuracy", "Click it in the status line: every method's error against its time, measured now on this machine."],
+  ["effects", "In the tab “effects”: switch an effect on or off and see what it costs."],
   ["curve", "Click a frequency to go there. Shape and colour of a point say its regime."],
 ];
 

@@ -27,7 +27,7 @@ _CUBIC = ("k", "kappa")
 
 
 class Knobs(Component):
-    """The knobs' drawing; every movement comes as a message {"set": name, "value": SI value}."""
+    """The knobs' drawing; a movement comes as {"do": "set", "name": knob, "value": SI value, "seq": number}."""
 
     _esm = module("knobs.js")
     _stylesheets = [text("controls.css"), text("knobs.css")]  # noqa: RUF012

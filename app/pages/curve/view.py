@@ -228,6 +228,6 @@ class Curve:
             "colour": [look[1] for look in looks],
             "size": [look[2] for look in looks],
             "regime": [point.regime.sentence for point in points],
-            "error": ["no claim" if point.error_estimate is None else short_error(point.error_estimate)
+            "error": ["not estimated" if point.error_estimate is None else short_error(point.error_estimate)
                       for point in points],
         }

@@ -32,7 +32,7 @@ class EffectsPanel:
         self._host = host
         self._view = view
         self._activities = activities
-        self._task = Task(host, MEASUREMENTS, self._ended, "Timing it")
+        self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
         self._open = False
         self._turn = 0
         self._moved = 0.0
