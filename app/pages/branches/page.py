@@ -14,6 +14,7 @@ from granchain_core.orbits import Arm, Branch, BranchPoint, Continuation, begin_
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
 from ...page.borders import listed, whole
+from ...page.hooks import Page
 from ...page.host import Host
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task
@@ -36,7 +37,7 @@ class _Drawn:
     orbits: list[BranchPoint] = field(default_factory=list)
 
 
-class BranchesPage:
+class BranchesPage(Page):
     """Branches of one chain: the first from the orbit on the screen, others from its period doublings."""
 
     def __init__(self, host: Host, view: Branches) -> None:
@@ -54,7 +55,7 @@ class BranchesPage:
             "branches-double": self._double,
         }
 
-    def describe(self) -> None:
+    def changed(self) -> None:
         """Tell whether the branches still belong to the chain on the screen."""
         now = self._host.session.scene
         stale = bool(self._followed) and \
@@ -140,7 +141,7 @@ class BranchesPage:
     def _add(self, continuation: Continuation) -> None:
         self._followed.append(continuation)
         self._drawn.extend(_Drawn(continuation.branch, arm) for arm in continuation.branch.arms)
-        self.describe()
+        self.changed()
         self._draw()
 
     def _draw(self) -> None:

@@ -142,7 +142,7 @@ export function render({ model }) {
       summary ||
       "Here solvers of such chains go wrong without saying so. Each case is measured against something that is known, and has a bar.";
     for (const [name, card] of cards) card.show(results[name]);
-    page.hard = summary;
+    page.hard = { sentence: summary };
     page.emit("hard");
   };
   setInterval(() => {

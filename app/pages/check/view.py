@@ -24,7 +24,7 @@ class Hard(Component):
     _stylesheets = [text("controls.css"), text("hard.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, **params)
+        super().__init__(received, state={"cases": described_cases()}, **params)
         self._theme = THEMES["light"]
         self._drawn: dict[str, Picture] = {}
 

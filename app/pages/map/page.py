@@ -16,6 +16,7 @@ from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 
 from ...page.borders import listed
+from ...page.hooks import Page
 from ...page.host import Host
 from ...page.session import slider_range
 from ...page.task import Job, Task
@@ -39,7 +40,7 @@ def page_grid(scene: Scene) -> Grid:
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
 
 
-class MapTab:
+class MapTab(Page):
     """While the tab is on the screen its diagram is computed; nothing is while it is not."""
 
     def __init__(self, host: Host, view: Component) -> None:
@@ -66,7 +67,7 @@ class MapTab:
         self._diagram.cancel()
         self._search.cancel()
 
-    def moved(self) -> None:
+    def changed(self) -> None:
         """A knob has moved: another knob than f and A0 makes another diagram, any makes other attractors."""
         if not self._visible:
             return

@@ -10,6 +10,7 @@ from typing import Any
 from granchain_core import Scene, Settled
 from granchain_core.warm import CERTIFIED, OBSERVER
 
+from ...page.hooks import Page
 from ...page.host import Host
 from ...page.task import Job, Task
 from ...serve.queues import PICTURES
@@ -28,7 +29,7 @@ class _Moved:
     began: bool
 
 
-class ObserverPage:
+class ObserverPage(Page):
     """Each message "observer-more" asks for one period; without them nothing is computed."""
 
     def __init__(self, host: Host, view: Observer) -> None:

@@ -31,7 +31,7 @@ class Observer(Drawn):
     _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, **params)
+        super().__init__(received, state=first_state(), **params)
         self._anchor: tuple[float, float] | None = None
 
     def empty_figures(self, theme: Theme) -> dict[str, Any]:

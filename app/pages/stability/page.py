@@ -15,6 +15,7 @@ from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
 from ...page.borders import whole
+from ...page.hooks import Page
 from ...page.host import Host
 from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
@@ -34,7 +35,7 @@ from .work import PHASES, Analysis, Target, analyse, search, section_of, transie
 _LIVE = "A live run is on its way, and only a motion that repeats has multipliers: choose “settled” above."
 
 
-class StabilityPage:
+class StabilityPage(Page):
     """While it is on the screen, every picture that stays is analysed; a knob that moves gives up what is under way."""
 
     def __init__(self, host: Host, view: Stability) -> None:
