@@ -12,8 +12,8 @@ from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
-from ..pages.effects.switches import ACCOUNT, changes
 from .share import encode
+from .switches import ACCOUNT, changes
 
 MODES = ("settled", "live")
 STARTS = ("rest", "previous")

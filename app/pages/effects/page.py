@@ -9,18 +9,18 @@ from typing import Any
 
 from granchain_core import BadInput, Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
+from granchain_core.lower import slots_of
 from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
 
-from ...cli.explain import slots_of
 from ...page.hooks import Page
 from ...page.host import Host
 from ...page.job_list import IDLE, RUNNING, Activity
+from ...page.switches import EFFECTS, present, refusal, variants
 from ...page.task import Job, Task
 from ...parts.component import Component
 from ...serve.compiler import COMPILER
 from ...serve.queues import MEASUREMENTS
 from ...serve.waiting import ACTIVITIES_EVERY, COST_QUIET
-from .switches import EFFECTS, present, refusal, variants
 
 
 class EffectsPanel(Page):
