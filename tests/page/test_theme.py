@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from app.page.session import LOOKS
-from app.page.share import EXTRAS
 from app.parts import figures
 from app.pictures.theme import THEMES, Theme
 
-STYLE = (Path(__file__).parents[2] / "app" / "page" / "page.css").read_text(encoding="utf-8")
+PAGE = Path(__file__).parents[2] / "app" / "page" / "page.css"
+STYLE = PAGE.read_text(encoding="utf-8")
 
 
 def properties(selector: str) -> dict[str, str]:
@@ -34,4 +34,6 @@ def test_the_page_has_the_colours_of_its_pictures(look: str) -> None:
 
 
 def test_a_look_is_known_everywhere() -> None:
-    assert tuple(THEMES) == LOOKS == EXTRAS["look"][1:]
+    script = (PAGE.parents[1] / "parts" / "page.js").read_text(encoding="utf-8")
+    (names,) = re.findall(r"const LOOKS = \[([^\]]+)\]", script)
+    assert tuple(THEMES) == LOOKS == tuple(name.strip('" ') for name in names.split(","))
