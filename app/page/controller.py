@@ -15,7 +15,7 @@ from ..pages.curve.page import Curves
 from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..serve.websocket import in_its_turn, send_at_once
-from .job_list import Activity, account_activity, picture_activities
+from .activities import Activity, account_activity, picture_activities
 from .layout import Views
 from .links_and_files import LinksAndFiles
 from .live import LiveRun
@@ -91,7 +91,7 @@ class Controller:
         self._show_sentences()
 
     def _show_sentences(self) -> None:
-        self.views.badge.display(sentence=f"{self.session.sentence} {self.session.notice}".strip())
+        self.views.status_line.display(sentence=f"{self.session.sentence} {self.session.notice}".strip())
 
     def failed(self, error: Exception) -> None:
         """The last good picture stays, and one sentence says what happened."""

@@ -7,7 +7,7 @@ from typing import Any
 
 from granchain_core import Settled
 
-from .job_list import Activity
+from .activities import Activity
 
 
 class Page:

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from granchain_core import Scene, State
 
-from .job_list import Activity
+from .activities import Activity
 from .session import Session
 
 

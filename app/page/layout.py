@@ -14,15 +14,15 @@ from granchain_core.experiment.measured import MOST_BYTES
 
 from ..pages.curve.bar import CurveBar
 from ..pages.curve.view import Curve
-from ..parts.badge import Badge
 from ..parts.chain import PALETTE, Chain
 from ..parts.component import text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
-from ..parts.figures import BOTTOM, GAP, TOP, pane
+from ..parts.figure_style import BOTTOM, GAP, TOP, pane
 from ..parts.header import Header
 from ..parts.knobs import Knobs
 from ..parts.regimes import REGIMES
+from ..parts.status_line import StatusLine
 from ..parts.trains import Trains
 from ..pictures.theme import Theme
 from .corner import Corner
@@ -48,7 +48,7 @@ class Views:
             "largest_file": MOST_BYTES, "pages": described_pages(), "regimes": [
                 {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
         self.covers = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
-        self.badge = Badge(received)
+        self.status_line = StatusLine(received)
         self.shown: Settled | None = None
 
     def dress(self, theme: Theme) -> None:
@@ -65,7 +65,7 @@ class Views:
         page.add_variable("frame_bottom", BOTTOM)
         page.add_variable("gap", GAP)
         page.add_variable("covers", [(row.name, row.tab.capitalize()) for row in PAGES if row.view])
-        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "badge"):
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "status_line"):
             page.add_panel(name, getattr(self, name))
         for name, cover in self.covers.items():
             page.add_panel(name, cover)

@@ -63,7 +63,7 @@ def test_the_foundation_comes_with_its_knob(visit: Visit) -> None:
     expect(page.locator('[data-knob="k"] input[type="text"]')).to_have_value("0")
 
 
-def test_the_energy_account_is_told_in_the_badge(visit: Visit) -> None:
+def test_the_energy_account_is_told_in_the_status_line(visit: Visit) -> None:
     page = visit()
     corner = panel(page)
     expect(activity(corner, "energy account")).to_contain_text("switched off")

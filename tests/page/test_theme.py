@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.page.session import LOOKS
-from app.parts import figures
+from app.parts import figure_style
 from app.pictures.theme import THEMES, Theme
 
 PAGE = Path(__file__).parents[2] / "app" / "page" / "page.css"
@@ -30,7 +30,7 @@ def test_the_page_has_the_colours_of_its_pictures(look: str) -> None:
     both = [field.name for field in fields(Theme) if field.name in style and field.name not in ("small", "line")]
     assert {"ink", "soft", "faint", "card", "accent", "steel", "drive", "input", "output"} == set(both)
     assert [style[name] for name in both] == [getattr(theme, name) for name in both]
-    assert (theme.drive, theme.input, theme.output) == (figures.DRIVE, figures.INPUT, figures.OUTPUT)
+    assert (theme.drive, theme.input, theme.output) == (figure_style.DRIVE, figure_style.INPUT, figure_style.OUTPUT)
 
 
 def test_a_look_is_known_everywhere() -> None:

@@ -14,10 +14,10 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_p
 from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
 from ...page.active_setting import locate, page_setting
+from ...page.activities import IDLE, OFF, RUNNING, Activity
 from ...page.format import duration, short_error
 from ...page.hooks import Page
 from ...page.host import Host
-from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
 from ...pictures.accuracy import Asked
 from ...serve.queues import MEASUREMENTS

@@ -18,8 +18,8 @@ from ...page.hooks import Page
 from ...page.host import Host
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task
+from ...serve.delays import BRANCH_EVERY
 from ...serve.queues import LONG, Stop
-from ...serve.waiting import BRANCH_EVERY
 from .view import Branches, described_orbit, described_special, drawn_orbits
 
 #: Drive periods of an orbit that can be asked for here.

@@ -9,9 +9,9 @@ from typing import Any
 from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Picture
 
+from ...page.activities import IDLE, OFF, RUNNING, Activity
 from ...page.hooks import Page
 from ...page.host import Host
-from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
 from .view import Hard, described, summary

@@ -16,7 +16,7 @@ from granchain_core.steady.resonance import Place, place_of
 
 from ...page.format import short_error
 from ...page.frames import prefixed, round_up
-from ...parts.figures import OUTPUT, quiet_axis, quiet_figure
+from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
 from ...parts.regimes import REGIMES, regime_key
 
 _DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}

@@ -12,15 +12,15 @@ from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Varian
 from granchain_core.lower import slots_of
 from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
 
+from ...page.activities import IDLE, RUNNING, Activity
 from ...page.hooks import Page
 from ...page.host import Host
-from ...page.job_list import IDLE, RUNNING, Activity
 from ...page.switches import EFFECTS, present, refusal, variants
 from ...page.task import Job, Task
 from ...parts.component import Component
 from ...serve.compiler import COMPILER
+from ...serve.delays import ACTIVITIES_EVERY, COST_QUIET
 from ...serve.queues import MEASUREMENTS
-from ...serve.waiting import ACTIVITIES_EVERY, COST_QUIET
 
 
 class EffectsPanel(Page):

@@ -21,8 +21,8 @@ from ...page.host import Host
 from ...page.session import slider_range
 from ...page.task import Job, Task
 from ...parts.component import Component
+from ...serve.delays import CELLS_EVERY, MAP_QUIET
 from ...serve.queues import LONG, Stop
-from ...serve.waiting import CELLS_EVERY, MAP_QUIET
 from .view import cells_message, described, head_message
 
 #: Cells over f and over A0: coarse enough to be there in some ten seconds on one core.

@@ -14,13 +14,13 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
+from ...page.activities import IDLE, OFF, RUNNING, Activity
 from ...page.borders import whole
 from ...page.hooks import Page
 from ...page.host import Host
-from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
+from ...serve.delays import ANALYSIS_QUIET
 from ...serve.queues import ANALYSES
-from ...serve.waiting import ANALYSIS_QUIET
 from .view import (
     Stability,
     described_multipliers,

@@ -1,4 +1,4 @@
-"""The badge that is always there: regime, error reached, time per picture, method, effects."""
+"""The status line, which is always there: regime, error reached, time per picture, method, effects."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from ..scripts import module
 from .component import Component, text
 
 
-class Badge(Component):
+class StatusLine(Component):
     """One line at the bottom, and above it one sentence when something needs saying."""
 
-    _esm = module("badge.js")
-    _stylesheets = [text("controls.css"), text("badge.css")]  # noqa: RUF012
+    _esm = module("status_line.js")
+    _stylesheets = [text("controls.css"), text("status_line.css")]  # noqa: RUF012
 
 
 def settled_entries(picture: Settled, place: Place | None) -> dict[str, Any]:
-    """The badge of a settled picture; `place` is where it lies on the curve from rest, None while there is none."""
+    """The line for a settled picture; `place` is where it lies on the curve from rest, None while there is none."""
     return {
         "regime": regime_words(picture, place),
         "start": f"from {picture.start}",
