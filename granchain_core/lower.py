@@ -25,7 +25,7 @@ from .kernels.effects.tension import no_tension
 from .kernels.equations.motion import Forces, Slots, place
 from .laws import LAWS, require_complete
 from .scene import Scene
-from .scene.effects import EFFECTS, effects_of
+from .scene.effects import ACCOUNT, ALWAYS, EFFECTS, effects_of
 from .state import State
 
 #: Step of the live method in scaled time where overlaps are about one drive amplitude. Its usual error is
@@ -204,3 +204,13 @@ def lower(scene: Scene, balance: bool = False) -> Lowered:
         **filled,
     )
     return Lowered(scene, scales, slots, beta)
+
+
+_TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
+
+
+def slots_of(scene: Scene, balance: bool) -> list[tuple[str, str, str | None]]:
+    """Every slot of the scene's kernel: name, title, and the type compiled into it or None where it is absent."""
+    slots = lower(scene, balance=balance).slots
+    found = zip(slots._fields, slots, strict=True)
+    return [(name, _TITLES[name], None if slot is None else type(slot).__name__) for name, slot in found]

@@ -3,19 +3,9 @@
 from __future__ import annotations
 
 from granchain_core.integrate.methods import METHODS, method_for, setting_of
-from granchain_core.lower import lower
+from granchain_core.lower import lower, slots_of
 from granchain_core.scene import Scene
-from granchain_core.scene.effects import ACCOUNT, ALWAYS, EFFECTS
 from granchain_core.warm import structure
-
-_TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
-
-
-def slots_of(scene: Scene, balance: bool) -> list[tuple[str, str, str | None]]:
-    """Every slot of the scene's kernel: name, title, and the type compiled into it or None where it is absent."""
-    slots = lower(scene, balance=balance).slots
-    found = zip(slots._fields, slots, strict=True)
-    return [(name, _TITLES[name], None if slot is None else type(slot).__name__) for name, slot in found]
 
 
 def explanation(scene: Scene, method: str | None) -> str:

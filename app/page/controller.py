@@ -11,32 +11,26 @@ from bokeh.document import Document
 
 from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
 
-from ..pages.accuracy.page import AccuracyPage
-from ..pages.branches.page import BranchesPage
-from ..pages.check.page import HardPage
 from ..pages.curve.page import Curves
-from ..pages.effects.page import EffectsPanel
-from ..pages.map.page import MapTab
-from ..pages.observer.page import ObserverPage
-from ..pages.stability.page import StabilityPage
 from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..serve.websocket import in_its_turn, send_at_once
-from .exchange import Exchange
-from .job_list import Activity, account_activity, picture_activities
+from .activities import Activity, account_activity, picture_activities
 from .layout import Views
+from .links_and_files import LinksAndFiles
 from .live import LiveRun
 from .pictures import Pictures
 from .playback import Transport
 from .session import SPEEDS, Session, presets, slider_range
 from .show import show_regime
+from .table import PAGES
 from .theme import Looks
 
 log = logging.getLogger("granchain")
 
 
 class Controller:
-    """One dashboard: its session, its pictures, its pages, and the way of every message to one of them.
+    """One visitor's dashboard: owns session, pictures and pages, and passes each message to the action of its name.
 
     It is the `Host` of its pages. Everything here runs in the document's turn.
     """
@@ -48,23 +42,16 @@ class Controller:
         self.pictures = Pictures(document, self, views, self.note, self._arrived)
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
         self.looks = Looks(session, views, self.curves)
-        self.observer = ObserverPage(self, views.observer)
-        self.accuracy = AccuracyPage(self, views.accuracy)
-        self.branches = BranchesPage(self, views.branches)
-        self.effects = EffectsPanel(self, views.corner, self._activities)
-        self.hard = HardPage(self, views.hard)
-        self.stability = StabilityPage(self, views.stability)
-        self.map = MapTab(self, views.corner)
-        self.pages = (self.accuracy, self.branches, self.effects, self.hard, self.map, self.observer, self.stability)
-        self._covered = False
+        self.files = LinksAndFiles(self, views, self.curves, self.pictures)
+        self.pages = tuple(row.page(self, views.covers.get(row.name, views.corner)) for row in PAGES)
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ping": lambda _: views.chain.tell(type="pong"),
             "ready": self._ready, "visible": lambda _: self.pictures.restart(),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
-            "understood": self._understood, "cover": self._cover,
+            "understood": self._understood,
             **Transport(session, self.pictures, self._compute, self._header, self.say).actions,
-            **Exchange(session, views, self.curves, self.pictures).actions, **self.looks.actions,
+            **self.files.actions, **self.looks.actions,
             **{name: action for page in self.pages for name, action in page.actions.items()},
         }
 
@@ -104,7 +91,7 @@ class Controller:
         self._show_sentences()
 
     def _show_sentences(self) -> None:
-        self.views.badge.display(sentence=f"{self.session.sentence} {self.session.notice}".strip())
+        self.views.status_line.display(sentence=f"{self.session.sentence} {self.session.notice}".strip())
 
     def failed(self, error: Exception) -> None:
         """The last good picture stays, and one sentence says what happened."""
@@ -119,8 +106,11 @@ class Controller:
 
     def close(self, session_context: object) -> None:
         """The visitor left."""
-        for one in (self.pictures, self.curves, *self.pages):
-            one.close()
+        self.pictures.close()
+        self.curves.close()
+        self.files.close()
+        for page in self.pages:
+            page.close()
 
     # What the pages ask for
 
@@ -151,17 +141,16 @@ class Controller:
         self._echo()
         self._turned(state)
 
-    def _activities(self) -> list[Activity]:
+    def activities(self) -> list[Activity]:
         """Everything that is computed for this visitor, or could be."""
         return [
-            *picture_activities(self.session, self.busy, self._covered), *self.curves.activities(),
-            account_activity(self.session, self.busy), self.accuracy.activity, self.stability.activity,
-            self.hard.activity, self.effects.activity,
+            *picture_activities(self.session, self.busy), *self.curves.activities(),
+            account_activity(self.session, self.busy), *(page.activity for page in self.pages if page.activity),
         ]
 
     def _arrived(self, picture: Settled) -> None:
-        self.accuracy.describe()
-        self.stability.arrived(picture)
+        for page in self.pages:
+            page.arrived(picture)
 
     # What the visitor does
 
@@ -183,7 +172,8 @@ class Controller:
         self._compute()
 
     def _compute(self, start: State | None = None) -> None:
-        self.stability.moved()
+        for page in self.pages:
+            page.moved()
         self.pictures.compute(start)
 
     def _header(self) -> None:
@@ -194,11 +184,8 @@ class Controller:
 
     def _describe(self) -> None:
         scene = self.session.scene
-        self.observer.changed()
-        self.accuracy.describe()
-        self.branches.describe()
-        self.effects.changed()
-        self.map.moved()
+        for page in self.pages:
+            page.changed()
         self.views.equation.display(latex=scene.equation_latex())
         self.views.corner.display(validity=list(scene.validity()))
 
@@ -227,15 +214,12 @@ class Controller:
         self._describe()
         self.curves.moved(self.session.scene)
 
-    def _cover(self, message: dict[str, Any]) -> None:
-        """A page over the pictures was opened or closed."""
-        self._covered = message.get("name") is not None
-        if message.get("name") == "accuracy":
-            self.accuracy.open()
-
-    def _choose_frequency(self, frequency: float) -> None:
-        low, high = slider_range(self.session.scene, "f")
-        self.session.change("f", round(min(max(frequency, low), high), 1))
+    def _choose_frequency(self, frequency: object) -> None:
+        """A click on the curve; for what is no number the knob has the sentence."""
+        if isinstance(frequency, (int, float)) and not isinstance(frequency, bool):
+            low, high = slider_range(self.session.scene, "f")
+            frequency = round(min(max(frequency, low), high), 1)
+        self.session.change("f", frequency)
         self._echo()
         self._turned()
 

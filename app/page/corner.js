@@ -8,18 +8,39 @@ import { stabilityTab } from "../pages/stability/stabilitysmall.js";
 import { Embedded, fillAccuracy, fillDistance, showAccuracy, showDistance } from "../parts/embedded.js";
 
 const MARKS = { circle: "●", diamond: "◆", triangle: "▲", square: "■", star: "★", circle_dot: "◉", x: "✕", dash: "–" };
-const LARGEST_FILE = 2_000_000;
 
 const paragraph = (text, className = "") =>
   Object.assign(document.createElement("p"), { textContent: text, className });
 
-// Draws the small picture of accuracy again; set while its tab is open.
-let drawSmall = () => {};
-// The same of the observer's.
-let drawObserver = () => {};
+// The way to the page itself.
+const opener = (name) => {
+  const open = Object.assign(document.createElement("button"), {
+    textContent: "open the page",
+    type: "button",
+    className: "open",
+  });
+  open.addEventListener("click", () => window.granchain.cover(name));
+  return open;
+};
+const row = (...content) => {
+  const made = Object.assign(document.createElement("div"), { className: "row top" });
+  made.append(...content);
+  return made;
+};
 
+// What a page without a tab of its own shows: its sentence, or what it is, and the way to it.
+const plainTab = ({ name, words }) => {
+  const said = paragraph("");
+  const show = () => {
+    said.textContent = window.granchain[name]?.sentence || words;
+  };
+  show();
+  return { content: [row(said, opener(name))], show };
+};
+
+// What stands in a tab, and what draws it again when its page has said something: `granchain[name]`, then its event.
 const TABS = {
-  "look at": ({ state }) => [paragraph(state.look_at ?? ""), paragraph(state.paper ?? "", "soft")],
+  "look at": ({ state }) => ({ content: [paragraph(state.look_at ?? ""), paragraph(state.paper ?? "", "soft")] }),
   regimes: ({ state }) => {
     const list = document.createElement("div");
     list.className = "legend";
@@ -28,21 +49,13 @@ const TABS = {
       item.innerHTML = `<b style="color:${colour}">${MARKS[marker]}</b> ${name}`;
       list.append(item);
     }
-    return [list, paragraph("solid from rest, dashed sweeping up, dotted sweeping down; ● with a ring is now", "soft")];
+    const lines =
+      "Solid line: from rest; dashed: frequency rising; dotted: frequency falling. The ringed dot is the present setting.";
+    return { content: [list, paragraph(lines, "soft")] };
   },
-  stability: () => {
-    const { show, content } = stabilityTab();
-    drawSmall = show;
-    return content;
-  },
+  stability: stabilityTab,
   accuracy: (model) => {
     const page = window.granchain;
-    const open = Object.assign(document.createElement("button"), {
-      textContent: "open the page",
-      type: "button",
-      className: "open",
-    });
-    open.addEventListener("click", () => page.cover("accuracy"));
     const host = Object.assign(document.createElement("div"), { className: "small" });
     const figure = new Embedded(host, (one) => fillAccuracy(one, page.accuracy));
     const said = paragraph("");
@@ -59,77 +72,40 @@ const TABS = {
     };
     model.send_msg({ do: "accuracy-open" });
     requestAnimationFrame(show);
-    drawSmall = show;
-    const row = Object.assign(document.createElement("div"), { className: "row top" });
-    row.append(said, open);
-    return [row, host];
+    return { content: [row(said, opener("accuracy")), host], show };
   },
-  map: mapTab,
-  effects: effectsTab,
-  branches: branchesTab,
-  observer: () => {
+  map: (model) => ({ content: mapTab(model) }),
+  effects: (model) => ({ content: effectsTab(model) }),
+  branches: () => ({ content: branchesTab() }),
+  observer: (_, { words }) => {
     const page = window.granchain;
-    const open = Object.assign(document.createElement("button"), {
-      textContent: "open the page",
-      type: "button",
-      className: "open",
-    });
-    open.addEventListener("click", () => page.cover("observer"));
     const host = Object.assign(document.createElement("div"), { className: "small" });
     const figure = new Embedded(host, (one) => fillDistance(one, page.observer));
     const said = paragraph("");
     const show = () => {
-      said.textContent = page.observer?.sentence || "A copy of the chain that feels its input force and nothing else.";
+      said.textContent = page.observer?.sentence || words;
       if (host.isConnected && page.observer) showDistance(figure, page.observer.small, page.observer);
     };
     page.observerTab = host; // while it is on the screen the observer runs
-    drawObserver = show;
     requestAnimationFrame(show);
-    const row = Object.assign(document.createElement("div"), { className: "row top" });
-    row.append(said, open);
-    document.getElementById("curves").classList.add("roomy");
-    return [row, host];
-  },
-  "hard cases": () => {
-    const page = window.granchain;
-    const open = Object.assign(document.createElement("button"), {
-      textContent: "open the page",
-      type: "button",
-      className: "open",
-    });
-    open.addEventListener("click", () => page.cover("hard"));
-    const said = paragraph("");
-    drawSmall = () => {
-      said.textContent =
-        page.hard || "Where solvers of such chains lie quietly: sixteen cases, each against something that is known.";
-    };
-    drawSmall();
-    const row = Object.assign(document.createElement("div"), { className: "row top" });
-    row.append(said, open);
-    return [row];
+    return { content: [row(said, opener("observer")), host], show };
   },
   data: (model) => {
-    const row = document.createElement("div");
-    row.className = "row";
+    const choice = Object.assign(document.createElement("div"), { className: "row" });
     const file = Object.assign(document.createElement("input"), { type: "file", accept: ".csv,.txt,text/csv" });
     file.setAttribute("aria-label", "your measured curve as CSV: frequency, force, optional error");
     file.addEventListener("change", async () => {
       const [chosen] = file.files;
       if (!chosen) return;
-      if (chosen.size > LARGEST_FILE) model.send_msg({ do: "csv-too-large", name: chosen.name });
+      if (chosen.size > model.state.largest_file) model.send_msg({ do: "csv-too-large", name: chosen.name });
       else model.send_msg({ do: "csv", name: chosen.name, text: await chosen.text() });
       file.value = "";
     });
     const forget = Object.assign(document.createElement("button"), { textContent: "remove", type: "button" });
     forget.addEventListener("click", () => model.send_msg({ do: "csv-remove" }));
-    row.append(file, ...(model.state.understood ? [forget] : []));
-    return [
-      row,
-      paragraph(
-        model.state.understood || "CSV: frequency in Hz, force in N, and, if you have it, its error in N.",
-        "soft",
-      ),
-    ];
+    choice.append(file, ...(model.state.understood ? [forget] : []));
+    const words = model.state.understood || "CSV: frequency in Hz, force in N, and, if you have it, its error in N.";
+    return { content: [choice, paragraph(words, "soft")] };
   },
 };
 
@@ -143,7 +119,17 @@ export function render({ model }) {
   body.className = "body";
   body.setAttribute("role", "tabpanel");
   root.append(tabs, body);
-  let chosen = "look at";
+  // The tabs of the pages, from the table of app/page/table.py, between those of the scene and of the visitor's data.
+  const rows = new Map(
+    [
+      { name: "look at", tab: "look at" },
+      { name: "regimes", tab: "regimes" },
+      ...model.state.pages,
+      { name: "data", tab: "data" },
+    ].map((one) => [one.name, one]),
+  );
+  let chosen = "look at",
+    again = () => {};
   const larger = Object.assign(document.createElement("button"), {
     textContent: "⤢",
     title: "Larger, over the curve",
@@ -158,10 +144,12 @@ export function render({ model }) {
   const show = () => {
     const focused = root.getRootNode().activeElement?.dataset?.name;
     for (const tab of tabs.querySelectorAll("[role=tab]")) {
-      tab.setAttribute("aria-selected", String(tab.textContent === chosen));
-      tab.tabIndex = tab.textContent === chosen ? 0 : -1;
+      tab.setAttribute("aria-selected", String(tab.dataset.tab === chosen));
+      tab.tabIndex = tab.dataset.tab === chosen ? 0 : -1;
     }
-    body.replaceChildren(...TABS[chosen](model));
+    const { content, show: redraw } = (TABS[chosen] ?? (() => plainTab(rows.get(chosen))))(model, rows.get(chosen));
+    again = redraw ?? (() => {});
+    body.replaceChildren(...content);
     if (focused) body.querySelector(`[data-name="${focused}"]`)?.focus();
   };
   // Nobody looks at the costs: then none are measured.
@@ -170,16 +158,15 @@ export function render({ model }) {
   const choose = (name) => {
     const before = chosen;
     chosen = name;
-    document
-      .getElementById("curves")
-      .classList.toggle("roomy", ["accuracy", "effects", "stability", "branches", "map"].includes(name));
+    document.getElementById("curves").classList.toggle("roomy", Boolean(rows.get(name).roomy));
     if (before === "effects" || name === "effects") looking();
     if (before === "map" || name === "map") model.send_msg({ do: "map-visible", value: name === "map" });
     show();
     window.granchain.emit("tab", name);
   };
-  for (const name of Object.keys(TABS)) {
-    const tab = Object.assign(document.createElement("button"), { textContent: name, type: "button" });
+  for (const [name, { tab: words }] of rows) {
+    const tab = Object.assign(document.createElement("button"), { textContent: words, type: "button" });
+    tab.dataset.tab = name;
     tab.setAttribute("role", "tab");
     tab.addEventListener("click", () => choose(name));
     tabs.append(tab);
@@ -196,24 +183,16 @@ export function render({ model }) {
     next.focus();
   });
   tabs.prepend(larger); // it floats: the second line of tabs has the whole width
-  model.on("state", show);
-  window.granchain.on("observer", () => {
-    if (chosen === "observer") drawObserver();
-  });
   // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
   model.on("state", () => {
+    window.granchain.kept = { ...window.granchain.kept, uploaded: Boolean(model.state.understood) };
     if (chosen !== "map") show();
   });
   model.on("msg:custom", mapMessage);
-  window.granchain.on("accuracy", () => {
-    if (chosen === "accuracy") drawSmall();
-  });
-  window.granchain.on("hard", () => {
-    if (chosen === "hard cases") drawSmall();
-  });
-  window.granchain.on("stability", () => {
-    if (chosen === "stability") drawSmall();
-  });
+  for (const { name } of model.state.pages)
+    window.granchain.on(name, () => {
+      if (chosen === name) again();
+    });
   window.granchain.on("cover", () => {
     if (chosen === "effects") looking();
   });

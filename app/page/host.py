@@ -7,6 +7,7 @@ from typing import Protocol
 
 from granchain_core import Scene, State
 
+from .activities import Activity
 from .session import Session
 
 
@@ -26,6 +27,9 @@ class Host(Protocol):
     @property
     def curve_computing(self) -> bool:
         """Whether a resonance curve is being computed."""
+
+    def activities(self) -> list[Activity]:
+        """Everything that is computed for this visitor, or could be."""
 
     def later(self, action: Callable[..., None], *arguments: object) -> None:
         """Do something in the document's turn; callable from any thread."""

@@ -10,36 +10,31 @@ import panel as pn
 from bokeh.models import Range1d
 
 from granchain_core import Settled
+from granchain_core.experiment.measured import MOST_BYTES
 
-from ..pages.accuracy.view import Accuracy
-from ..pages.branches.view import Branches
-from ..pages.check.view import Hard, described_cases
 from ..pages.curve.bar import CurveBar
 from ..pages.curve.view import Curve
-from ..pages.observer.view import Observer, first_state
-from ..pages.stability.view import Stability
-from ..parts.badge import Badge
 from ..parts.chain import PALETTE, Chain
 from ..parts.component import text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
-from ..parts.figures import BOTTOM, GAP, TOP, pane
+from ..parts.figure_style import BOTTOM, GAP, TOP, pane
 from ..parts.header import Header
 from ..parts.knobs import Knobs
 from ..parts.regimes import REGIMES
+from ..parts.status_line import StatusLine
 from ..parts.trains import Trains
 from ..pictures.theme import Theme
 from .corner import Corner
+from .table import PAGES, described_pages
 
-#: Pages over the pictures; each has its place in page.html.
-PAGES = ("accuracy", "stability", "branches", "observer", "hard")
 _HERE = Path(__file__).resolve().parent
 
 
 class Views:
     """Every part of the page; all their messages go to `received`."""
 
-    def __init__(self, received: Callable[[dict[str, Any]], None], choose: Callable[[float], None]) -> None:
+    def __init__(self, received: Callable[[dict[str, Any]], None], choose: Callable[[object], None]) -> None:
         self.time = Range1d(start=1.0, end=0.0)
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
@@ -49,19 +44,16 @@ class Views:
         self.energy = EnergyMap(self.time)
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
-        self.corner = Corner(received, sizing_mode="stretch_both", state={"regimes": [
-            {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
-        self.accuracy = Accuracy(received, sizing_mode="stretch_both")
-        self.stability = Stability(received, sizing_mode="stretch_both")
-        self.branches = Branches(received, sizing_mode="stretch_both")
-        self.observer = Observer(received, sizing_mode="stretch_both", state=first_state())
-        self.hard = Hard(received, sizing_mode="stretch_both", state={"cases": described_cases()})
-        self.badge = Badge(received)
+        self.corner = Corner(received, sizing_mode="stretch_both", state={
+            "largest_file": MOST_BYTES, "pages": described_pages(), "regimes": [
+                {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
+        self.covers = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
+        self.status_line = StatusLine(received)
         self.shown: Settled | None = None
 
     def dress(self, theme: Theme) -> None:
         """Another look for every picture that is drawn here."""
-        for part in (self.accuracy, self.hard, self.observer, self.stability):
+        for part in (*self.covers.values(), self.corner):
             part.dress(theme)
 
     def template(self) -> pn.Template:
@@ -72,8 +64,11 @@ class Views:
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)
         page.add_variable("gap", GAP)
-        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "badge", *PAGES):
+        page.add_variable("covers", [(row.name, row.tab.capitalize()) for row in PAGES if row.view])
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "status_line"):
             page.add_panel(name, getattr(self, name))
+        for name, cover in self.covers.items():
+            page.add_panel(name, cover)
         page.add_panel("left", pane(self.trains.left))
         page.add_panel("map", pane(self.energy.figure))
         page.add_panel("right", pane(self.trains.right))

@@ -54,8 +54,9 @@ class Transport:
         if not message.get("playing"):
             self._playing({"value": False})
             self._header()
-        self._say("The connection was lost and the page was built again from its knobs; "
-                  "the chain started anew from rest.")
+        gone = ", and uploaded data are gone" if message.get("uploaded") else ""
+        self._say("The connection was lost. The page is back with your settings; the chain started again from rest"
+                  f"{gone}.")
 
     def _reset(self, _: dict[str, Any]) -> None:
         if self._pictures.live is not None:

@@ -12,12 +12,11 @@ from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
-from ..pages.effects.switches import ACCOUNT, changes
-from .share import encode
+from .share import EXTRAS, encode
+from .switches import ACCOUNT, changes
 
-MODES = ("settled", "live")
-STARTS = ("rest", "previous")
-LOOKS = ("light", "dark", "projector")
+#: What a link may say, without "auto", by which the browser chooses.
+MODES, STARTS, LOOKS = EXTRAS["mode"], EXTRAS["start"], EXTRAS["look"][1:]
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0)
 
 

@@ -1,5 +1,6 @@
-"""Share links: the scene's name, the knobs that differ from it, and the view, as one versioned query string.
+"""Share links: scene name, knobs that differ from its preset, mode and start, as one versioned query string.
 
+A changed preset changes what old links mean.
 Every field is checked by itself: a bad one is refused with its sentence and the others still count.
 """
 
@@ -13,7 +14,7 @@ from granchain_core import BadInput, Scene, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 
 VERSION = "1"
-#: View settings a link may carry and what they may be; the first is what an old link means.
+#: View settings a link may carry, and their values; the first holds where the link has none.
 EXTRAS: dict[str, tuple[str, ...]] = {
     "mode": ("settled", "live"),
     "start": ("rest", "previous"),

@@ -7,8 +7,8 @@ from panel.io import unlocked
 
 from granchain_core import Scene, Settled
 
-from ..parts.badge import run_entries, settled_entries
 from ..parts.chain import frames_message
+from ..parts.status_line import run_entries, settled_entries
 from .frames import Frames, prefixed, settled_frames
 from .layout import Views
 from .live import LivePicture
@@ -23,13 +23,13 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
         _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s")
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
         views.shown = picture
-        views.badge.display(**settled_entries(picture, views.curve.place(picture.run)))
+        views.status_line.display(**settled_entries(picture, views.curve.place(picture.run)))
 
 
 def show_regime(views: Views) -> None:
-    """The badge's words once more, after the curve that names the place has come."""
+    """The status line's words once more, after the curve that names the place has come."""
     if views.shown is not None:
-        views.badge.display(**settled_entries(views.shown, views.curve.place(views.shown.run)))
+        views.status_line.display(**settled_entries(views.shown, views.curve.place(views.shown.run)))
 
 
 def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
@@ -40,7 +40,7 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
         views.trains.left.yaxis.axis_label = "time (drive periods before now)"
         _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)
         views.curve.now(run.scene.knobs["f"], frames.largest_output)
-        views.badge.display(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
+        views.status_line.display(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,

@@ -9,8 +9,8 @@ from typing import Any
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
 
 from ..serve.compiler import COMPILER
+from ..serve.delays import PICTURE_LOOK
 from ..serve.queues import Queue, Stop
-from ..serve.waiting import PICTURE_LOOK
 from .host import Host
 
 #: Takes a status and the sentence that goes with it, which is empty but for "failed".

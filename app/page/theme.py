@@ -10,8 +10,6 @@ from ..pictures.theme import THEMES
 from .layout import Views
 from .session import LOOKS, Session
 
-_WIDTHS = {"light": 1.0, "dark": 1.0, "projector": 1.5}
-
 
 class Looks:
     """The visitor's choices that compute nothing but, perhaps, another curve."""
@@ -29,9 +27,9 @@ class Looks:
         """Ink and line width of a look."""
         look = message.get("value")
         if look in LOOKS:
-            theme, thick = THEMES[str(look)], _WIDTHS[str(look)]
-            self._views.curve.ink(theme.ink, thick)
-            self._views.trains.thicken(thick)
+            theme = THEMES[str(look)]
+            self._views.curve.ink(theme.ink, theme.line)
+            self._views.trains.thicken(theme.line)
             self._views.dress(theme)
 
     def _lock(self, message: dict[str, Any]) -> None:

@@ -1,7 +1,7 @@
 // The chain on the page: bead i stands above column i of the map; its clock is the page's.
 
 import { ChainDrawing, unpack } from "./chaindrawing.js";
-import { Clock, Cursor } from "./stage.js";
+import { Clock, Cursor } from "./clock.js";
 
 function afterFrame(act) {
   const channel = new MessageChannel();

@@ -9,6 +9,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
+from ..pictures.theme import Theme
 from ..serve.websocket import PromptEvents
 
 _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
@@ -37,6 +38,9 @@ class Component(PromptEvents, JSComponent):
     def tell(self, **message: Any) -> None:
         """Send a message to this part in the browser."""
         self._send_msg(message)
+
+    def dress(self, theme: Theme) -> None:
+        """Another look; a part that has no figures follows it by its style alone."""
 
     def display(self, **changes: Any) -> None:
         """Change some entries of `state`."""

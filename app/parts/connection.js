@@ -10,7 +10,7 @@
     TRY = 400,
     GRACE = 3000;
   const LOST = "Connection lost – trying again … These are the last pictures.";
-  const BACK = "Connected again – building the page from its knobs …";
+  const BACK = "Connected again – restoring your settings …";
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "cover", "foot"];
 

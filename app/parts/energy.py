@@ -8,7 +8,7 @@ from bokeh.plotting import figure
 
 from ..page.frames import Frames, prefixed, round_up
 from .chain import PALETTE
-from .figures import GAP, quiet_axis, quiet_figure
+from .figure_style import GAP, quiet_axis, quiet_figure
 
 
 class EnergyMap:

@@ -7,8 +7,8 @@ const HELP = [
   ["time", "Runs downwards in all pictures; drag a picture to stop it, space plays on."],
   ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
   ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
-  ["accuracy", "Click it in the badge: every method's error against its time, measured here and now."],
-  ["effects", "In the corner: switch an effect, see its slot in the kernel and what it costs."],
+  ["accuracy", "Click it in the status line: every method's error against its time, measured now on this machine."],
+  ["effects", "In the tab “effects”: switch an effect on or off and see what it costs."],
   ["curve", "Click a frequency to go there. Shape and colour of a point say its regime."],
 ];
 
@@ -80,9 +80,7 @@ export function render({ model }) {
   });
   start.add(new Option("from rest", "rest"));
   start.add(new Option("from where it was", "previous"));
-  const share = button(icon("share", "share"), "Link to this picture", () =>
-    send({ do: "share", origin: location.href }),
-  );
+  const share = button(icon("share", "share"), "Link to this picture", () => send({ do: "share" }));
   const save = button(icon("save", "save"), "Save this picture as HDF5", () => send({ do: "save" }), "save");
   const help = button(icon("help"), "Help", () => toggle(helpBox), "icon");
   const look = button(icon("look"), "Light, dark, projector", () => page.nextLook(), "icon");
@@ -128,8 +126,14 @@ export function render({ model }) {
     if (!event.composedPath().includes(root)) toggle(helpBox, false);
   });
 
+  // The look of the link comes with the first state; from then on the button alone says it.
+  let linked = false;
   const show = () => {
     const { state } = model;
+    if (!linked && state.look) {
+      linked = true;
+      page.setLook(state.look, false); // "auto" is none of the looks and changes nothing
+    }
     scene.replaceChildren(...(state.scenes ?? []).map(({ name, title }) => new Option(`${name} — ${title}`, name)));
     scene.value = state.scene ?? "";
     speed.replaceChildren(
@@ -147,16 +151,15 @@ export function render({ model }) {
       page.emit("play", playing);
     }
     drawPlay();
-    page.kept = { speed: state.speed, playing };
+    page.kept = { ...page.kept, speed: state.speed, playing };
     if (!state.query) return;
     page.told(state.query, ["scene", "mode", "start"]);
     if (page.again) {
-      const { speed: value = 1, playing: goesOn = true } = page.again;
+      const { speed: value = 1, playing: goesOn = true, uploaded = false } = page.again;
       page.again = null;
-      send({ do: "again", speed: value, playing: goesOn });
+      send({ do: "again", speed: value, playing: goesOn, uploaded });
     }
   };
-  if (model.state.look && model.state.look !== "auto") page.setLook(model.state.look, false);
   model.on("state", show);
   model.on("msg:custom", (message) => {
     if (message.type === "link") {

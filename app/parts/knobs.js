@@ -167,7 +167,7 @@ export function render({ model }) {
       if (spec.name === "kappa") {
         const aside = document.createElement("div");
         aside.className = "aside";
-        aside.innerHTML = `<div class="kept" title="κ = k/(K√A₀): at the same k another A₀ has another κ. Set κ to have the old one back."></div>
+        aside.innerHTML = `<div class="kept" title="κ = k/(K√A₀): at the same k another A₀ has another κ. Set κ to get the old value back."></div>
           <div title="Frequency of one bead on its foundation spring alone: √(k/m) / 2π.">foundation frequency <span></span></div>`;
         root.append(aside);
       }

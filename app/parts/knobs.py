@@ -27,7 +27,7 @@ _CUBIC = ("k", "kappa")
 
 
 class Knobs(Component):
-    """The knobs' drawing; every movement comes as a message {"set": name, "value": SI value}."""
+    """The knobs' drawing; a movement comes as {"do": "set", "name": knob, "value": SI value, "seq": number}."""
 
     _esm = module("knobs.js")
     _stylesheets = [text("controls.css"), text("knobs.css")]  # noqa: RUF012
@@ -50,7 +50,7 @@ def _spec(name: str, current: Scene) -> dict[str, Any]:
     spec: dict[str, Any] = {
         "name": name, "symbol": "" if quantity.choices else quantity.symbol, "label": quantity.label,
         "short": _SHORT.get(name, quantity.label), "meaning": quantity.meaning,
-        "unit": unit, "factor": factor, "choices": list(quantity.choices), "numeric": quantity.numeric,
+        "unit": unit, "factor": factor, "choices": list(quantity.choices),
         "whole": quantity.whole, "more": name in MORE, "step": quantity.step, "scale": quantity.scale,
     }
     spec["low"], spec["high"] = slider_range(current, name)

@@ -38,7 +38,7 @@ window.granchain = (() => {
   const drawer = (open) => {
     document.getElementById("page").classList.toggle("drawer", open);
   };
-  // A page over the pictures, or null for the pictures themselves; what is covered is not computed.
+  // A page over the pictures, or null for the pictures themselves; the curve is not computed meanwhile.
   let covered = null;
   const cover = (name) => {
     covered = name;

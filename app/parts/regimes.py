@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from granchain_core import CurvePoint
 
-from .figures import OUTPUT
+from .figure_style import OUTPUT
 
 #: Marker, colour and size of every regime: told apart with and without colour.
 REGIMES = {

@@ -7,7 +7,7 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
 from bokeh.plotting import figure
 
 from ..page.frames import Frames, prefixed, round_up, with_jumps
-from .figures import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
+from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
 
 _WORDS = ("drive u₀", "input force", "output force")
 _SHORT = ("drive", "in", "out")

@@ -16,8 +16,8 @@ from pathlib import Path
 from granchain_core import Scene
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, structure
 
+from .delays import STOP_LOOK
 from .queues import COMPILATIONS, CURVES, Stop
-from .waiting import STOP_LOOK
 
 SENTENCE = ("Compiling the kernels for this set of effects: about 10 s, only the first time on this computer; "
             "the picture follows by itself.")

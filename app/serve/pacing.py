@@ -1,4 +1,4 @@
-"""Sending pictures at the pace of the browser: the next one goes out when the last was painted."""
+"""Sending pictures at the pace of the browser: at most two are on their way; the next waits for an acknowledgement."""
 
 from __future__ import annotations
 

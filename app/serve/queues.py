@@ -63,6 +63,8 @@ _CORES = os.cpu_count() or 1
 PICTURES = Queue("pictures", 4 * max(2, _CORES))
 #: What follows a picture while the knobs rest: short, and given up when a knob moves.
 ANALYSES = Queue("analyses", max(2, _CORES))
+#: Writing and reading files for visitors: the document's turn of one would hold up all.
+FILES = Queue("files", 2)
 #: Resonance curves, and loading kernels before a visitor asks. Maps and branches wait for a curve that is under way,
 #: so curves cannot share their queue.
 CURVES = Queue("curves", max(1, _CORES // 2))

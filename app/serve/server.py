@@ -6,9 +6,14 @@ from collections.abc import Sequence
 
 import panel as pn
 
+from granchain_core.experiment.measured import MOST_BYTES
+
 from ..page.entry import page
 from ..page.session import Session
 from .compiler import COMPILER
+
+#: The largest message a page sends is an uploaded file, in which JSON may write a character in six bytes.
+LARGEST_MESSAGE = 6 * MOST_BYTES + 100_000
 
 
 def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] | None = None) -> None:
@@ -16,7 +21,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
     hosts = list(origins or ()) + [f"{host}:{port}" for host in ("localhost", "127.0.0.1", address)]
     server = pn.serve(
         {"/": page}, port=port, address=address, start=False, show=False, title="granchain", liveness=True,
-        verbose=False, websocket_origin=hosts,
+        verbose=False, websocket_origin=hosts, websocket_max_message_size=LARGEST_MESSAGE,
     )
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else address
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)

@@ -1,6 +1,6 @@
 """How messages travel: a picture's all in one go, and at once; the page's when they can be answered.
 
-All that granchain uses of the private attributes of Tornado, Bokeh and Panel stands in this file. Each buys some
+The private attributes of Tornado, Bokeh and Panel that can be done without are used in this file only. Each buys some
 milliseconds or a message that would be lost; where a release has it no more, the public way is taken.
 """
 

@@ -99,7 +99,7 @@ class Scene(Description):
 
     @property
     def digest(self) -> str:
-        """Hash of everything that changes the answer: the key of caches and the identity of a share link."""
+        """Hash of everything that changes the answer: the key of caches."""
         physics = {k: v for k, v in self.to_json().items()
                    if k not in ("name", "title", "look_at", "paper", "ranges", "preset")}
         return hashlib.sha256(json.dumps(physics, sort_keys=True).encode()).hexdigest()[:16]

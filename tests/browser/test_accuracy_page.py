@@ -41,7 +41,7 @@ def type_into(page: Page, name: str, text: str) -> None:
 
 
 def opened(page: Page) -> Locator:
-    """The Accuracy page, opened from the badge, with its first points."""
+    """The Accuracy page, opened from the status line, with its first points."""
     page.get_by_role("button", name="asked").click()
     sheet = page.locator('[data-cover="accuracy"]')
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
@@ -49,13 +49,13 @@ def opened(page: Page) -> Locator:
     return sheet
 
 
-def test_the_badge_says_asked_reached_and_how_long(visit: Visit) -> None:
+def test_the_status_line_says_asked_reached_and_how_long(visit: Visit) -> None:
     page = visit()
-    badge = page.get_by_role("button", name="asked")
-    expect(badge).to_contain_text("asked 1e-6 · reached", timeout=20_000)
+    line = page.get_by_role("button", name="asked")
+    expect(line).to_contain_text("asked 1e-6 · reached", timeout=20_000)
     type_into(page, "accuracy", "1e-9")
-    expect(badge).to_contain_text("asked 1e-9 · reached", timeout=20_000)
-    words = badge.inner_text().split(" · ")
+    expect(line).to_contain_text("asked 1e-9 · reached", timeout=20_000)
+    words = line.inner_text().split(" · ")
     assert float(words[1].removeprefix("reached ")) <= 1e-9
     assert words[2].endswith((" ms", " s"))
 

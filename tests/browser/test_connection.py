@@ -98,7 +98,10 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
     page.wait_for_function(BELONGS, arg=700, timeout=30_000)
     page.get_by_role("button", name="Play or pause").click()
     page.locator("select.speed").select_option("5")
-    page.wait_for_function("granchain.kept.speed === 5 && granchain.kept.playing === false")
+    page.get_by_role("tab", name="data").click()
+    data = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
+    page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": data})
+    page.wait_for_function("granchain.kept.speed === 5 && granchain.kept.playing === false && granchain.kept.uploaded")
 
     server.kill()
     looks_lost(page)
@@ -108,14 +111,14 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
 
     starts_again(server, page)
     width, look, sentence = page.evaluate("window.first")
-    assert (width, "grayscale(1)" in look, "building the page from its knobs" in sentence) == (1280, True, True)
+    assert (width, "grayscale(1)" in look, "restoring your settings" in sentence) == (1280, True, True)
     page.wait_for_function(BELONGS, arg=700, timeout=60_000)
     expect(page.locator("#last-pictures")).to_have_count(0)
     assert (value(page), value(page, "D")) == ("700", "90")
     expect(page.locator("select.start")).to_have_value("previous")
     expect(page.locator("select.speed")).to_have_value("5")
     expect(page.get_by_role("button", name="Play or pause")).to_contain_text("play")
-    expect(page.get_by_role("alert").filter(has_text="built again from its knobs")).to_be_visible()
+    expect(page.get_by_role("alert").filter(has_text="the chain started again from rest, and uploaded data are gone.")).to_be_visible()
     expect(page.locator("#lost")).to_be_hidden(timeout=30_000)
     turn(page, "f", "340")
     page.wait_for_function(BELONGS, arg=340, timeout=30_000)

@@ -63,13 +63,13 @@ def test_the_foundation_comes_with_its_knob(visit: Visit) -> None:
     expect(page.locator('[data-knob="k"] input[type="text"]')).to_have_value("0")
 
 
-def test_the_energy_account_is_told_in_the_badge(visit: Visit) -> None:
+def test_the_energy_account_is_told_in_the_status_line(visit: Visit) -> None:
     page = visit()
     corner = panel(page)
     expect(activity(corner, "energy account")).to_contain_text("switched off")
     page.get_by_role("switch", name="energy account").click()
     expect(effect(corner, "account")).to_contain_text("Balance")
-    expect(page.locator("#foot")).to_contain_text("energy closes to", timeout=COMPILED)
+    expect(page.locator("#foot")).to_contain_text("energy balance ", timeout=COMPILED)
     expect(activity(corner, "energy account")).to_contain_text("closes to")
 
 

@@ -72,7 +72,7 @@ def test_run_all_is_cancelled_at_once(visit: Visit) -> None:
     sheet = opened(page)
     sheet.get_by_role("button", name="run all").click()
     expect(card(sheet, LONG)).to_contain_text("running", timeout=20_000)
-    expect(card(sheet, QUICK)).to_contain_text("waits for its turn")
+    expect(card(sheet, QUICK)).to_contain_text("waiting for its turn …")
     sheet.get_by_role("button", name="cancel").click()
     expect(card(sheet, QUICK)).to_contain_text("cancelled", timeout=1500)
     expect(card(sheet, LONG)).to_contain_text("cancelled")

@@ -247,6 +247,31 @@ def test_measured_data_is_read_strictly(visit: Visit) -> None:
     bad = b"frequency_Hz,force_N\n40,5.5\n60,twelve\n"
     chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": bad})
     expect(page.get_by_role("alert")).to_contain_text("Line 3")
+    # the largest file that is sent, in the characters that take most room in a message: refused, not disconnected
+    chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_000})
+    expect(page.get_by_role("alert")).to_contain_text("Line 1", timeout=20_000)
+    chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_001})
+    expect(page.get_by_role("alert")).to_contain_text("larger than 2 MB")
+
+
+def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit) -> None:
+    """The map keeps itself up to date by messages: drawn anew, it would lose what the pointer is on."""
+    page = visit()
+    page.get_by_role("tab", name="map").click()
+    page.locator(".maphost").evaluate("host => { host.dataset.same = 1; }")
+    page.locator("select.scene").select_option("rig")
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("60")
+    page.evaluate("shown()")
+    assert page.locator(".maphost").get_attribute("data-same") == "1"
+    page.get_by_role("tab", name="data").click()
+    page.locator("[role=tabpanel]").evaluate("""(body) => {
+      window.drawn = 0;
+      new MutationObserver((records) => { window.drawn += records.length; }).observe(body, { childList: true });
+    }""")
+    content = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
+    page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": content})
+    expect(page.locator("#corner")).to_contain_text("2 points")
+    assert page.evaluate("drawn") == 1
 
 
 def test_the_picture_can_be_saved(visit: Visit, tmp_path: Path) -> None:
@@ -265,6 +290,24 @@ def test_another_scene_can_be_opened(visit: Visit) -> None:
     page.locator("select.scene").select_option("fig3b")
     expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("1130")
     expect(page.locator("#foot b")).to_contain_text("period 3", timeout=20_000)
+
+
+# Whether a mark of a picture that the server draws has this colour.
+INK = """(ink) => Bokeh.documents.some((one) => [...(one.all_models ?? one._all_models.values())].some(
+  ({ line_color }) => (line_color?.value ?? line_color) === ink))"""
+
+
+@pytest.mark.parametrize(("look", "ink"), [("dark", "#eef1f6"), ("projector", "#000000")])
+def test_a_link_says_how_the_page_looks(visit: Visit, look: str, ink: str) -> None:
+    page = visit(f"?look={look}")
+    page.wait_for_function(f"document.documentElement.dataset.look === '{look}'")
+    assert page.evaluate("localStorage.getItem('granchain-look')") is None  # another page looks as it did
+    # the pictures too, which the server draws
+    page.wait_for_function(INK, arg=ink)
+    page.get_by_role("button", name="Light, dark, projector").click()
+    page.locator("select.speed").select_option("5")
+    page.wait_for_function("granchain.kept.speed === 5")
+    assert page.evaluate("document.documentElement.dataset.look") != look
 
 
 def test_dark_on_a_dark_system(visit: Visit) -> None:

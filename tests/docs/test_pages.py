@@ -27,7 +27,8 @@ _COMMANDS = sorted({command for page in PAGES for command in commands(page)})
 def test_links_and_named_files_exist(page: Path):
     """Every relative link and every path with a folder in backquotes is there (docs/add-an-effect.md makes its own)."""
     text = page.read_text(encoding="utf-8")
-    made = {block.path for block in blocks(page) if block.is_new_file}
+    files = [Path(block.path) for block in blocks(page) if block.is_new_file]
+    made = {str(path) for file in files for path in (file, file.parent)}
     for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", text):
         assert (page.parent / target).exists(), target
     for name in re.findall(rf"`({_FOLDERS}/[\w./-]+)`", text):

@@ -20,6 +20,21 @@ def test_a_link_brings_back_exactly_what_was_shared(name: str, f: float, amplitu
     assert extras.get("mode", EXTRAS["mode"][0]) == mode
 
 
+def test_a_link_that_was_sent_once_means_today_what_it_meant() -> None:
+    """Literal on purpose: if a preset, a default or a name changes, links that are out there change with it."""
+    shown, extras, refused = decode(
+        "v=1&scene=rig&f=72.5&A0=6e-06&D=12.5&k=1500.0&N=9&F0=0.25&wall=rigid&dissipation=tsuji&tension=cut"
+        "&accuracy=1e-08&mode=live&start=previous&look=dark")
+    assert refused == []
+    assert extras == {"mode": "live", "start": "previous", "look": "dark"}
+    assert shown.name == "rig"
+    assert {name: value for name, value in shown.knobs.items() if name != "kappa"} == {
+        "f": 72.5, "A0": 6e-6, "D": 12.5, "k": 1500.0, "N": 9, "F0": 0.25, "wall": "rigid", "dissipation": "tsuji",
+        "tension": "cut", "accuracy": 1e-8}
+    bead = shown.bead(1)  # what the link leaves to the preset
+    assert (bead.mass, bead.radius, bead.young, bead.poisson) == (0.067355, 0.0127, 210e9, 0.3)
+
+
 def test_every_bad_field_gets_its_sentence_and_the_good_ones_count() -> None:
     back, extras, refused = decode("v=1&scene=rig&f=nan&A0=1e3&foo=1&mode=x&D=12&look=dark")
     assert back == scene("rig").evolve(D=12.0)

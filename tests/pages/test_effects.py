@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from app.cli.explain import slots_of
 from app.page.energy_residual import with_account
 from app.page.session import Session
-from app.pages.effects.switches import ACCOUNT, EFFECTS, changes, present, variants
+from app.page.switches import ACCOUNT, EFFECTS, changes, present, variants
 from granchain_core import BadInput, scene, scene_names, settled
+from granchain_core.lower import slots_of
 from granchain_core.stop import Stop
 from granchain_core.warm import structure
 

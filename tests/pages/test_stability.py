@@ -219,7 +219,7 @@ def test_a_picture_that_stays_is_analysed(page: Page) -> None:
     assert not page.state["stale"] and not page.state["searched"] and page.state["observer_marks"] == []
     mode = next(m for m in page.told if m["type"] == "mode")
     assert mode["values"].dtype == np.float32 and len(mode["values"]) == 2 * 49 * 11
-    assert view.activity[1] == "there"
+    assert view.activity[1] == "ready"
     # the same picture with its energy account changes nothing
     count = len(page.told)
     view.arrived(replace(picture()))

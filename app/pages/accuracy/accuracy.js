@@ -194,8 +194,8 @@ export function render({ model }) {
     else if (message.type === "no-lesson") lesson.forget();
   });
   page.on("cover", (name) => {
-    model.send_msg({ do: "cover", name });
     if (name !== "accuracy") return;
+    model.send_msg({ do: "accuracy-open" });
     requestAnimationFrame(redraw);
   });
   show();

@@ -9,14 +9,15 @@ from typing import Any
 
 from panel.io import unlocked
 
-from granchain_core import Scene
+from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
 from ...page.active_setting import locate, page_setting
+from ...page.activities import IDLE, OFF, RUNNING, Activity
 from ...page.format import duration, short_error
+from ...page.hooks import Page
 from ...page.host import Host
-from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
 from ...pictures.accuracy import Asked
 from ...serve.queues import MEASUREMENTS
@@ -28,7 +29,7 @@ def measured_for(scene: Scene) -> str:
     return scene.evolve(accuracy=1e-6).digest
 
 
-class AccuracyPage:
+class AccuracyPage(Page):
     """One measurement at a time; it goes on in the background until it is done, cancelled or the visitor leaves."""
 
     def __init__(self, host: Host, view: Accuracy) -> None:
@@ -56,6 +57,14 @@ class AccuracyPage:
         """Name, state and detail for the list of what is computed now."""
         words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page was not opened yet"
         return "accuracy of all methods", RUNNING if self.running else IDLE if self.rows else OFF, words
+
+    def changed(self) -> None:
+        """Another accuracy is asked for, or the rows are another chain's."""
+        self.describe()
+
+    def arrived(self, picture: Settled) -> None:
+        """What the picture took is marked among the rows."""
+        self.describe()
 
     def describe(self) -> None:
         """Tell what follows from the knobs and the picture: asked, cheapest, now, and whether the rows still hold."""

@@ -9,15 +9,17 @@ from typing import Any
 
 from panel.io import unlocked
 
-from granchain_core import BadInput, Scene
+from granchain_core import Scene
 from granchain_core.orbits import Arm, Branch, BranchPoint, Continuation, begin_branch, switch_to_doubled
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
+from ...page.borders import listed, whole
+from ...page.hooks import Page
 from ...page.host import Host
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task
+from ...serve.delays import BRANCH_EVERY
 from ...serve.queues import LONG, Stop
-from ...serve.waiting import BRANCH_EVERY
 from .view import Branches, described_orbit, described_special, drawn_orbits
 
 #: Drive periods of an orbit that can be asked for here.
@@ -35,7 +37,7 @@ class _Drawn:
     orbits: list[BranchPoint] = field(default_factory=list)
 
 
-class BranchesPage:
+class BranchesPage(Page):
     """Branches of one chain: the first from the orbit on the screen, others from its period doublings."""
 
     def __init__(self, host: Host, view: Branches) -> None:
@@ -53,7 +55,7 @@ class BranchesPage:
             "branches-double": self._double,
         }
 
-    def describe(self) -> None:
+    def changed(self) -> None:
         """Tell whether the branches still belong to the chain on the screen."""
         now = self._host.session.scene
         stale = bool(self._followed) and \
@@ -73,9 +75,8 @@ class BranchesPage:
 
     def _start(self, message: dict[str, Any]) -> None:
         period = message.get("period")
-        if period is not None and period not in range(1, _LONGEST_PERIOD + 1):
-            raise BadInput(f"The period of a branch must be from 1 to {_LONGEST_PERIOD} drive periods here; "
-                           "the nearest valid value is 1.")
+        if period is not None:
+            period = whole("period of a branch", period, 1, _LONGEST_PERIOD)
         scene, picture = self._host.session.scene, self._host.session.picture
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)
@@ -94,21 +95,15 @@ class BranchesPage:
             self._submit(lambda stop: left, scene)
 
     def _double(self, message: dict[str, Any]) -> None:
-        place = message.get("place")
-        if self._task.running or not isinstance(place, int) or not 0 <= place < len(self._special):
+        if self._task.running:
             return
-        branch, special = self._special[place]
+        branch, special = listed("special point", self._special, message.get("place"))
         self._submit(lambda stop: [switch_to_doubled(branch, special, stop)], branch.axis.scene)
 
     def _load_orbit(self, message: dict[str, Any]) -> None:
         """An orbit goes to the main page: a stable one settled, an unstable one live, so that one sees it leave."""
-        arm, place = message.get("arm"), message.get("place")
-        if not isinstance(arm, int) or not 0 <= arm < len(self._drawn):
-            return
-        drawn = self._drawn[arm]
-        if not isinstance(place, int) or not 0 <= place < len(drawn.orbits):
-            return
-        point = drawn.orbits[place]
+        drawn = listed("branch", self._drawn, message.get("arm"))
+        point = listed("orbit", drawn.orbits, message.get("place"))
         self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
                         "settled" if point.stable else "live")
 
@@ -146,7 +141,7 @@ class BranchesPage:
     def _add(self, continuation: Continuation) -> None:
         self._followed.append(continuation)
         self._drawn.extend(_Drawn(continuation.branch, arm) for arm in continuation.branch.arms)
-        self.describe()
+        self.changed()
         self._draw()
 
     def _draw(self) -> None:

@@ -9,7 +9,7 @@ const raised = (text) =>
     .split(/(\^\{[^}]+\}|\^-?\d+)/)
     .map((piece) => (piece.startsWith("^") ? part("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
 const PATIENCE = 20; // seconds after which it is told why the first run on a computer lasts
-const STATUS = { waiting: "waits for its turn", drawing: "drawing …", cancelled: "cancelled" };
+const STATUS = { waiting: "waiting for its turn …", drawing: "drawing …", cancelled: "cancelled" };
 const BUSY = ["waiting", "running", "drawing"];
 
 function rowTable(rows) {
@@ -104,7 +104,7 @@ export function render({ model }) {
   };
   const all = button(
     "run all (quick)",
-    "All sixteen with smaller counts; the command line has the full ones: granchain check",
+    `All ${model.state.cases.length} cases with fewer runs; in full: granchain check`,
     () => model.send_msg({ do: "hard-all" }),
   );
   const cancel = button("cancel", "Stop; what was found stays", () => model.send_msg({ do: "hard-cancel" }));
@@ -142,7 +142,7 @@ export function render({ model }) {
       summary ||
       "Here solvers of such chains go wrong without saying so. Each case is measured against something that is known, and has a bar.";
     for (const [name, card] of cards) card.show(results[name]);
-    page.hard = summary;
+    page.hard = { sentence: summary };
     page.emit("hard");
   };
   setInterval(() => {

@@ -9,8 +9,9 @@ from typing import Any
 from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Picture
 
+from ...page.activities import IDLE, OFF, RUNNING, Activity
+from ...page.hooks import Page
 from ...page.host import Host
-from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
 from .view import Hard, described, summary
@@ -19,7 +20,7 @@ from .work import CaseProcess, Ended, case_of
 _FAULT = "The process that measures it ended by a fault inside granchain; run it again, and please report it."
 
 
-class HardPage:
+class HardPage(Page):
     """Cases wait for their turn and are measured one after the other; results stay until a case is run again."""
 
     def __init__(self, host: Host, view: Hard) -> None:

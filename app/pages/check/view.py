@@ -24,7 +24,7 @@ class Hard(Component):
     _stylesheets = [text("controls.css"), text("hard.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, **params)
+        super().__init__(received, state={"cases": described_cases()}, **params)
         self._theme = THEMES["light"]
         self._drawn: dict[str, Picture] = {}
 
@@ -43,8 +43,8 @@ class Hard(Component):
 
 def described_cases() -> list[dict[str, Any]]:
     """The cases as they stand before anything was measured."""
-    return [{"name": case.name, "hard": case.hard, "naive": case.naive, "oracle": case.oracle,
-             "drawn": case.picture is not None} for case in CASES]
+    return [{"name": case.name, "hard": case.hard, "naive": case.naive, "oracle": case.oracle}
+            for case in CASES]
 
 
 def figures(value: float, digits: int) -> str:

@@ -13,8 +13,8 @@ from multiprocessing.process import BaseProcess
 from granchain_core import Cancelled
 from granchain_core.hard import CASES, Case, Check, Picture, run_case
 
+from ...serve.delays import STOP_LOOK
 from ...serve.queues import Stop
-from ...serve.waiting import STOP_LOOK
 
 #: The pictures of the page come first where there are fewer cores than work.
 _NICE = 5

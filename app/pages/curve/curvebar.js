@@ -4,7 +4,7 @@ const CHOICES = [
   ["rest", "from rest", "Every frequency started from rest."],
   ["up", "╌ up", "Frequency rising, the state carried along."],
   ["down", "┈ down", "Frequency falling, the state carried along."],
-  ["features", "stated", "What the paper's text states about the rig: frequencies only, it gives no forces."],
+  ["features", "from the paper", "Frequencies the paper states for its rig; it gives no forces."],
 ];
 
 export function render({ model }) {

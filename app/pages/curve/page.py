@@ -13,13 +13,13 @@ from granchain_core.experiment import Measured, stated_features
 from granchain_core.steady.curve import draft_curve
 from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
+from ...page.activities import IDLE, OFF, RUNNING, Activity
 from ...page.host import Host
-from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.session import rig_beads, slider_range, without_frequency
 from ...page.task import Task
 from ...serve.compiler import COMPILER
+from ...serve.delays import CURVE_QUIET
 from ...serve.queues import CURVES, LatestWins, Stop
-from ...serve.waiting import CURVE_QUIET
 from .bar import CurveBar
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
 from .view import Curve

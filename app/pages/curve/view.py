@@ -16,7 +16,7 @@ from granchain_core.steady.resonance import Place, place_of
 
 from ...page.format import short_error
 from ...page.frames import prefixed, round_up
-from ...parts.figures import OUTPUT, quiet_axis, quiet_figure
+from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
 from ...parts.regimes import REGIMES, regime_key
 
 _DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
@@ -27,7 +27,7 @@ _COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "error")
 class Curve:
     """The figure with, for every direction, the curve being computed and the one before it in grey."""
 
-    def __init__(self, choose: Callable[[float], None]) -> None:
+    def __init__(self, choose: Callable[[object], None]) -> None:
         self._points: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
         self._before: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
         self._scale = (1.0, "")
@@ -228,6 +228,6 @@ class Curve:
             "colour": [look[1] for look in looks],
             "size": [look[2] for look in looks],
             "regime": [point.regime.sentence for point in points],
-            "error": ["no claim" if point.error_estimate is None else short_error(point.error_estimate)
+            "error": ["not estimated" if point.error_estimate is None else short_error(point.error_estimate)
                       for point in points],
         }

@@ -9,30 +9,27 @@ from typing import Any
 
 from granchain_core import BadInput, Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
+from granchain_core.lower import slots_of
 from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
 
-from ...cli.explain import slots_of
+from ...page.activities import IDLE, RUNNING, Activity
+from ...page.hooks import Page
 from ...page.host import Host
-from ...page.job_list import IDLE, RUNNING, Activity
+from ...page.switches import EFFECTS, present, refusal, variants
 from ...page.task import Job, Task
 from ...parts.component import Component
 from ...serve.compiler import COMPILER
+from ...serve.delays import ACTIVITIES_EVERY, COST_QUIET
 from ...serve.queues import MEASUREMENTS
-from ...serve.waiting import ACTIVITIES_EVERY, COST_QUIET
-from .switches import EFFECTS, present, refusal, variants
 
 
-class EffectsPanel:
-    """While it is on the screen it looks at the jobs, and has the cost of one effect after the other measured.
+class EffectsPanel(Page):
+    """While it is on the screen it looks at the jobs, and has the cost of one effect after the other measured."""
 
-    `activities` lists everything that is computed for this visitor.
-    """
-
-    def __init__(self, host: Host, view: Component, activities: Callable[[], list[Activity]]) -> None:
+    def __init__(self, host: Host, view: Component) -> None:
         self._host = host
         self._view = view
-        self._activities = activities
-        self._task = Task(host, MEASUREMENTS, self._ended, "Timing it")
+        self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
         self._open = False
         self._turn = 0
         self._moved = 0.0
@@ -159,7 +156,7 @@ class EffectsPanel:
                       for name, title, kind in slots_of(session.scene, session.account)],
             "structure": structure(session.scene),
             "step": self._step(session.scene),
-            "activities": [{"name": n, "state": s, "detail": d} for n, s, d in self._activities()],
+            "activities": [{"name": n, "state": s, "detail": d} for n, s, d in self._host.activities()],
         })
 
     def _effect(self, name: str, scene: Scene) -> dict[str, Any]:

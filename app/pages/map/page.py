@@ -10,17 +10,19 @@ from typing import Any
 import numpy as np
 from panel.io import unlocked
 
-from granchain_core import BadInput, Scene
+from granchain_core import Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
 from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 
+from ...page.borders import listed
+from ...page.hooks import Page
 from ...page.host import Host
 from ...page.session import slider_range
 from ...page.task import Job, Task
 from ...parts.component import Component
+from ...serve.delays import CELLS_EVERY, MAP_QUIET
 from ...serve.queues import LONG, Stop
-from ...serve.waiting import CELLS_EVERY, MAP_QUIET
 from .view import cells_message, described, head_message
 
 #: Cells over f and over A0: coarse enough to be there in some ten seconds on one core.
@@ -38,7 +40,7 @@ def page_grid(scene: Scene) -> Grid:
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
 
 
-class MapTab:
+class MapTab(Page):
     """While the tab is on the screen its diagram is computed; nothing is while it is not."""
 
     def __init__(self, host: Host, view: Component) -> None:
@@ -65,7 +67,7 @@ class MapTab:
         self._diagram.cancel()
         self._search.cancel()
 
-    def moved(self) -> None:
+    def changed(self) -> None:
         """A knob has moved: another knob than f and A0 makes another diagram, any makes other attractors."""
         if not self._visible:
             return
@@ -196,11 +198,9 @@ class MapTab:
 
     def _load(self, message: dict[str, Any]) -> None:
         """Put the chain on one of the attractors; from there knobs move it along."""
-        number = message.get("number")
-        if not isinstance(number, int) or isinstance(number, bool) or not 0 <= number < len(self._found):
-            raise BadInput("That attractor is not in the list any more; look for them again.")
+        found = listed("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
-        self._host.show(self._found[number].scene, self._found[number].state)
+        self._host.show(found.scene, found.state)
 
 
 def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:

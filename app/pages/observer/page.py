@@ -10,6 +10,7 @@ from typing import Any
 from granchain_core import Scene, Settled
 from granchain_core.warm import CERTIFIED, OBSERVER
 
+from ...page.hooks import Page
 from ...page.host import Host
 from ...page.task import Job, Task
 from ...serve.queues import PICTURES
@@ -28,7 +29,7 @@ class _Moved:
     began: bool
 
 
-class ObserverPage:
+class ObserverPage(Page):
     """Each message "observer-more" asks for one period; without them nothing is computed."""
 
     def __init__(self, host: Host, view: Observer) -> None:
@@ -95,9 +96,5 @@ class ObserverPage:
 
     def _show(self, moved: _Moved) -> None:
         run = moved.run
-        mu = run.leading
-        self._view.display(
-            status="", sentence=run.sentence, predicted=run.predicted, measured=run.measured, since=run.since,
-            mu=None if mu is None else [mu.real, mu.imag], period=None if run.orbit is None else run.orbit.period,
-            broken=run.broken, in_step=run.in_step)
+        self._view.display(status="", sentence=run.sentence, predicted=run.predicted, measured=run.measured)
         self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

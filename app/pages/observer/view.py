@@ -31,7 +31,7 @@ class Observer(Drawn):
     _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, **params)
+        super().__init__(received, state=first_state(), **params)
         self._anchor: tuple[float, float] | None = None
 
     def empty_figures(self, theme: Theme) -> dict[str, Any]:
@@ -71,6 +71,5 @@ def step_message(step: Step, scene: Scene, began: bool) -> dict[str, Any]:
         "type": "step", "number": step.number, "began": began, "rows": len(step.distance), "beads": scene.N,
         "samples": step.samples, "radii": [bead.radius for bead in scene.beads], "foundation": scene.k > 0.0,
         "energy_high": max(float(step.chain_energy.max()), 1e-300), "push": f"{push / factor:.3g} {letter}N",
-        "frequency": scene.f,
         "values": np.concatenate([one.ravel() for one in series], dtype=np.float32),
     }

@@ -11,7 +11,6 @@ from granchain_core.observe.drift import observer_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import (
     IN_STEP,
-    LINEAR,
     linear_window,
     observer_start,
     rates,
@@ -159,8 +158,3 @@ class ObserverRun:
         if self.drifts:
             return f"{told} it drifts; an offset of its beads, which nothing pulls back, grows{side}."
         return f"{told} it leaves its chain{side}."
-
-    @property
-    def broken(self) -> bool:
-        """Whether the observer is too far from its chain for its multiplier to mean anything."""
-        return bool(self.strobes) and float(np.sqrt((self.strobes[-1] ** 2).sum())) > LINEAR

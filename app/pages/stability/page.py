@@ -14,11 +14,13 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
+from ...page.activities import IDLE, OFF, RUNNING, Activity
+from ...page.borders import whole
+from ...page.hooks import Page
 from ...page.host import Host
-from ...page.job_list import IDLE, OFF, RUNNING, Activity
 from ...page.task import Job, Task
+from ...serve.delays import ANALYSIS_QUIET
 from ...serve.queues import ANALYSES
-from ...serve.waiting import ANALYSIS_QUIET
 from .view import (
     Stability,
     described_multipliers,
@@ -33,7 +35,7 @@ from .work import PHASES, Analysis, Target, analyse, search, section_of, transie
 _LIVE = "A live run is on its way, and only a motion that repeats has multipliers: choose “settled” above."
 
 
-class StabilityPage:
+class StabilityPage(Page):
     """While it is on the screen, every picture that stays is analysed; a knob that moves gives up what is under way."""
 
     def __init__(self, host: Host, view: Stability) -> None:
@@ -119,8 +121,7 @@ class StabilityPage:
             return
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
-        self._view.display(stale=True, regime=picture.regime.name, regime_period=picture.regime.period or 1,
-                           beads=picture.run.scene.N)
+        self._view.display(stale=True, beads=picture.run.scene.N)
         if picture.regime.name == "periodic" and picture.regime.period is not None:
             self._follow(Target(picture.run.scene, picture.regime.period, picture.state, followed=True))
         else:
@@ -225,7 +226,7 @@ class StabilityPage:
         self._again()
 
     def _choose_mode(self, message: dict[str, Any]) -> None:
-        self._rank = _whole("mode", message.get("value"), 0, 2 * self._host.session.scene.N - 1)
+        self._rank = whole("mode", message.get("value"), 0, 2 * self._host.session.scene.N - 1)
         self._again()
 
     def _again(self) -> None:
@@ -234,12 +235,12 @@ class StabilityPage:
             self._follow(self._target)
 
     def _choose_section(self, message: dict[str, Any]) -> None:
-        self._bead = _whole("bead", message.get("bead"), 1, self._host.session.scene.N)
-        self._phase = _whole("phase", message.get("phase"), 0, PHASES - 1)
+        self._bead = whole("bead", message.get("bead"), 1, self._host.session.scene.N)
+        self._phase = whole("phase", message.get("phase"), 0, PHASES - 1)
         self._show_section()
 
     def _search(self, message: dict[str, Any]) -> None:
-        period = _whole("period", message.get("value"), 1, LONGEST_PERIOD)
+        period = whole("period", message.get("value"), 1, LONGEST_PERIOD)
         picture, section = self._picture, self._section
         if not self._open or picture is None:
             raise BadInput("There is no settled picture to search from yet; wait for it.")
@@ -250,10 +251,3 @@ class StabilityPage:
         """From an orbit that was found, or a search, back to what the chain does."""
         self._give_up()
         self._begin(self._due)
-
-
-def _whole(what: str, value: object, low: int, high: int) -> int:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not low <= value <= high or value != int(value):  # type: ignore[operator,call-overload]
-        raise BadInput(f"The {what} {str(value)[:40]!r} is not a whole number from {low} to {high}.")
-    return int(value)  # type: ignore[call-overload]

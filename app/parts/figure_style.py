@@ -8,11 +8,13 @@ import panel as pn
 from bokeh.models import Plot
 from bokeh.plotting import figure
 
+from ..pictures.theme import THEMES
+
 TOP, BOTTOM, LEFT, GAP = 50, 52, 56, 6
 """Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly."""
 
-DRIVE, INPUT, OUTPUT = "#e5484d", "#3b82f6", "#2f9e6a"
-"""The colours that mean one thing everywhere; also in page.css."""
+DRIVE, INPUT, OUTPUT = THEMES["light"].drive, THEMES["light"].input, THEMES["light"].output
+"""The colours that mean one thing everywhere, in every look."""
 
 
 def quiet_figure(left: int, right: int, **options: Any) -> figure:

@@ -9,16 +9,15 @@ from .session import Session
 #: Name, state and detail of a view or an analysis.
 Activity = tuple[str, str, str]
 
-OFF, IDLE, RUNNING = "off", "there", "computing"
+OFF, IDLE, RUNNING = "off", "ready", "computing"
 
 
-def picture_activities(session: Session, busy: bool, covered: bool) -> list[Activity]:
+def picture_activities(session: Session, busy: bool) -> list[Activity]:
     """The pictures, where they come from, and what was found out while they settled."""
     picture, live = session.picture, session.mode == "live"
     running = RUNNING if busy else IDLE
-    pictures = "covered by another page" if covered else f"from one {'live' if live else 'settled'} run"
     return [
-        ("chain, map, force trains", OFF if covered else running, pictures),
+        ("chain, map, force trains", running, f"from one {'live' if live else 'settled'} run"),
         ("live run", (RUNNING if session.playing else IDLE) if live else OFF,
          ("goes on" if session.playing else "paused") if live else "the page shows the steady state"),
         ("steady state", OFF if live else running,

@@ -1,4 +1,4 @@
-"""The badge that is always there: regime, error reached, time per picture, method, effects."""
+"""The status line, which is always there: regime, error reached, time per picture, method, effects."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from ..scripts import module
 from .component import Component, text
 
 
-class Badge(Component):
+class StatusLine(Component):
     """One line at the bottom, and above it one sentence when something needs saying."""
 
-    _esm = module("badge.js")
-    _stylesheets = [text("controls.css"), text("badge.css")]  # noqa: RUF012
+    _esm = module("status_line.js")
+    _stylesheets = [text("controls.css"), text("status_line.css")]  # noqa: RUF012
 
 
 def settled_entries(picture: Settled, place: Place | None) -> dict[str, Any]:
-    """The badge of a settled picture; `place` is where it lies on the curve from rest, None while there is none."""
+    """The line for a settled picture; `place` is where it lies on the curve from rest, None while there is none."""
     return {
         "regime": regime_words(picture, place),
         "start": f"from {picture.start}",
@@ -37,13 +37,13 @@ def regime_words(picture: Settled, place: Place | None) -> str:
 
 def accuracy_words(run: Run) -> str:
     """What was asked, what was reached, and what that took."""
-    reached = "no claim" if run.error_estimate is None else f"reached {short_error(run.error_estimate)}"
+    reached = "not estimated" if run.error_estimate is None else f"reached {short_error(run.error_estimate)}"
     return f"asked {short_error(run.scene.accuracy)} · {reached} · {duration(run.cost.wall_s)}"
 
 
 def errors_hint(run: Run) -> str:
     """Of which quantity each error is: displacements, and the three largest forces."""
-    said = [f"{name} {'no claim' if error is None else short_error(error)}" for name, error in (
+    said = [f"{name} {'not estimated' if error is None else short_error(error)}" for name, error in (
         ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
     return f"Relative errors: {', '.join(said)}. Click: what accuracy costs."
@@ -54,7 +54,7 @@ def run_entries(run: Run) -> dict[str, Any]:
     return {
         "accuracy": accuracy_words(run),
         "accuracy_hint": errors_hint(run),
-        "energy": "" if run.energy_residual is None else f"energy closes to {short_error(run.energy_residual)}",
+        "energy": "" if run.energy_residual is None else f"energy balance {short_error(run.energy_residual)}",
         "method": run.cost.method,
         "effects": list(run.scene.effects),
     }

@@ -1,4 +1,4 @@
-// The badge: what is on the screen, how sure it is and what it cost.
+// The status line: what is on the screen, how sure it is and what it cost.
 
 const ENTRIES = [
   ["start", (v) => v, "Where the steady state was started."],
@@ -26,17 +26,17 @@ export function render({ model }) {
   const close = Object.assign(document.createElement("button"), { textContent: "✕", title: "Close" });
   close.addEventListener("click", () => model.send_msg({ do: "understood" }));
   sentence.append(words, close);
-  const badge = document.createElement("div");
-  badge.className = "line";
-  root.append(sentence, badge);
+  const line = document.createElement("div");
+  line.className = "line";
+  root.append(sentence, line);
 
   const show = () => {
     const { state } = model;
     words.textContent = state.sentence ?? "";
     sentence.hidden = !state.sentence;
-    badge.replaceChildren();
+    line.replaceChildren();
     const regime = Object.assign(document.createElement("b"), { textContent: state.regime ?? "" });
-    badge.append(regime, Object.assign(document.createElement("i"), { className: "grow" }));
+    line.append(regime, Object.assign(document.createElement("i"), { className: "grow" }));
     for (const [name, write, meaning] of ENTRIES) {
       if (state[name] === undefined || state[name] === "") continue;
       const entry = Object.assign(document.createElement(name === "accuracy" ? "button" : "span"), {
@@ -45,7 +45,7 @@ export function render({ model }) {
         id: name,
       });
       if (name === "accuracy") entry.addEventListener("click", () => window.granchain.cover("accuracy"));
-      badge.append(entry);
+      line.append(entry);
     }
   };
   model.on("state", show);

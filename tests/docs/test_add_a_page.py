@@ -1,0 +1,63 @@
+"""docs/add-a-page.md is followed to the letter in a copy of the repository."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from documents import ROOT
+from edited_tree import edited_copy, files_of, follow
+
+PAGE = ROOT / "docs" / "add-a-page.md"
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the repository with the page's edits made, and the tests of its architecture."""
+    copy = tmp_path_factory.mktemp("page") / "tree"
+    for part in ("docs", "granchain"):
+        shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(ROOT / "tests" / "architecture", copy / "tests" / "architecture",
+                    ignore=shutil.ignore_patterns("__pycache__"))
+    return edited_copy(PAGE, copy)
+
+
+def test_the_page_edits_two_files_and_writes_four() -> None:
+    edits, new = files_of(PAGE)
+    assert (len(edits), len(new)) == (2, 4)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 2 files, write 4"
+
+
+def test_the_new_page_has_its_cover_its_tab_and_its_hooks(tree: Path) -> None:
+    """A row makes a cover, a tab, a call with every picture, and an answer to the page's own message."""
+    told = follow(tree, "-c", """
+from types import SimpleNamespace
+from bokeh.document import Document
+from app.page.controller import Controller
+from app.page.session import Session
+from app.scripts import FILES
+
+dashboard = Controller(Document(), Session())
+picture = SimpleNamespace(run=SimpleNamespace(max_output_force=1.0, max_input_force=4.0), final=False)
+dashboard.session.picture = picture
+page = next(one for one in dashboard.pages if type(one).__name__ == "TransmissionPage")
+page.arrived(picture)
+print(dashboard.views.covers["transmission"].state["sentence"])
+dashboard.views.covers["transmission"].display(sentence="")
+dashboard.received({"do": "transmission-say"})
+print(dashboard.views.covers["transmission"].state["sentence"])
+template = dashboard.views.template()
+print(dict(template._render_variables["covers"])["transmission"], "transmission.js" in FILES)
+print([one["words"] for one in dashboard.views.corner.state["pages"] if one["tab"] == "transmission"])
+""")
+    first, second, cover, words = told.splitlines()
+    assert first == second == "25.0 % of the largest input force arrives at the wall."
+    assert (cover, words) == ("Transmission True", "['How much of the input force arrives.']")
+
+
+def test_the_new_page_fits_into_the_house(tree: Path) -> None:
+    """Layers, private attributes, docstrings and the map of docs/design.md."""
+    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")), "-k",
+                  "transmission or table or map or circle")
+    assert " passed" in told and "deselected" in told

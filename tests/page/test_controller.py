@@ -1,0 +1,127 @@
+"""What a browser may send and what is said to it, without a browser."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from bokeh.document import Document
+from bokeh.events import Tap
+
+from app.page import links_and_files
+from app.page.borders import listed, whole
+from app.page.controller import Controller
+from app.page.session import Session
+from app.serve import server
+from granchain_core import BadInput, run, scene
+from granchain_core.experiment.measured import MOST_BYTES
+
+
+class Dashboard(Controller):
+    """A dashboard whose next turn comes when the test says so, and whose messages to the browser are kept."""
+
+    def __init__(self) -> None:
+        self.turns: list[Callable[[], None]] = []
+        self.told: list[dict[str, Any]] = []
+        super().__init__(Document(), Session())
+        self.views.header.tell = lambda **message: self.told.append(message)  # type: ignore[method-assign]
+
+    def later(self, action: Callable[..., None], *arguments: Any) -> None:
+        """From any thread."""
+        self.turns.append(lambda: self._guarded(action, *arguments))
+
+    def work_off(self, until: Callable[[], bool]) -> None:
+        """Take turns until something holds."""
+        end = time.monotonic() + 20
+        while not until():
+            assert time.monotonic() < end, "did not come"
+            while self.turns:
+                self.turns.pop(0)()
+            time.sleep(0.002)
+
+
+@pytest.mark.parametrize("wrong", [True, False, None, "3", 2.5, 0, 9, float("nan"), [1]])
+def test_only_whole_numbers_of_the_range_pass(wrong: object) -> None:
+    with pytest.raises(BadInput, match="is not a whole number from 1 to 8"):
+        whole("period", wrong, 1, 8)
+    assert whole("period", 2.0, 1, 8) == 2 and type(whole("period", 2.0, 1, 8)) is int
+
+
+@pytest.mark.parametrize("wrong", [True, False, None, "0", 0.0, -1, 2])
+def test_only_a_place_of_the_list_is_found(wrong: object) -> None:
+    with pytest.raises(BadInput, match="That orbit is not on the page any more"):
+        listed("orbit", ["first", "second"], wrong)
+    assert listed("orbit", ["first", "second"], 1) == "second"
+
+
+@pytest.mark.parametrize("message", [
+    {"do": "branches-start", "period": True}, {"do": "branches-start", "period": 9},
+    {"do": "branches-orbit", "arm": False, "place": 0}, {"do": "branches-double", "place": True},
+    {"do": "map-load", "number": True}, {"do": "stability-section", "bead": True, "phase": 0}])
+def test_what_is_no_number_gets_its_sentence(message: dict[str, Any]) -> None:
+    dashboard = Dashboard()
+    dashboard.received(message)
+    assert "is not a whole number" in dashboard.session.sentence or "not on the page any more" in dashboard.session.sentence
+
+
+def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence() -> None:
+    dashboard = Dashboard()
+    dashboard.views.curve.figure._trigger_event(Tap(dashboard.views.curve.figure, x=None, y=None))
+    assert dashboard.session.sentence.startswith("drive frequency f must be a number")
+    assert dashboard.session.scene.f == 340.0
+
+
+@pytest.mark.parametrize(("text", "sentence", "understood"), [
+    ("frequency_Hz,force_N\n40,5.5\n60,12.1\n", "", "mine.csv: 2 points"),
+    ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (MOST_BYTES + 1), "at most 2000000 are read", "")])
+def test_a_measurement_is_read_in_the_background(text: str, sentence: str, understood: str,
+                                                 monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reading 2 MB in the document's turn would hold up every visitor."""
+    threads = []
+    read = links_and_files.read_measured_csv
+    monkeypatch.setattr(links_and_files, "read_measured_csv",
+                        lambda text: (threads.append(threading.current_thread().name), read(text))[1])
+    dashboard = Dashboard()
+    dashboard.received({"do": "csv", "name": "mine.csv", "text": text})
+    assert not dashboard.views.corner.state.get("understood")
+    dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.corner.state.get("understood")))
+    assert sentence in dashboard.session.sentence
+    assert dashboard.views.corner.state.get("understood", "").startswith(understood)
+    assert threads[0].startswith("files")
+
+
+def test_a_picture_is_saved_in_the_background(monkeypatch: pytest.MonkeyPatch) -> None:
+    dashboard = Dashboard()
+    dashboard.received({"do": "save"})
+    assert "no picture to save yet" in dashboard.session.sentence
+    threads = []
+    save = links_and_files.save
+    monkeypatch.setattr(links_and_files, "save",
+                        lambda run, path: (threads.append(threading.current_thread().name), save(run, path)))
+    shown = run(scene("sec2"), periods=0, record=1, samples=24)
+    monkeypatch.setattr(dashboard.pictures, "run", lambda: shown)
+    dashboard.received({"do": "save"})
+    dashboard.work_off(lambda: any(message["type"] == "file" for message in dashboard.told))
+    (file,) = [message for message in dashboard.told if message["type"] == "file"]
+    assert file["name"] == "sec2-340Hz.h5" and file["content"][1:4] == b"HDF"
+    assert threads[0].startswith("files")
+
+
+def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.MonkeyPatch) -> None:
+    given: dict[str, Any] = {}
+
+    class Served:
+        """A server that ends at once."""
+
+        def run_until_shutdown(self) -> None:
+            """Nothing to wait for."""
+
+    monkeypatch.setattr(server.pn, "serve", lambda pages, **options: given.update(options) or Served())
+    monkeypatch.setattr(server.COMPILER, "prepare", lambda scene: None)
+    server.serve()
+    message = json.dumps({"do": "csv", "name": "x" * 1000, "text": "\x01" * MOST_BYTES})
+    assert len(message) < given["websocket_max_message_size"] < 20_000_000
