@@ -61,7 +61,7 @@ class Views:
 
     def dress(self, theme: Theme) -> None:
         """Another look for every picture that is drawn here."""
-        for part in (self.accuracy, self.hard, self.observer, self.stability):
+        for part in (self.accuracy, self.branches, self.hard, self.observer, self.stability):
             part.dress(theme)
 
     def template(self) -> pn.Template:
