@@ -26,8 +26,8 @@ from ..parts.equation import Equation
 from ..parts.figures import BOTTOM, GAP, TOP, pane
 from ..parts.header import Header
 from ..parts.knobs import Knobs
-from ..parts.regimes import REGIMES
 from ..parts.trains import Trains
+from ..pictures.regimes import REGIMES
 from ..pictures.theme import Theme
 from .corner import Corner
 

@@ -55,30 +55,30 @@ export class Embedded {
     source.change.emit();
   }
 
-  // What the figure's tap tool hits is given to `choose` as the name of its source and the row that is nearest; of
-  // several sources the first of `names` counts.
-  taps(names, choose) {
-    const tool = this.model("tap");
-    let hit = new Map();
-    tool?.setv({
-      callback: (_, { source, geometries }) => {
-        if (!hit.size)
-          queueMicrotask(() => {
-            const name = names.find((one) => hit.has(one));
-            if (name) choose(name, nearest(this.model(name), hit.get(name), this.views.roots[0].model));
-            hit = new Map();
-          });
-        hit.set(source.name, geometries);
-      },
-    });
+  // What the figure's tap tool hits is given to `choose` as the name of its source and the row that `pick` takes from
+  // all that are hit, else the nearest; of several sources the first of `names` counts.
+  taps(names, choose, pick = (rows, data, at) => nearest(rows, data, at, this.views.roots[0].frame)) {
+    const hit = new Map();
+    const chosen = () => {
+      const name = names.find((one) => hit.has(one));
+      if (name) {
+        const { data, selected } = this.model(name);
+        choose(name, pick(selected.indices, data, hit.get(name)));
+      }
+      hit.clear();
+    };
+    const callback = (_, { source, geometries }) => {
+      if (!hit.size) queueMicrotask(chosen);
+      hit.set(source.name, geometries);
+    };
+    this.model("tap")?.setv({ callback });
   }
 }
 
-// Of the rows that are selected the one whose x and y are nearest to a place on the screen.
-function nearest({ data, selected }, { x, y }, { x_range, y_range }) {
-  const part = (value, range) => value / (range.end - range.start);
-  const far = (row) => Math.hypot(part(data.x[row] - x, x_range), part(data.y[row] - y, y_range));
-  return selected.indices.reduce((best, row) => (far(row) < far(best) ? row : best));
+// Of some rows the one whose x and y are nearest to a place on the screen.
+function nearest(rows, { x, y }, { sx, sy }, { x_scale, y_scale }) {
+  const far = (row) => Math.hypot(x_scale.compute(x[row]) - sx, y_scale.compute(y[row]) - sy);
+  return rows.reduce((best, row) => (far(row) < far(best) ? row : best));
 }
 
 // What stands under a key; where nothing does, what `make` gives from now on.
@@ -121,18 +121,25 @@ export class Grown {
       at(lines, name, Array).push(piece);
     }
     for (const figure of figures) {
+      fillModels(figure, models);
       for (const [name, columns] of Object.entries(rows)) figure.stream(name, columns);
+      // What is streamed leaves the colours of earlier rows as they were: another scale is for all.
+      if (Object.keys(models).length) for (const name of Object.keys(rows)) figure.model(name)?.change.emit();
       for (const [name, added] of Object.entries(lines)) figure.extend(name, added);
-      for (const [name, properties] of Object.entries(models)) figure.set(name, properties);
     }
   }
 
   // Everything at once, into a figure that is new or shows something else.
   fill(figure) {
+    fillModels(figure, this.models);
     for (const [name, data] of Object.entries({ ...this.rows, ...this.lines }))
       figure.set(name, { data: structuredClone(data) });
-    for (const [name, properties] of Object.entries(this.models)) figure.set(name, properties);
   }
+}
+
+// Properties of models by their names.
+export function fillModels(figure, models) {
+  for (const [name, properties] of Object.entries(models ?? {})) figure.set(name, properties);
 }
 
 // What the page and the corner show of the observer.
@@ -156,7 +163,7 @@ export function showDistance(figure, item, known) {
 // Error against time as it is known now: points by method, then what is asked, cheapest and used.
 export function fillAccuracy(figure, { drawn, told }) {
   for (const [name, data] of Object.entries(drawn)) figure.set(name, { data });
-  for (const [name, properties] of Object.entries(told?.marks ?? {})) figure.set(name, properties);
+  fillModels(figure, told?.marks);
 }
 
 export function showAccuracy(figure, item, known) {

@@ -47,11 +47,12 @@ class Growth:
         self._knob: Scale | None = None
         self._last: dict[int, tuple[str, int]] = {}
         self._pieces = dict.fromkeys(_LINES, 0)
+        self._models: dict[str, dict[str, Any]] = {}
         self.orbits: dict[int, list[BranchPoint]] = {}
         self.special: list[SpecialPoint] = []
 
     def add(self, arm: int, branch: Branch, points: list[BranchPoint], special: list[SpecialPoint]) -> dict[str, Any]:
-        """Rows by source, pieces of lines as (source, number, x, y) to go on with, and titles of the axes."""
+        """Rows by source, pieces of lines as (source, number, x, y) to go on with, and what changes of other models."""
         new = drawn_orbits(points, special)
         self._force = self._force or force_scale(_TITLE, new[0].max_output_force_elastic)
         self._knob = self._knob or knob_scale(branch.axis.knob, (branch.axis.high,))
@@ -67,9 +68,12 @@ class Growth:
         pieces = self._lines(arm, before[-1:], new)
         before.extend(new)
         self.special.extend(special)
-        models = {f"legend of {kind}": {"visible": True} for kind in {s.kind for s in special}}
-        return {"rows": rows, "pieces": pieces, "models": {
-            **models, "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}}
+        models: dict[str, dict[str, Any]] = {
+            **{f"legend of {s.kind}": {"visible": True} for s in special},
+            "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
+        fresh = {name: properties for name, properties in models.items() if name not in self._models}
+        self._models |= fresh
+        return {"rows": rows, "pieces": pieces, "models": fresh}
 
     def _place(self, point: BranchPoint, knob: float | None = None) -> tuple[float, float]:
         assert self._knob is not None and self._force is not None
