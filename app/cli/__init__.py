@@ -30,6 +30,7 @@ from app.cli import (
 from app.cli import (
     orbit as orbit_command,
 )
+from app.cli.picture import add_option as add_picture
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import OverBudget, outcome_of, unknown_name
 from granchain_core.run.budget import BUDGET
@@ -78,19 +79,30 @@ def _parser() -> _Parser:
     orbit.add_argument("--seed", type=int, default=0, help="of the random start")
     orbit.add_argument("--observer", action="store_true", help="multipliers of the observer of model (4) too")
     orbit.add_argument("--json", action="store_true", help="print one JSON object on stdout")
-    branch_command.add_options(_scene_command(command("branch", "branch of periodic orbits and its special points")))
+    add_picture(orbit)
+    branch = _scene_command(command("branch", "branch of periodic orbits and its special points"))
+    branch_command.add_options(branch)
+    add_picture(branch)
     accuracy = command("accuracy", "what accuracy costs: error against time for every method")
     accuracy.add_argument("scene", metavar="SCENE")
     accuracy.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
     accuracy.add_argument("--json", action="store_true", help="print one JSON object on stdout")
-    observe_command.add_options(_scene_command(command("observe", "push a scene's chain by a measured force")))
-    check_command.add_parser(command("check", "the hard cases: figure, bar and verdict; status 3 if one fails"))
+    add_picture(accuracy)
+    observe = _scene_command(command("observe", "push a scene's chain by a measured force"))
+    observe_command.add_options(observe)
+    add_picture(observe)
+    check = command("check", "the hard cases: figure, bar and verdict; status 3 if one fails")
+    check_command.add_parser(check)
+    add_picture(check)
     curve = _scene_command(command("curve", "resonance curve: largest forces over frequency"))
     curve.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
     curve.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
     curve.add_argument("--points", type=int, required=True, metavar="n")
     curve.add_argument("--start", default="rest", metavar="rest|up|down")
-    map_command.add_arguments(command("map", "regime and largest forces over two knobs"))
+    add_picture(curve)
+    diagram = command("map", "regime and largest forces over two knobs")
+    map_command.add_arguments(diagram)
+    add_picture(diagram)
     return parser
 
 

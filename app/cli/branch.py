@@ -14,6 +14,7 @@ from granchain_core.orbits.branch.branch import MOST_POINTS
 
 from .commands import chosen_scene, in_background, say, say_if
 from .foundation import kept_along
+from .picture import check_picture, write_picture
 
 #: Points between two words on progress.
 _EVERY = 25
@@ -35,6 +36,7 @@ def branch(arguments: argparse.Namespace) -> None:
     """Follow a branch of periodic orbits and report it."""
     from granchain_core.store import check_writable, save_branch
 
+    check_picture(arguments.picture)
     if arguments.out:
         check_writable(arguments.out)
     if not 2 <= arguments.points <= MOST_POINTS:
@@ -54,6 +56,7 @@ def branch(arguments: argparse.Namespace) -> None:
         raise
     if arguments.out:
         save_branch(found, arguments.out)
+    write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", lambda theme: _drawn(found, theme))
     for arm in found.arms:
         say(f"{len(arm.points)} orbits {_way(arm)}: {arm.reason or 'stopped there, as many as were asked for'}")
     if arguments.json:
@@ -108,6 +111,12 @@ class _Progress:
             with self._lock:
                 say(f"{len(arm.points)} orbits {_way(arm)}, now at {last.knob:.6g}, "
                     f"{'stable' if last.stable else 'unstable'}, {len(arm.special)} special points")
+
+
+def _drawn(found: Branch, theme: Any) -> Any:
+    from app.pictures.branches import branches
+
+    return branches([found], theme)
 
 
 def _way(arm: Arm) -> str:

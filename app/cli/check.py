@@ -6,8 +6,10 @@ import argparse
 import json
 import math
 import time
+from typing import Any
 
 from app.cli.commands import say
+from app.cli.picture import check_picture, write_picture
 
 
 def add_parser(parser: argparse.ArgumentParser) -> None:
@@ -21,6 +23,7 @@ def check(arguments: argparse.Namespace) -> int:
     from granchain_core.hard.runner import in_order, run_cases
     from granchain_core.hard.table import CASES
 
+    check_picture(arguments.picture)
     began, found = time.perf_counter(), {}
     for name, rows in run_cases(arguments.quick):
         found[name] = rows
@@ -42,7 +45,21 @@ def check(arguments: argparse.Namespace) -> int:
                 note = f"  ({row.note})" if row.note else ""
                 print(f"  {mark} {row.figure:9.2e} ≤ {row.bar:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
     say(f"{sum(row.passed for row in every)} of {len(every)} rows passed in {time.perf_counter() - began:.1f} s")
+    write_picture(arguments.picture, "The hard cases", _drawn)
     missed = [row.case for row in every if not row.passed]
     if missed:
         say(f"{len(missed)} of {len(every)} rows are above their bars: {'; '.join(missed)}.")
     return 3 if missed else 0
+
+
+def _drawn(theme: Any) -> Any:
+    """Every case that has a picture, one below the other."""
+    from bokeh.layouts import column
+    from bokeh.models import Div
+
+    from app.pictures.check import check as drawn
+    from granchain_core.hard.table import CASES
+
+    shown = [(case.name, case.picture()) for case in CASES if case.picture is not None]
+    models = [model for name, picture in shown for model in (Div(text=f"<h3>{name}</h3>"), drawn(picture, theme))]
+    return column(*models, sizing_mode="stretch_width")

@@ -15,6 +15,7 @@ from granchain_core import BadInput, Scene, scene, scene_names
 from granchain_core.stop import Stop
 
 from .foundation import kept_spring
+from .picture import check_picture, write_picture
 
 T = TypeVar("T")
 
@@ -182,6 +183,7 @@ def curve(arguments: argparse.Namespace) -> None:
     from granchain_core.store import check_writable, save_curve
 
     chosen = chosen_scene(arguments)
+    check_picture(arguments.picture)
     if arguments.out:
         check_writable(arguments.out)
     if not 1 <= arguments.points <= MOST_POINTS:
@@ -204,6 +206,7 @@ def curve(arguments: argparse.Namespace) -> None:
                                                        stop=stop, on_point=count))
     if arguments.out:
         save_curve(swept, arguments.out)
+    write_picture(arguments.picture, f"Resonance curve of {chosen.name}", lambda theme: _drawn_curve(swept, theme))
     if arguments.json:
         show_json({
             "frequency": [p.frequency for p in swept.points],
@@ -224,6 +227,12 @@ def curve(arguments: argparse.Namespace) -> None:
     say(f"{len(swept.points)} points in {swept.wall_s:.2f} s")
 
 
+def _drawn_curve(swept: Any, theme: Any) -> Any:
+    from app.pictures.curve import curve as drawn
+
+    return drawn([swept], theme)
+
+
 def _null(value: float) -> float | None:
     """A number, or null where there is none; NaN and infinity are no JSON."""
     return value if math.isfinite(value) else None
@@ -235,13 +244,25 @@ def _naive(found: Any) -> list[dict[str, Any]]:
              "failure": one.failure} for one in found.lesson.drawn]
 
 
+def _drawn_accuracy(found: Any, asked: float, theme: Any) -> Any:
+    from app.pictures.accuracy import Asked
+    from app.pictures.accuracy import accuracy as drawn
+
+    best = found.cheapest(asked)
+    cheapest = None if best is None else (best.wall_s, best.error)
+    return drawn(found.rows, Asked(asked, found.agreement if math.isfinite(found.agreement) else None, cheapest), theme)
+
+
 def accuracy(arguments: argparse.Namespace) -> None:
     """Error against time for every method."""
     from granchain_core.accuracy import work_precision
 
+    check_picture(arguments.picture)
     chosen = chosen_scene(arguments)
     progress = _progress if sys.stderr.isatty() else None
     found = in_background(lambda stop: work_precision(chosen, stop, progress))
+    write_picture(arguments.picture, f"What accuracy costs for {chosen.name}",
+                  lambda theme: _drawn_accuracy(found, chosen.accuracy, theme))
     if arguments.json:
         rows = [{**asdict(row), "error": _null(row.error)} for row in found.rows]
         show_json({"reference": {"method": found.reference, "agreement": _null(found.agreement),

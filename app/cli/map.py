@@ -15,6 +15,7 @@ import numpy as np
 
 from app.cli.commands import chosen_scene, in_background, say, say_if
 from app.cli.foundation import kept_along
+from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput, Cancelled
 from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
 from granchain_core.diagram.blocks import Blocks, folder_of
@@ -79,6 +80,9 @@ def map_scene(arguments: argparse.Namespace) -> None:
     grid = Grid(chosen_scene(arguments), axis_from("--x", arguments.x), axis_from("--y", arguments.y))
     say_if(kept_along(grid.scene, grid.x.knob, grid.y.knob))
     check_writable(arguments.out)
+    check_picture(arguments.picture)
+    if arguments.picture:
+        _refuse_too_many(grid)
     if arguments.resume and Path(arguments.out).exists() and not folder_of(arguments.out).exists():
         found = load_diagram(arguments.out)
         if found.grid.digest != grid.digest:
@@ -91,7 +95,25 @@ def map_scene(arguments: argparse.Namespace) -> None:
         found, computed = in_background(lambda stop: _filled(blocks, client, stop))
         save_diagram(found, arguments.out)
         blocks.remove()
+    write_picture(arguments.picture, f"A map of {grid.scene.name}", lambda theme: _drawn(found, theme))
     _tell(found, computed, arguments)
+
+
+def _refuse_too_many(grid: Grid) -> None:
+    from app.pictures.diagram import MOST_CELLS as MOST_DRAWN
+
+    if grid.size > MOST_DRAWN:
+        raise BadInput(f"--picture draws up to {MOST_DRAWN} cells and this map has {grid.size}; take fewer points on "
+                       "an axis, or leave --picture out.")
+
+
+def _drawn(found: Diagram, theme: Any) -> Any:
+    """Forces and regimes one above the other."""
+    from bokeh.layouts import column
+
+    from app.pictures.diagram import diagram
+
+    return column(*(diagram(found, theme, shown) for shown in ("force", "regime")), sizing_mode="stretch_both")
 
 
 def _client(address: str | None) -> Any:

@@ -9,6 +9,7 @@ from dataclasses import asdict
 from typing import Any
 
 from app.cli.commands import chosen_scene, in_background, say
+from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput
 
 
@@ -37,6 +38,7 @@ def observe(arguments: argparse.Namespace) -> None:
         raise BadInput(f"--start {arguments.start!r} is not one of rest, input.")
     record = read_force(arguments.input, arguments.time_unit, arguments.force_unit)
     begin = first_state(arguments.input, chosen.N) if arguments.start == "input" else None
+    check_picture(arguments.picture)
     if arguments.out:
         check_writable(arguments.out)
     say(f"{record.understood}.")
@@ -52,6 +54,7 @@ def observe(arguments: argparse.Namespace) -> None:
             f"is good to {seen.integration_error:.1e}.")
     if arguments.out:
         save_observation(seen, arguments.out)
+    write_picture(arguments.picture, f"An observer of {chosen.name}", lambda theme: _drawn(seen, theme))
     if arguments.json:
         json.dump(described(seen), sys.stdout, allow_nan=False)
         print()
@@ -65,6 +68,12 @@ def observe(arguments: argparse.Namespace) -> None:
     print(f"relative error {seen.integration_error:.1e} of integration, "
           f"{seen.interpolation_error:.1e} between samples; {seen.cost.method}, {seen.cost.steps} steps, "
           f"{seen.cost.events} contact events, {1e3 * seen.cost.wall_s:.1f} ms")
+
+
+def _drawn(seen: Any, theme: Any) -> Any:
+    from app.pictures.observation import observation
+
+    return observation(seen, theme)
 
 
 def described(seen: Any) -> dict[str, Any]:

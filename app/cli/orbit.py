@@ -6,6 +6,7 @@ import argparse
 from typing import Any
 
 from app.cli.commands import chosen_scene, in_background, show_json
+from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput, Scene
 from granchain_core.integrate import State
 
@@ -16,9 +17,11 @@ def orbit(arguments: argparse.Namespace) -> None:
     """The periodic orbit of a scene and its multipliers."""
     from granchain_core.orbits import periodic_orbit
 
+    check_picture(arguments.picture)
     chosen = chosen_scene(arguments)
     start = _start(chosen, arguments.start, arguments.seed)
     found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop))
+    write_picture(arguments.picture, f"Multipliers of {chosen.name}", lambda theme: _drawn(found, theme))
     if arguments.json:
         data: dict[str, Any] = {
             "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
@@ -34,6 +37,12 @@ def orbit(arguments: argparse.Namespace) -> None:
     _show_multipliers("multipliers", found.multipliers)
     if found.observer_multipliers is not None:
         _show_multipliers("observer", found.observer_multipliers)
+
+
+def _drawn(found: Any, theme: Any) -> Any:
+    from app.pictures.multipliers import multipliers
+
+    return multipliers(found, theme)
 
 
 def _pairs(multipliers: Any) -> list[list[float]]:

@@ -1,6 +1,6 @@
 // The corner below the curve: what to look at, what the marks mean, which effects are on, the visitor's own data.
 
-import { branchesTab } from "../pages/branches/branchpicture.js";
+import { branchesTab } from "../pages/branches/branchessmall.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/cells.js";
 import { mapTab } from "../pages/map/map.js";

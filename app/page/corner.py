@@ -11,4 +11,4 @@ class Corner(Component):
 
     _esm = module("corner.js")
     _stylesheets = [text(f"{name}.css")  # noqa: RUF012
-                    for name in ("controls", "drawing", "multipliers", "corner", "map")]
+                    for name in ("controls", "drawing", "corner", "map")]

@@ -21,9 +21,9 @@ from ..parts.equation import Equation
 from ..parts.figure_style import BOTTOM, GAP, TOP, pane
 from ..parts.header import Header
 from ..parts.knobs import Knobs
-from ..parts.regimes import REGIMES
 from ..parts.status_line import StatusLine
 from ..parts.trains import Trains
+from ..pictures.regimes import REGIMES
 from ..pictures.theme import Theme
 from .corner import Corner
 from .table import PAGES, described_pages

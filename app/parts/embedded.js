@@ -33,10 +33,113 @@ export class Embedded {
     this.document = this.views = null;
   }
 
+  model(name) {
+    return this.document?.get_model_by_name(name);
+  }
+
   // Properties of the model of this name, as the data of a source.
   set(name, properties) {
-    this.document?.get_model_by_name(name)?.setv(properties);
+    this.model(name)?.setv(properties);
   }
+
+  // Rows behind those of a source.
+  stream(name, columns) {
+    this.model(name)?.stream(columns);
+  }
+
+  // Points behind those of some lines of a source of many, or further lines: each a number, x and y.
+  extend(name, lines) {
+    const source = this.model(name);
+    if (!source) return;
+    join(source.data, lines);
+    source.change.emit();
+  }
+
+  // What the figure's tap tool hits is given to `choose` as the name of its source and the row that `pick` takes from
+  // all that are hit, else the nearest; of several sources the first of `names` counts.
+  taps(names, choose, pick = (rows, data, at) => nearest(rows, data, at, this.views.roots[0].frame)) {
+    const hit = new Map();
+    const chosen = () => {
+      const name = names.find((one) => hit.has(one));
+      if (name) {
+        const { data, selected } = this.model(name);
+        choose(name, pick(selected.indices, data, hit.get(name)));
+      }
+      hit.clear();
+    };
+    const callback = (_, { source, geometries }) => {
+      if (!hit.size) queueMicrotask(chosen);
+      hit.set(source.name, geometries);
+    };
+    this.model("tap")?.setv({ callback });
+  }
+}
+
+// Of some rows the one whose x and y are nearest to a place on the screen.
+function nearest(rows, { x, y }, { sx, sy }, { x_scale, y_scale }) {
+  const far = (row) => Math.hypot(x_scale.compute(x[row]) - sx, y_scale.compute(y[row]) - sy);
+  return rows.reduce((best, row) => (far(row) < far(best) ? row : best));
+}
+
+// What stands under a key; where nothing does, what `make` gives from now on.
+function at(store, key, make) {
+  store[key] ??= make();
+  return store[key];
+}
+
+function join({ x, y }, lines) {
+  for (const [number, xs, ys] of lines) {
+    at(x, number, Array).push(...xs);
+    at(y, number, Array).push(...ys);
+  }
+}
+
+// The data of a figure that grows: kept, so that another figure can be filled with it, and added to those that are there.
+export class Grown {
+  constructor() {
+    this.clear();
+  }
+
+  clear() {
+    this.rows = {};
+    this.lines = {};
+    this.models = {};
+  }
+
+  add({ rows = {}, pieces = [], models = {} }, figures) {
+    Object.assign(this.models, models);
+    for (const [name, columns] of Object.entries(rows)) {
+      const kept = at(this.rows, name, Object);
+      for (const [column, values] of Object.entries(columns)) at(kept, column, Array).push(...values);
+    }
+    const lines = {};
+    for (const [name, ...piece] of pieces) {
+      join(
+        at(this.lines, name, () => ({ x: [], y: [] })),
+        [piece],
+      );
+      at(lines, name, Array).push(piece);
+    }
+    for (const figure of figures) {
+      fillModels(figure, models);
+      for (const [name, columns] of Object.entries(rows)) figure.stream(name, columns);
+      // What is streamed leaves the colours of earlier rows as they were: another scale is for all.
+      if (Object.keys(models).length) for (const name of Object.keys(rows)) figure.model(name)?.change.emit();
+      for (const [name, added] of Object.entries(lines)) figure.extend(name, added);
+    }
+  }
+
+  // Everything at once, into a figure that is new or shows something else.
+  fill(figure) {
+    fillModels(figure, this.models);
+    for (const [name, data] of Object.entries({ ...this.rows, ...this.lines }))
+      figure.set(name, { data: structuredClone(data) });
+  }
+}
+
+// Properties of models by their names.
+export function fillModels(figure, models) {
+  for (const [name, properties] of Object.entries(models ?? {})) figure.set(name, properties);
 }
 
 // What the page and the corner show of the observer.
@@ -60,7 +163,7 @@ export function showDistance(figure, item, known) {
 // Error against time as it is known now: points by method, then what is asked, cheapest and used.
 export function fillAccuracy(figure, { drawn, told }) {
   for (const [name, data] of Object.entries(drawn)) figure.set(name, { data });
-  for (const [name, properties] of Object.entries(told?.marks ?? {})) figure.set(name, properties);
+  fillModels(figure, told?.marks);
 }
 
 export function showAccuracy(figure, item, known) {

@@ -1,4 +1,4 @@
-// Small drawings in SVG: axes and marks.
+// Small drawings in SVG: axes and words.
 
 export const draw = (tag, attributes = {}, ...children) => {
   const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
@@ -7,35 +7,6 @@ export const draw = (tag, attributes = {}, ...children) => {
   return element;
 };
 
-// Every mark in a box of ±1; x and plus are lines, the others can be filled or hollow.
-const around = (n, turn, inner) =>
-  Array.from({ length: inner ? 2 * n : n }, (_, i) => {
-    const angle = 2 * Math.PI * (i / (inner ? 2 * n : n)) + turn;
-    const r = inner && i % 2 ? inner : 1.15;
-    return `${(r * Math.sin(angle)).toFixed(3)} ${(-r * Math.cos(angle)).toFixed(3)}`;
-  }).join("L");
-export const MARK = {
-  circle: "M-1 0A1 1 0 1 1 1 0A1 1 0 1 1-1 0Z",
-  square: "M-.9-.9H.9V.9H-.9Z",
-  diamond: `M${around(4, 0)}Z`,
-  triangle: `M${around(3, 0)}Z`,
-  down: `M${around(3, Math.PI)}Z`,
-  hexagon: `M${around(6, 0)}Z`,
-  pentagon: `M${around(5, 0)}Z`,
-  star: `M${around(5, 0, 0.5)}Z`,
-  x: "M-.9-.9L.9.9M-.9.9L.9-.9",
-  plus: "M-1.1 0H1.1M0-1.1V1.1",
-};
-export const mark = ({ mark: shape, colour, family }, x, y, size, extra = {}) =>
-  draw("path", {
-    d: MARK[shape],
-    transform: `translate(${x.toFixed(1)} ${y.toFixed(1)}) scale(${size})`,
-    stroke: colour,
-    "vector-effect": "non-scaling-stroke",
-    "stroke-width": 2.2,
-    fill: family === "granchain" ? colour : family === "scipy" ? "var(--card)" : "none",
-    ...extra,
-  });
 export const round3 = (value) => Number(value.toPrecision(3));
 
 // Round values between low and high, about `count` of them.
@@ -61,11 +32,3 @@ export const words = (svg, x, y, text, anchor = "middle", className = "", extra 
   svg.append(element);
   return element;
 };
-
-export function nearest(points, event, host) {
-  const box = host.getBoundingClientRect();
-  const x = event.clientX - box.left,
-    y = event.clientY - box.top;
-  const far = (point) => Math.hypot(point.x - x, point.y - y);
-  return points.filter((point) => far(point) < 26).sort((a, b) => far(a) - far(b))[0];
-}

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 
 import pytest
+from drawn import place, source, tooltips
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
@@ -14,6 +15,10 @@ Visit = Callable[..., Page]
 COMPILED = 150_000
 #: A short chain whose branch is followed in seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
+#: The kinds of special points that were found; the orbits of an arm.
+SPECIAL = ("['fold', 'period_doubling', 'neimark_sacker', 'grazing']"
+           ".filter((kind) => granchain.branches.grown.rows[kind]?.x.length)")
+ORBITS = "granchain.branches.grown.rows.orbits"
 
 
 def opened(page: Page) -> Locator:
@@ -29,7 +34,8 @@ def followed(page: Page) -> Locator:
     """The page with a branch that has a special point."""
     sheet = opened(page)
     sheet.get_by_role("button", name="follow from here").click()
-    expect(sheet.locator(".special").first).to_be_visible(timeout=COMPILED)
+    page.wait_for_function(f"{SPECIAL}.length > 0", timeout=COMPILED)
+    until(page, lambda: len(source(page, "branches", "orbits").get("x", [])) > 1)
     return sheet
 
 
@@ -38,24 +44,33 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached", timeout=20_000)
     sheet = followed(page)
     expect(sheet).to_contain_text("now at")
-    page.wait_for_function("new Set(granchain.branches.special.map((one) => one.kind)).size > 1"
-                           " && granchain.branches.arms.some((arm) => arm.orbits.some((orbit) => !orbit[2]))", timeout=60_000)
+    page.wait_for_function(f"{SPECIAL}.length > 1 && {ORBITS}.stable.includes(0)", timeout=60_000)
     sheet.get_by_role("button", name="stop").click()
     expect(sheet).to_contain_text("stopped; what was found stays", timeout=1500)
-    orbits = page.evaluate("granchain.branches.arms.map((arm) => arm.orbits.length)")
+    arms = page.evaluate(f"{ORBITS}.arm")
     page.wait_for_timeout(700)
-    assert page.evaluate("granchain.branches.arms.map((arm) => arm.orbits.length)") == orbits
-    assert len(orbits) == 2 and min(orbits) > 1
+    assert page.evaluate(f"{ORBITS}.arm") == arms
+    assert min(arms.count(arm) for arm in (0, 1)) > 1 and set(arms) == {0, 1}
     sheet.get_by_role("button", name="continue").click()
-    page.wait_for_function(f"granchain.branches.arms[0]?.orbits.length > {orbits[0] + 5}", timeout=20_000)
+    page.wait_for_function(f"{ORBITS}?.arm.filter((arm) => arm === 0).length > {arms.count(0) + 5}", timeout=20_000)
     sheet.get_by_role("button", name="stop").click()
-    expect(sheet.locator("path.stable").first).to_be_attached()
-    expect(sheet.locator("path.unstable").first).to_be_attached()
-    expect(sheet.locator("path.unstable").first).to_have_css("stroke-dasharray", re.compile(r"\d"))
-    assert len(set(sheet.locator(".special").evaluate_all("all => all.map((one) => one.dataset.kind)"))) >= 2
-    # the small version in the corner shows the same
+    # the figure holds what the page has been sent piece by piece, and so does the small one in the corner
+    for kind in ("stable", "unstable"):
+        assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.branches.grown.lines.{kind}.x.length") > 0
     page.keyboard.press("Escape")
-    expect(page.locator("#corner path.stable").first).to_be_attached()
+    until(page, lambda: source(page, "branches", "orbits", large=False).get("x") == source(page, "branches", "orbits")["x"])
+
+
+def test_a_figure_grows_without_being_made_anew(visit: Visit) -> None:
+    page = visit()
+    followed(page)
+    page.evaluate("window.kept = granchain.branches.figures[0].document")
+    before = len(source(page, "branches", "orbits")["x"])
+    until(page, lambda: len(source(page, "branches", "orbits")["x"]) > before + 5)
+    assert page.evaluate("kept === granchain.branches.figures[0].document")
+    page.evaluate("granchain.nextLook()")  # another look is another figure, with the same points
+    page.wait_for_function("granchain.branches.figures[0].document && kept !== granchain.branches.figures[0].document")
+    until(page, lambda: len(source(page, "branches", "orbits")["x"]) > before + 5)
 
 
 def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) -> None:
@@ -64,40 +79,44 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
     sheet = opened(page)
     sheet.get_by_label("period of the orbits").select_option("1")
     sheet.get_by_role("button", name="follow from here").click()
-    page.wait_for_function("[0, 1].every((stable) => granchain.branches?.arms[0]?.orbits.some((o) => o[2] === stable))", timeout=COMPILED)
-    page.wait_for_function("granchain.branches.special.some((one) => one.kind === 'period_doubling')"
-                           " && granchain.branches.arms[0].orbits.filter((orbit) => !orbit[2]).length > 5", timeout=60_000)
+    page.wait_for_function(f"{ORBITS} && {SPECIAL}.includes('period_doubling')"
+                           f" && {ORBITS}.stable.filter((one, i) => !one && !{ORBITS}.arm[i]).length > 5", timeout=COMPILED)
     sheet.get_by_role("button", name="stop").click()
     expect(sheet).to_contain_text("stopped; what was found stays")
 
-    def tip_comes() -> bool:
-        """The last of the branch is still drawn, every mark anew, so one hover may be lost."""
-        page.mouse.move(0, 0)
-        sheet.locator('.special[data-kind="period_doubling"]').first.hover(force=True)
-        return sheet.locator(".tip").is_visible()
+    def at(name: str, row: int) -> tuple[float, float]:
+        columns = source(page, "branches", name)
+        return place(page, "branches", columns["x"][row], columns["y"][row])
 
-    until(page, tip_comes)
-    expect(sheet.locator(".tip")).to_contain_text(re.compile(r"period doubling at 255\.(79|80)"))
-    expect(sheet.locator(".tip")).to_contain_text("±")
-    sheet.locator('.special[data-kind="period_doubling"]').first.click(force=True)
+    def told(name: str, row: int, words: str) -> bool:
+        """The last of the branch is still drawn, so one hover may be lost."""
+        page.mouse.move(0, 0)
+        page.mouse.move(*at(name, row), steps=3)
+        page.wait_for_timeout(100)
+        return words in tooltips(page)
+
+    until(page, lambda: told("period_doubling", 0, "period doubling at 255.79") and "±" in tooltips(page))
+    page.mouse.click(*at("period_doubling", 0))
+    expect(sheet.locator(".chosen")).to_contain_text(re.compile(r"period doubling at 255\.(79|80)"))
     expect(sheet.get_by_role("button", name="follow the doubled branch")).to_be_visible()
     # an unstable orbit runs live, a stable one is settled, each at its own frequency
-    sheet.get_by_label("grazings").uncheck()
     for stable, words, regime in ((0, "live on the main page", "live, drive period"), (1, "settled on the main page", "period 1")):
-        place = page.evaluate(LONELY, stable)
-        frequency = page.evaluate(f"granchain.branches.arms[0].orbits[{place}][0]")
-        sheet.locator(f'.orbit[data-arm="0"][data-place="{place}"]').click(force=True)
+        row = page.evaluate(LONELY, stable)
+        frequency = source(page, "branches", "orbits")["x"][row]
+        until(page, lambda row=row: told("orbits", row, "elastic output force"))
+        page.mouse.click(*at("orbits", row))
         expect(sheet.locator(".chosen")).to_contain_text(words)
         expect(page.locator("#foot")).to_contain_text(regime, timeout=15_000)
         shown = page.locator('[data-knob="f"] input[type="text"]').input_value()
         assert float(shown) == pytest.approx(frequency, rel=1e-5)  # six figures are written
 
 
-#: The orbit of the first arm that is farthest from all special points, so that a click means it and no other.
+#: The orbit that is farthest from all special points, so that a click means it and no other.
 LONELY = """(stable) => {
-  const { arms, special } = granchain.branches;
-  const far = (orbit) => Math.min(...special.map((one) => Math.abs(one.f - orbit[0])));
-  return arms[0].orbits.map((orbit, place) => [orbit[2] === stable ? far(orbit) : -1, place]).sort((a, b) => b[0] - a[0])[0][1];
+  const { orbits, ...rows } = granchain.branches.grown.rows;
+  const special = Object.values(rows).flatMap(({ x }) => x);
+  const far = (f) => Math.min(...special.map((one) => Math.abs(one - f)));
+  return orbits.x.map((f, row) => [orbits.stable[row] === stable ? far(f) : -1, row]).sort((a, b) => b[0] - a[0])[0][1];
 }"""
 
 
@@ -130,5 +149,6 @@ def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
     page = visit(SHORT, viewport={"width": size[0], "height": size[1]})
     sheet = followed(page)
     assert page.evaluate("document.documentElement.scrollWidth") == size[0]
+    assert source(page, "branches", "stable")["x"]
     box = sheet.locator(".work .picture").bounding_box()
     assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > 200

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from drawn import place, source, tooltips
 from playwright.sync_api import Locator, Page, expect
+from started import until
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
@@ -18,19 +20,16 @@ def opened(page: Page, large: bool = True) -> Locator:
     page.get_by_role("tab", name="map", exact=True).click()
     if large:
         page.get_by_title("Larger, over the curve").click()
-    picture = page.locator("#corner canvas[role=img]")
+    picture = page.locator("#corner .maphost")
     expect(picture).to_be_visible()
-    expect(page.locator("#corner .maplegend")).to_contain_text("largest output force", timeout=COMPILED)
+    until(page, lambda: len(source(page, "map", "cells").get("number", [])) > 0, seconds=COMPILED / 1000)
     return picture
 
 
-def colours(picture: Locator) -> int:
-    """How many different colours are in the picture."""
-    return int(picture.evaluate("""canvas => {
-        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height), found = new Set();
-        for (let i = 0; i < data.length; i += 4) found.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
-        return found.size;
-    }"""))
+def visible(page: Page, name: str) -> bool:
+    """Whether a model of the figure is to be seen."""
+    return bool(page.evaluate("""(name) => Bokeh.documents.find((one) => one.roots()[0].name === "map")
+      .get_model_by_name(name).visible""", name))
 
 
 def knob(page: Page, name: str) -> Locator:
@@ -47,36 +46,39 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     page = visit(SMALL)
     picture = opened(page)
     expect(page.locator('#corner .maphost[data-done="1"]')).to_be_visible(timeout=COMPILED)  # complete
-    assert colours(picture) > 20
+    cells = source(page, "map", "cells")
+    assert len(set(cells["number"])) == len(cells["number"]) == 60 * 40
+    assert visible(page, "force") and not visible(page, "regime")
     page.get_by_role("button", name="regime", exact=True).click()
-    expect(page.locator("#corner .maplegend")).to_contain_text("period 1")
-    hatches = page.locator("#corner .maplegend .swatch").evaluate_all("""all => all.map((canvas) => {
-        const { data } = canvas.getContext("2d").getImageData(0, 0, 16, 16);
-        const light = Array.from({ length: 256 }, (_, i) => data[4 * i] + data[4 * i + 1] + data[4 * i + 2]);
-        return light.map((one) => (one < 0.8 * Math.max(...light) ? 1 : 0)).join("");
-    })""")
-    assert len(set(hatches)) == len(hatches) > 3  # the hatch alone tells regimes apart
+    assert visible(page, "regimes") and not visible(page, "bar")
+    assert "period 1" in cells["regime"] and len(set(cells["regime"])) > 2
 
-    box = picture.bounding_box()
-    assert box is not None
-    x, y = box["x"] + 0.7 * box["width"], box["y"] + 0.4 * box["height"]
-    page.mouse.move(x, y)
-    tip = page.locator("#corner .maptip")
+    row = max(range(len(cells["x"])), key=lambda i: (1900 < cells["x"][i] < 2300) * (cells["spacing"][i] == 1) * cells["y"][i] * (cells["y"][i] < 5))
+    at = place(page, "map", cells["x"][row], cells["y"][row])
+
+    def told() -> bool:
+        page.mouse.move(0, 0)
+        page.mouse.move(*at, steps=3)
+        page.wait_for_timeout(100)
+        return cells["told"][row] in tooltips(page)
+
+    until(page, told)
     for words in ("Hz", "m: ", "N"):
-        expect(tip).to_contain_text(words)
-    said = float(tip.inner_text().split(" Hz")[0])
+        assert words in cells["told"][row]
     before = knob(page, "f").input_value(), knob(page, "A0").input_value()
-    page.mouse.click(x, y)
+    page.mouse.click(*at)
     expect(knob(page, "f")).not_to_have_value(before[0], timeout=5000)
     expect(knob(page, "A0")).not_to_have_value(before[1], timeout=5000)
-    assert abs(float(knob(page, "f").input_value()) - said) < 1.0  # four figures are told
-    assert 1500.0 < said < 2600.0
+    assert abs(float(knob(page, "f").input_value()) - cells["x"][row]) < 1.0
+    until(page, lambda: abs(source(page, "map", "now")["x"][0] - cells["x"][row]) < 1e-3)
 
+    tip = page.locator("#corner .told")
     picture.focus()
     picture.press("ArrowRight")
     first = tip.inner_text()
     picture.press("ArrowUp")
     assert tip.inner_text() != first
+    assert len(source(page, "map", "cursor")["left"]) == 1
     chosen = float(tip.inner_text().split(" Hz")[0])
     was = knob(page, "f").input_value()
     picture.press("Enter")
@@ -105,7 +107,7 @@ def test_attractors_are_listed_and_one_is_loaded(visit: Visit) -> None:
     # what is not looked at is not computed, and what there is stays
     page.get_by_role("tab", name="regimes").click()
     page.get_by_role("tab", name="map", exact=True).click()
-    expect(page.locator("#corner .maplegend")).to_contain_text("largest output force")
+    until(page, lambda: len(source(page, "map", "cells").get("number", [])) > 0)
     expect(rows).to_have_count(3)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from drawn import place, source, tooltips
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
@@ -38,6 +39,11 @@ def section(page: Page, source: str) -> dict[str, Any]:
     }}"""))
 
 
+def marks(page: Page, name: str, large: bool = True) -> int:
+    """How many marks a set of the plane has."""
+    return len(source(page, "multipliers", name, large).get("x", []))
+
+
 def axis_title(page: Page, axis: str) -> str:
     """The title of an axis of the section."""
     return str(page.evaluate(f"""Bokeh.documents.find((one) => one.roots()[0].name === "section")
@@ -51,7 +57,7 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
     assert page.evaluate("granchain.stability.state.sentence") is None
     page.get_by_role("tab", name="stability").click()
     expect(corner).to_contain_text("Stable: a disturbance shrinks to 0.36", timeout=COMPILED)
-    assert corner.locator(".multiplier").count() == 22
+    until(page, lambda: marks(page, "within", large=False) == 22)
     type_into(page, "f", "1130")
     expect(corner).to_contain_text("3 drive periods, 2.65 ms", timeout=20_000)
     page.get_by_role("tab", name="regimes").click()
@@ -65,18 +71,29 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
 def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
-    expect(sheet.locator(".plane .draw .multiplier.within")).to_have_count(22)
-    first = sheet.locator('[data-rank="0"]')
-    first.hover()
-    tip = sheet.locator(".tip:visible")
-    for words in ("μ = -0.2882", "|μ| = 0.36", "of the drive frequency", "dies out by e in 0.981 drive periods (2.89 ms)"):
-        expect(tip).to_contain_text(words)
+    until(page, lambda: marks(page, "within") == 22)
+    within = source(page, "multipliers", "within")
+
+    def told() -> bool:
+        page.mouse.move(0, 0)
+        page.mouse.move(*place(page, "multipliers", within["x"][0], within["y"][0]), steps=3)
+        page.wait_for_timeout(100)
+        return "-0.2882" in tooltips(page)
+
+    until(page, told)
+    for words in ("0.36", "of the drive frequency", "dies out by e in 0.981 drive periods (2.89 ms)"):
+        assert words in tooltips(page)
+    expect(sheet.locator(".told")).to_contain_text("μ = -0.2882")
     expect(sheet.locator("path.swing")).to_have_count(11)
     expect(sheet).to_contain_text("the slowest to die out")
     before = sheet.locator("path.swing").first.get_attribute("d")
-    sheet.locator('[data-rank="3"]').focus()
-    page.keyboard.press("Enter")
+    page.mouse.click(*place(page, "multipliers", within["x"][3], within["y"][3]))
     expect(sheet).to_contain_text("the chosen disturbance")
+    chosen = source(page, "multipliers", "chosen")
+    assert (chosen["x"], chosen["y"]) == ([within["x"][3]], [within["y"][3]])
+    sheet.locator(".plane .picture").focus()
+    page.keyboard.press("ArrowLeft")
+    until(page, lambda: source(page, "multipliers", "chosen")["x"] == [within["x"][2]])
     assert sheet.locator("path.swing").first.get_attribute("d") != before
     moment = sheet.locator("line.moment")
     there = moment.get_attribute("transform")
@@ -86,20 +103,21 @@ def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Vis
 def test_the_observer_is_a_second_set_and_off_at_first(visit: Visit) -> None:
     page = visit("?v=1&scene=fig11-free")
     sheet = opened(page)
-    expect(sheet.locator(".plane .draw .observer")).to_have_count(0)
+    until(page, lambda: marks(page, "within") == 22)
+    assert marks(page, "observer within") == 0
     sheet.get_by_label("observer", exact=True).check()
-    expect(sheet.locator(".plane .draw .observer")).to_have_count(22, timeout=20_000)
-    expect(sheet.locator(".plane .draw .observer.outside")).to_have_count(1)  # Fig. 11: exactly one, real
+    until(page, lambda: marks(page, "observer outside") == 1)  # Fig. 11: exactly one, real
+    assert marks(page, "observer within") == 21
     expect(sheet.locator(".say")).to_contain_text("Its observer is unstable, |μ| 4.42")
 
 
 def test_multipliers_leave_a_trail_and_the_evidence_follows(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
-    expect(sheet.locator(".past")).to_have_count(0)
+    until(page, lambda: marks(page, "within") == 22)
+    assert marks(page, "past") == 0
     type_into(page, "f", "344")
-    expect(sheet.locator(".past").first).to_be_attached(timeout=20_000)
-    expect(sheet.locator(".way").first).to_be_attached()
+    until(page, lambda: marks(page, "past") > 0 and marks(page, "ways") > 0)
     table = sheet.locator(".evidence")
     for words in ("distance to the orbit", "Newton's residual", "Liouville", "disturbance carried", "settled by"):
         expect(table).to_contain_text(words)
@@ -124,14 +142,15 @@ def test_the_section_follows_bead_and_phase(visit: Visit) -> None:
 def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: Visit) -> None:
     page = visit("?v=1&scene=rig&f=140")
     sheet = opened(page, "No multipliers: the motion is chaotic")
-    expect(sheet.locator(".multiplier:visible")).to_have_count(2)  # those of the key
+    until(page, lambda: source(page, "multipliers", "reach") != {})
+    assert marks(page, "within") == marks(page, "outside") == 0
     expect(sheet).to_contain_text("1200 drive periods, one point each", timeout=20_000)
     until(page, lambda: len(section(page, "way").get("u", ())) + len(section(page, "dots").get("u", ())) > 1000)
     expect(sheet.locator(".evidence")).to_contain_text("Lyapunov exponent")
     sheet.get_by_role("button", name="search").click()
     expect(sheet.locator(".mine")).to_contain_text("the chain does not follow this orbit", timeout=COMPILED)
     expect(sheet.locator(".say")).to_contain_text("Unstable: a disturbance grows 1.57-fold")
-    expect(sheet.locator(".plane .draw .multiplier.outside")).to_have_count(3)
+    until(page, lambda: marks(page, "outside") == 3)
     until(page, lambda: len(section(page, "unstable orbit")["u"]) == 1)
     sheet.get_by_role("button", name="back to what the chain does").click()
     expect(sheet.locator(".say")).to_contain_text("No multipliers", timeout=20_000)
@@ -143,7 +162,7 @@ def test_a_live_run_has_none(visit: Visit) -> None:
     sheet = opened(page)
     page.get_by_role("button", name="The run goes on").click()
     expect(sheet.locator(".say")).to_contain_text("A live run is on its way")
-    expect(sheet.locator(".plane .draw .multiplier")).to_have_count(0)
+    assert marks(page, "within") == marks(page, "outside") == 0
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1920, 1080), (390, 844)])

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from app.pages.map.page import COLUMNS, ROWS, page_grid
-from app.pages.map.view import CATEGORIES, category, cells_message, described, head_message
+from app.pages.map.view import cells_message, described, head_message
+from app.pictures.theme import THEMES
 from granchain_core import scene
 from granchain_core.diagram import attractors
-from granchain_core.diagram.cells import REGIMES, empty_cells
+from granchain_core.diagram.cells import empty_cells
 
 
 def test_the_grid_of_a_page_covers_its_sliders_and_does_not_move_with_f_and_A0() -> None:
@@ -20,30 +21,17 @@ def test_the_grid_of_a_page_covers_its_sliders_and_does_not_move_with_f_and_A0()
     assert page_grid(scene("rig").evolve(D=30.0)).digest != grid.digest
 
 
-def test_every_regime_and_period_has_its_category() -> None:
-    cell = empty_cells(page_grid(scene("sec2")))[0]
-    told = {}
-    for name, period in (("periodic", 1), ("periodic", 4), ("periodic", 5), ("periodic", 16), ("chaotic", 0),
-                         ("quasi-periodic", 0), ("unsettled", 0), ("failed", 0)):
-        cell["regime"], cell["period"] = REGIMES.index(name), period
-        told[name, period] = CATEGORIES[category(cell)]
-    assert told["periodic", 1] == "period 1" and told["periodic", 4] == "period 4"
-    assert told["periodic", 5] == told["periodic", 16] == "period 5+"
-    assert all(told[name, 0] == name for name in ("chaotic", "quasi-periodic", "unsettled", "failed"))
-
-
-def test_cells_are_sent_with_the_step_of_their_net() -> None:
+def test_cells_are_sent_as_rows_with_what_is_done_and_the_scale_of_all() -> None:
     grid = page_grid(scene("sec2"))
-    cells = empty_cells(grid)[[0, 1, COLUMNS]]
-    cells["regime"], cells["period"], cells["max_output_force"] = 0, 2, 0.5
-    message = cells_message(grid, cells, 0.25)
-    rows = message["values"].reshape(-1, message["columns"])
-    assert rows[:, 0].tolist() == [0.0, 1.0, float(COLUMNS)] and message["done"] == 0.25
-    assert rows[0, 1] > 16 and rows[1, 1] == rows[2, 1] == 1.0
-    assert (rows[:, 2] == CATEGORIES.index("period 2")).all() and (rows[:, 4] == 0.5).all()
-    assert np.isnan(rows[:, 5]).all()  # no error is claimed, and none is told
-    head = head_message(grid)
-    assert not head["x"]["log"] and head["y"]["log"] and len(head["categories"]) == len(CATEGORIES)
+    every = empty_cells(grid)
+    every["regime"][[0, 1, COLUMNS]], every["period"][:], every["max_output_force"][[0, 1, COLUMNS]] = 0, 2, (0.5, 1.0, 2.0)
+    message = cells_message(grid, every[[1, 0]], every)
+    rows = message["rows"]["cells"]
+    assert rows["number"] == [0, 1] and rows["spacing"][0] > 16 and rows["spacing"][1] == 1
+    assert rows["regime"] == ["period 2", "period 2"] and message["done"] == 3 / (ROWS * COLUMNS)
+    assert message["models"]["force colours"] == {"low": 0.5, "high": 2.0}
+    head = head_message(grid, THEMES["light"])
+    assert (len(head["x"]), len(head["y"])) == (COLUMNS, ROWS) and head["figure"]["doc"]
 
 
 def test_an_attractor_is_told_with_share_kind_and_evidence() -> None:

@@ -16,9 +16,8 @@ from app.pages.stability import page as module
 from app.pages.stability import work
 from app.pages.stability.page import StabilityPage
 from app.pages.stability.view import (
-    described_multipliers,
     evidence,
-    multiplier_words,
+    multiplier_sentence,
     no_multipliers,
     section_message,
     section_points,
@@ -71,8 +70,6 @@ def test_an_unstable_orbit_is_told_by_the_way_it_is_left(leading: tuple[complex,
 def test_the_observer_is_told_where_it_was_asked_for() -> None:
     orbit = replace(analysis().orbit, observer_multipliers=np.array([-4.2, 0.1], dtype=complex))
     assert verdict(orbit).endswith("Its observer is unstable, |μ| 4.20.")
-    assert [one["rank"] for one in described_multipliers(orbit, observer=True)] == [0, 1]
-    assert described_multipliers(analysis().orbit, observer=True) == []
 
 
 @pytest.mark.parametrize(("value", "words"), [(0.361, "0.36"), (0.0995, "0.10"), (0.0123, "0.012"), (3.2e-5, "3e-5"), (0.9939, "0.9939"), (1.00002, "1.000020"), (1.57, "1.57")])
@@ -80,15 +77,10 @@ def test_moduli_are_told_from_one_and_from_zero(value: float, words: str) -> Non
     assert modulus_words(value) == words
 
 
-def test_a_multiplier_tells_its_frequency_and_its_decay() -> None:
-    orbit = replace(analysis(f=1130.0).orbit)  # period 3: frequencies are folded into a third of the drive's
-    lines = multiplier_words(0.5j, orbit)
-    assert lines[0] == "μ = +0.0000 + 0.5000 i" and lines[1] == "|μ| = 0.50"
-    assert lines[2] == "angle/2π = 0.250 per orbit: 0.0833 of the drive frequency, 94.2 Hz"
-    periods = 3 / np.log(2.0)
-    assert lines[3] == f"dies out by e in {periods:.3g} drive periods ({1e3 * periods / 1130:.3g} ms)"
-    assert multiplier_words(2.0, orbit)[3].startswith("grows by e")
-    assert multiplier_words(0.0, orbit)[1] == "|μ| = 0e0"
+def test_a_chosen_multiplier_is_told_and_one_that_is_not_there_is_the_last() -> None:
+    orbit = with_leading(-1.5)
+    assert multiplier_sentence(orbit, 0) == "ringed: μ = -1.5000, |μ| 1.50"
+    assert multiplier_sentence(orbit, 99) == multiplier_sentence(orbit, 21)
 
 
 def test_motions_that_do_not_repeat_have_no_multipliers() -> None:
@@ -158,7 +150,7 @@ class Page:
         view = SimpleNamespace(
             state={}, display=lambda **changes: view.state.update(changes),
             tell=lambda **message: self.told.append(message),
-            section=lambda shown: self.told.append(section_message(shown)))
+            need_figures=lambda: None, section=lambda shown: self.told.append(section_message(shown)))
         self.view = view
 
     def later(self, action: Any, *arguments: Any) -> None:
@@ -184,6 +176,10 @@ class Page:
             time.sleep(0.005)
         assert self.failures == []
 
+    def marks(self, name: str) -> int:
+        """How many multipliers are in a set of the plane."""
+        return len(self.view.state["plane"][name]["data"]["x"])
+
     @property
     def state(self) -> dict[str, Any]:
         """What the view shows."""
@@ -208,15 +204,15 @@ def test_nothing_is_computed_while_nobody_looks(page: Page, monkeypatch: pytest.
     view = StabilityPage(page, page.view)  # type: ignore[arg-type]
     view.arrived(picture())
     page.work(lambda: not page.queue)
-    assert view.activity[1] == "off" and "marks" not in page.state
+    assert view.activity[1] == "off" and "plane" not in page.state
 
 
 def test_a_picture_that_stays_is_analysed(page: Page) -> None:
     view = opened(page)
     view.arrived(picture())
     page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.told))
-    assert page.state["sentence"].startswith("Stable") and len(page.state["marks"]) == 22
-    assert not page.state["stale"] and not page.state["searched"] and page.state["observer_marks"] == []
+    assert page.state["sentence"].startswith("Stable") and page.marks("within") == 22
+    assert not page.state["stale"] and not page.state["searched"] and page.marks("observer within") == 0
     mode = next(m for m in page.told if m["type"] == "mode")
     assert mode["values"].dtype == np.float32 and len(mode["values"]) == 2 * 49 * 11
     assert view.activity[1] == "ready"
@@ -245,7 +241,7 @@ def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
     view.arrived(picture())
     page.work(lambda: page.state.get("status") == "done")
     view.actions["stability-observer"]({"value": True})
-    page.work(lambda: len(page.state["observer_marks"]) == 22)
+    page.work(lambda: page.marks("observer within") + page.marks("observer outside") == 22)
     view.actions["stability-mode"]({"value": 2})
     page.work(lambda: page.state.get("rank") == 2)
     view.close()
@@ -270,7 +266,7 @@ def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> 
     view = opened(page)
     view.arrived(picture(tension="cut"))
     page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.told))
-    assert "multipliers are not computed" in page.state["sentence"] and page.state["marks"] == []
+    assert "multipliers are not computed" in page.state["sentence"] and page.marks("within") == 0
     view.close()
 
 
@@ -284,7 +280,7 @@ def test_the_followed_orbit_is_not_called_another_one() -> None:
 def test_a_live_run_has_no_multipliers() -> None:
     page = Page(mode="live")
     opened(page)
-    assert "live run is on its way" in page.state["sentence"] and page.state["marks"] == []
+    assert "live run is on its way" in page.state["sentence"] and page.marks("within") == 0
 
 
 @pytest.mark.parametrize(("action", "message"), [

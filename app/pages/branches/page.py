@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from panel.io import unlocked
 
 from granchain_core import Scene
-from granchain_core.orbits import Arm, Branch, BranchPoint, Continuation, begin_branch, switch_to_doubled
+from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
 from ...page.borders import listed, whole
@@ -18,9 +18,10 @@ from ...page.hooks import Page
 from ...page.host import Host
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task
+from ...pictures.branches import Growth
 from ...serve.delays import BRANCH_EVERY
 from ...serve.queues import LONG, Stop
-from .view import Branches, described_orbit, described_special, drawn_orbits
+from .view import Branches
 
 #: Drive periods of an orbit that can be asked for here.
 _LONGEST_PERIOD = 8
@@ -34,7 +35,6 @@ class _Drawn:
     arm: Arm
     points: int = 0
     special: int = 0
-    orbits: list[BranchPoint] = field(default_factory=list)
 
 
 class BranchesPage(Page):
@@ -47,6 +47,7 @@ class BranchesPage(Page):
         self._followed: list[Continuation] = []
         self._drawn: list[_Drawn] = []
         self._special: list[tuple[Branch, Any]] = []
+        self._growth = Growth()
         self._sent = 0.0
         self.status = "none"
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
@@ -102,8 +103,9 @@ class BranchesPage(Page):
 
     def _load_orbit(self, message: dict[str, Any]) -> None:
         """An orbit goes to the main page: a stable one settled, an unstable one live, so that one sees it leave."""
-        drawn = listed("branch", self._drawn, message.get("arm"))
-        point = listed("orbit", drawn.orbits, message.get("place"))
+        arm = message.get("arm")
+        drawn = listed("branch", self._drawn, arm)
+        point = listed("orbit", self._growth.orbits.get(arm, []), message.get("place"))
         self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
                         "settled" if point.stable else "live")
 
@@ -111,7 +113,7 @@ class BranchesPage(Page):
 
     def _clear(self) -> None:
         self._task.cancel()
-        self._followed, self._drawn, self._special = [], [], []
+        self._followed, self._drawn, self._special, self._growth = [], [], [], Growth()
         self._view.tell(type="clear")
 
     def _submit(self, begin: Callable[[Stop], list[Branch]], scene: Scene) -> None:
@@ -152,14 +154,11 @@ class BranchesPage(Page):
                 special = drawn.arm.special[drawn.special :]
                 if not points:
                     continue
-                marks = [described_special(s, len(self._special) + i) for i, s in enumerate(special)]
-                orbits = drawn_orbits(points, special)
                 self._special.extend((drawn.branch, s) for s in special)
-                drawn.orbits.extend(orbits)
                 drawn.points += len(points)
                 drawn.special += len(special)
-                self._view.tell(type="orbits", arm=number, period=drawn.branch.period,
-                                orbits=[described_orbit(point) for point in orbits], special=marks)
+                self._view.need_figures()
+                self._view.tell(type="orbits", **self._growth.add(number, drawn.branch, points, special))
             self._say(self.status if self.status in ("cancelled", "done") else "following")
 
     def _say(self, status: str, sentence: str = "") -> None:

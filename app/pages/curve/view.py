@@ -17,7 +17,7 @@ from granchain_core.steady.resonance import Place, place_of
 from ...page.format import short_error
 from ...page.frames import prefixed, round_up
 from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
-from ...parts.regimes import REGIMES, regime_key
+from ...pictures.regimes import REGIMES, regime_key
 
 _DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 _MARK = "#8a8f98"

@@ -1,8 +1,8 @@
 // The map: regime or largest force over f and A0, coarse first, and all attractors of the present setting.
 
 import { part } from "../../parts/dom.js";
-import { MAP, mapCell, mapTold } from "./cells.js";
-import { mapLegend, mapPicture, mapScale, mapSwatch } from "./mapdrawing.js";
+import { Embedded, fillModels } from "../../parts/embedded.js";
+import { cellAt, finest, MAP, valuesOf } from "./cells.js";
 
 const MAP_STATUS = {
   none: "",
@@ -14,7 +14,18 @@ const MAP_STATUS = {
   failed: "",
 };
 
+const swatch = (colour) => {
+  const square = part("i", { className: "swatch" });
+  square.style.background = colour;
+  return square;
+};
+
+// Sends the look of the page, whose colours the figure has; set while the tab is open.
+let look = () => {};
+window.granchain.on("look", () => look());
+
 export function mapTab(model) {
+  look = () => model.send_msg({ do: "map-look", value: window.granchain.look() });
   const button = (text, action, properties = {}) => {
     const element = part("button", { type: "button", textContent: text, ...properties });
     element.addEventListener("click", action);
@@ -39,74 +50,50 @@ export function mapTab(model) {
   meter.setAttribute("aria-label", "progress of the map");
   const stop = button("stop", () => send("map-stop")),
     again = button("go on", () => send("map-compute"));
-  const canvas = part("canvas", { tabIndex: 0 }),
-    tip = part("div", { className: "maptip", hidden: true });
-  canvas.setAttribute("role", "img");
-  canvas.setAttribute(
-    "aria-label",
-    "regime and largest force over drive frequency and amplitude; arrow keys move, Enter chooses",
-  );
-  const host = part("div", { className: "maphost" }, canvas, tip),
-    legend = part("div", { className: "maplegend" });
+  const host = part("div", { className: "maphost", tabIndex: 0 }),
+    said = part("p", { className: "soft told" });
+  const WORDS = "regime and largest force over drive frequency and amplitude; arrow keys move, Enter chooses";
   const find = button("all attractors at this setting", () => send("map-attractors")),
     found = part("div");
   let cursor = null;
 
-  const show = (cell, i, j) => {
-    tip.hidden = !cell;
-    if (!cell) return;
-    tip.textContent = mapTold(cell);
-    const scale = mapScale(host),
-      x = scale.x0 + (j + 0.5) * scale.width,
-      right = x > host.clientWidth / 2;
-    tip.style.left = right ? "" : `${x + 14}px`;
-    tip.style.right = right ? `${host.clientWidth - x + 14}px` : "";
-    tip.style.top = `${Math.max(0, Math.min(host.clientHeight - 60, scale.y0 - (i + 1) * scale.height - 24))}px`;
+  const pick = (row) => {
+    if (row < 0) return;
+    said.textContent = MAP.cells.rows.cells.told[row];
+    send("map-choose", valuesOf(row));
   };
-  const place = (event) => {
-    const box = canvas.getBoundingClientRect(),
-      scale = mapScale(host);
-    return [
-      Math.floor((scale.y0 - (event.clientY - box.top)) / scale.height),
-      Math.floor((event.clientX - box.left - scale.x0) / scale.width),
-    ];
+  const figure = new Embedded(host, (one) => {
+    MAP.cells.fill(one);
+    one.taps(["cells"], (_, row) => pick(row), finest);
+    dress();
+  });
+  MAP.figure = figure;
+  // Which colours, where the page is now, and the cell of the arrow keys.
+  const dress = () => {
+    fillModels(figure, MAP.head?.shown[MAP.shown]);
+    figure.set("now", { data: MAP.now });
+    const row = cursor ? cellAt(cursor.i, cursor.j) : -1;
+    const edge = (name) => (row < 0 ? [] : [MAP.cells.rows.cells[name][row]]);
+    const data = { left: edge("left"), right: edge("right"), bottom: edge("bottom"), top: edge("top") };
+    figure.set("cursor", { data });
+    if (row >= 0) said.textContent = MAP.cells.rows.cells.told[row];
   };
-  const pick = (i, j) => {
-    const cell = mapCell(i, j);
-    if (cell) send("map-choose", { x: MAP.head.x.values[cell.j], y: MAP.head.y.values[cell.i] });
-  };
-  // What was told is what a click chooses: browsers round the place of a click.
-  let told = null;
-  canvas.addEventListener("pointermove", (event) => {
-    if (MAP.head) {
-      told = place(event);
-      show(mapCell(...told), ...told);
-    }
-  });
-  canvas.addEventListener("pointerleave", () => {
-    tip.hidden = true;
-  });
-  canvas.addEventListener("click", (event) => {
-    if (MAP.head) pick(...(told ?? place(event)));
-  });
-  canvas.addEventListener("keydown", (event) => {
+  host.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] }[event.key];
     if (!MAP.head || !(step || event.key === "Enter")) return;
     event.preventDefault();
     const { x, y } = MAP.head;
-    cursor ??= { i: Math.floor(y.values.length / 2), j: Math.floor(x.values.length / 2) };
-    if (!step) return pick(cursor.i, cursor.j);
+    cursor ??= { i: Math.floor(y.length / 2), j: Math.floor(x.length / 2) };
+    if (!step) return pick(cellAt(cursor.i, cursor.j));
     cursor = {
-      i: Math.max(0, Math.min(y.values.length - 1, cursor.i + step[0])),
-      j: Math.max(0, Math.min(x.values.length - 1, cursor.j + step[1])),
+      i: Math.max(0, Math.min(y.length - 1, cursor.i + step[0])),
+      j: Math.max(0, Math.min(x.length - 1, cursor.j + step[1])),
     };
-    redraw();
-    show(mapCell(cursor.i, cursor.j), cursor.i, cursor.j);
+    dress();
   });
-  canvas.addEventListener("blur", () => {
+  host.addEventListener("blur", () => {
     cursor = null;
-    tip.hidden = true;
-    redraw();
+    dress();
   });
 
   const listed = () => {
@@ -125,7 +112,7 @@ export function mapTab(model) {
       const row = part(
         "tr",
         {},
-        part("td", {}, mapSwatch(MAP.head.categories[one.category], one.category)),
+        part("td", {}, swatch(one.colour)),
         part("td", {}, one.words, part("small", { textContent: one.force })),
         part("td", {
           className: "number",
@@ -158,19 +145,19 @@ export function mapTab(model) {
     host.classList.toggle("stale", MAP.stale);
     host.dataset.done = MAP.stale ? 0 : MAP.done;
     if (what === undefined || what === "map-attractors") listed();
-    if (!MAP.head || !MAP.cells.size || !host.isConnected || host.clientHeight < 40) return;
-    mapLegend(legend, mapPicture(host, canvas, cursor));
+    if (what !== "map-cells") dress();
+    if (MAP.head && host.isConnected) figure.load(MAP.head.figure, WORDS);
   };
   MAP.redraw = (what) => {
     if (host.isConnected) redraw(what);
   };
-  new ResizeObserver(() => MAP.redraw()).observe(host);
+  look();
   requestAnimationFrame(() => redraw());
   const segments = part("span", { className: "segments" }, ...choices);
   return [
     part("div", { className: "row top" }, segments, meter, stop, again, status),
     part("div", { className: "mapbox" }, host),
-    legend,
+    said,
     part("div", { className: "row" }, find),
     found,
   ];

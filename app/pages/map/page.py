@@ -21,6 +21,8 @@ from ...page.host import Host
 from ...page.session import slider_range
 from ...page.task import Job, Task
 from ...parts.component import Component
+from ...pictures.diagram import now_row
+from ...pictures.theme import THEMES
 from ...serve.delays import CELLS_EVERY, MAP_QUIET
 from ...serve.queues import LONG, Stop
 from .view import cells_message, described, head_message
@@ -53,12 +55,15 @@ class MapTab(Page):
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
         self._shown: list[dict[str, Any]] = []
         self._due = 0
+        self._theme = THEMES["light"]
+        self._scale: dict[str, Any] = {}
         self._found: list[Attractor] = []
         self._found_at = ""
         self.status = "none"
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "map-visible": self._look, "map-stop": lambda _: self._cancel(), "map-compute": lambda _: self._begin(),
             "map-choose": self._choose, "map-attractors": lambda _: self._find(), "map-load": self._load,
+            "map-look": self._dress,
         }
 
     def close(self) -> None:
@@ -96,6 +101,14 @@ class MapTab(Page):
             self._begin()
         self._tell_now()
         self._show_attractors("" if self._found else "none")
+
+    def _dress(self, message: dict[str, Any]) -> None:
+        """The look of the page, which the figure follows."""
+        theme = THEMES.get(str(message.get("value")), self._theme)
+        if theme != self._theme:
+            self._theme = theme
+            if self._visible and self._grid is not None:
+                self._send_all()
 
     def _begin_if_last(self, due: int) -> None:
         if due == self._due and self._visible:
@@ -143,7 +156,8 @@ class MapTab(Page):
 
     def _tell_now(self) -> None:
         scene = self._host.session.scene
-        self._tell(type="map-now", x=scene.f, y=scene.A0)
+        if self._grid is not None:
+            self._tell(type="map-now", now=now_row(self._grid, scene.f, scene.A0))
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status
@@ -151,15 +165,21 @@ class MapTab(Page):
 
     def _send_all(self) -> None:
         assert self._grid is not None
-        self._tell(**head_message(self._grid))
+        self._scale = {}
+        self._tell(**head_message(self._grid, self._theme))
+        self._tell_now()
         self._show(self._cells[self._cells["regime"] >= 0])
 
     def _show(self, rows: np.ndarray) -> None:
         assert self._grid is not None
         self._cells[rows["number"]] = rows
-        done = float((self._cells["regime"] >= 0).mean())
+        message = cells_message(self._grid, rows, self._cells)
+        if message["models"] == self._scale:
+            message["models"] = {}
+        else:
+            self._scale = message["models"]
         with unlocked():
-            self._tell(**cells_message(self._grid, rows, done))
+            self._tell(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
         """A place of the diagram was clicked: f and A0 go there."""

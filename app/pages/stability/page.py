@@ -19,13 +19,15 @@ from ...page.borders import whole
 from ...page.hooks import Page
 from ...page.host import Host
 from ...page.task import Job, Task
+from ...pictures.multipliers import plane_state
 from ...serve.delays import ANALYSIS_QUIET
 from ...serve.queues import ANALYSES
+from .trail import Trail
 from .view import (
     Stability,
-    described_multipliers,
     evidence,
     mode_message,
+    multiplier_sentence,
     no_multipliers,
     section_points,
     verdict,
@@ -53,6 +55,7 @@ class StabilityPage(Page):
         self._target: Target | None = None
         self._analysis: Analysis | None = None
         self._section: Section | None = None
+        self._trail = Trail()
         self.status = "none"
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "stability-visible": self._visible, "stability-observer": self._choose_observer,
@@ -179,11 +182,15 @@ class StabilityPage(Page):
     def _show(self, analysis: Analysis) -> None:
         self._analysis, self.status = analysis, "done"
         orbit = analysis.orbit
+        if analysis.target.followed:
+            self._trail.follow(orbit.multipliers, orbit.period, orbit.scene.name)
+        before = self._trail.before(orbit.period) if analysis.target.followed else []
+        self._view.need_figures()
         self._view.display(
             status="done", failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
-            searched=not analysis.target.followed, marks=described_multipliers(orbit), rank=self._rank,
-            observer_marks=described_multipliers(orbit, observer=True), period=orbit.period,
-            scene=orbit.scene.name)
+            searched=not analysis.target.followed, rank=self._rank, period=orbit.period,
+            count=len(orbit.multipliers), told=multiplier_sentence(orbit, self._rank),
+            plane=plane_state(orbit, self._observer, self._rank, before))
         self._view.tell(**mode_message(analysis.mode, orbit))
         self._show_section()
 
@@ -204,8 +211,8 @@ class StabilityPage(Page):
     def _clear(self, sentence: str) -> None:
         """There are no multipliers to show; why is told."""
         self._analysis, self.status = None, "none"
-        self._view.display(status="none", failure="", stale=False, sentence=sentence, marks=[], observer_marks=[],
-                           searched=False, evidence=[], scene=self._host.session.scene.name, observer=self._observer)
+        self._view.display(status="none", failure="", stale=False, sentence=sentence, plane=plane_state(None), count=0,
+                           told="", searched=False, evidence=[], observer=self._observer)
         self._view.tell(type="no-mode")
         if self._host.session.mode == "live":
             self._view.tell(type="no-section")
@@ -215,7 +222,8 @@ class StabilityPage(Page):
         self.status = status
         self._view.display(status=status, failure=sentence)
         if status == "failed" and self._analysis is None and self._target is not None:
-            self._view.display(sentence=sentence, failure="", marks=[], observer_marks=[], stale=False)
+            self._view.display(sentence=sentence, failure="", plane=plane_state(None), count=0, told="",
+                               stale=False)
             self._view.tell(type="no-mode")
 
     # What the visitor does

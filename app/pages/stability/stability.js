@@ -1,9 +1,8 @@
 // The Stability page, over the pictures: does a disturbance die out, which way does it leave, and how one knows.
 
 import { part } from "../../parts/dom.js";
-import { draw, MARK } from "../../parts/plot.js";
+import { Embedded, fillModels } from "../../parts/embedded.js";
 import { ModeView } from "./mode.js";
-import { circlePicture, Trail } from "./multipliers.js";
 import { SectionView } from "./sectionview.js";
 
 const STATUS = {
@@ -11,30 +10,6 @@ const STATUS = {
   computing: "computing …",
   searching: "searching …",
 };
-const KEY = [
-  ["circle", "within", "dies out"],
-  ["diamond", "outside", "grows"],
-  ["square", "within observer", "observer"],
-];
-
-function keyOf(observer) {
-  const key = part("div", { className: "key" });
-  for (const [shape, className, text] of KEY) {
-    if (text === "observer" && !observer) continue;
-    const icon = draw("svg", { viewBox: "-9 -9 18 18" });
-    icon.append(
-      draw("path", {
-        d: MARK[shape],
-        transform: `scale(${shape === "diamond" ? 7 : 5})`,
-        "vector-effect": "non-scaling-stroke",
-        class: `multiplier ${className}`,
-      }),
-    );
-    key.append(part("span", {}, icon, text));
-  }
-  return key;
-}
-
 function evidenceTable(rows) {
   const body = part("tbody");
   for (const { name, value, meaning } of rows)
@@ -85,8 +60,7 @@ function searchRow(send) {
 }
 
 export function render({ model }) {
-  const page = window.granchain,
-    trail = new Trail();
+  const page = window.granchain;
   const send = (message) => model.send_msg(message);
   const status = part("span", { className: "status" });
   const watch = part("input", { type: "checkbox" });
@@ -104,9 +78,13 @@ export function render({ model }) {
   const said = part("b"),
     mine = part("span", { className: "mine" });
   const say = part("div", { className: "say" }, mine, said);
-  const circle = part("div", { className: "picture" }),
-    key = part("div"),
-    tip = part("div", { className: "tip", hidden: true });
+  const circle = part("div", { className: "picture", tabIndex: 0 }),
+    told = part("span", { className: "soft told" });
+  circle.title = "the arrow keys choose another multiplier";
+  const figure = new Embedded(circle, (one) => {
+    fillModels(one, model.state.plane);
+    one.taps(["within", "outside"], (name, row) => choose(model.state.plane[name].data.rank[row]));
+  });
   const plane = part(
     "section",
     { className: "plane" },
@@ -121,8 +99,8 @@ export function render({ model }) {
         "observer",
       ),
     ),
-    part("div", { className: "draw" }, circle, tip),
-    key,
+    part("div", { className: "draw" }, circle),
+    told,
   );
   const canvas = part("canvas"),
     wiggles = part("div", { className: "picture" }),
@@ -141,12 +119,14 @@ export function render({ model }) {
   const table = part("div", { className: "table" });
   const root = part("div", { className: "part sheet" }, head, say, plane, motion, section.root, table, search.root);
 
-  let points = [];
+  const choose = (rank) => send({ do: "stability-mode", value: rank });
+  circle.addEventListener("keydown", ({ key }) => {
+    const rank = (model.state.rank ?? 0) + ({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0);
+    if (rank !== (model.state.rank ?? 0) && rank >= 0 && rank < model.state.count) choose(rank);
+  });
   const redraw = () => {
     if (page.covered === "stability") {
-      const focused = root.getRootNode().activeElement?.dataset?.rank;
-      points = circlePicture(circle, page.stability);
-      if (focused) circle.querySelector(`[data-rank="${focused}"]`)?.focus();
+      figure.load(model.figures.plane, "multipliers in the complex plane with the unit circle");
       section.draw(model.state, model.figures.section);
       mode.measure();
     }
@@ -154,15 +134,15 @@ export function render({ model }) {
   };
   const show = () => {
     const { state } = model;
-    trail.follow(state);
-    page.stability = { state, trail: trail.sets };
+    page.stability = { state, small: model.figures.small };
+    fillModels(figure, state.plane);
+    told.textContent = state.told ?? "";
     root.classList.toggle("stale", Boolean(state.stale));
     status.textContent = STATUS[state.status] ?? "";
     said.textContent = state.sentence ?? "";
     mine.textContent = state.searched ? "Found by search; the chain does not follow this orbit." : "";
     mine.hidden = !mine.textContent;
     watch.checked = Boolean(state.observer);
-    key.replaceChildren(keyOf(state.observer));
     section.choose(state.beads ?? 1);
     search.show(state);
     table.replaceChildren(evidenceTable(state.evidence ?? []));
@@ -178,46 +158,14 @@ export function render({ model }) {
     root.classList.toggle("irregular", !mode.mode);
     turn.textContent = mode.mode ? "exaggerated; begins afresh with every period of the orbit" : "";
   };
-  const pick = (event) =>
-    points
-      .map((point) => ({
-        ...point,
-        far: Math.hypot(
-          point.x - event.clientX + circle.getBoundingClientRect().left,
-          point.y - event.clientY + circle.getBoundingClientRect().top,
-        ),
-      }))
-      .filter(({ far }) => far < 24)
-      .sort((a, b) => a.far - b.far)[0];
-  const tell = (point) => {
-    tip.hidden = !point;
-    circle.style.cursor = point && !point.one.observer ? "pointer" : "";
-    if (!point) return;
-    tip.replaceChildren(...point.one.told.map((line) => part("div", { textContent: line })));
-    tip.style.left = `${Math.min(point.x + 14, Math.max(0, circle.clientWidth - tip.offsetWidth))}px`;
-    tip.style.top = `${point.y > circle.clientHeight / 2 ? point.y - tip.offsetHeight - 12 : point.y + 16}px`;
-  };
-  const choose = (point) => {
-    if (point && !point.one.observer) send({ do: "stability-mode", value: point.one.rank });
-  };
-  const drawnAs = (event) => points.find(({ drawn }) => drawn === event.target);
-  circle.addEventListener("pointermove", (event) => tell(pick(event)));
-  circle.addEventListener("pointerleave", () => tell(null));
-  circle.addEventListener("focusin", (event) => tell(drawnAs(event)));
-  circle.addEventListener("focusout", () => tell(null));
-  circle.addEventListener("click", (event) => choose(pick(event)));
-  circle.addEventListener("keydown", (event) => {
-    if (event.key === "Enter") choose(drawnAs(event));
-  });
-
   let tab = "",
     seen = true,
-    told = false;
+    watched = false;
   const looking = () => {
     const visible =
       !document.hidden && (page.covered === "stability" || (tab === "stability" && !page.covered && seen));
-    if (visible === told) return;
-    told = visible;
+    if (visible === watched) return;
+    watched = visible;
     send({ do: "stability-visible", value: visible });
   };
   const loop = () => {
@@ -245,9 +193,7 @@ export function render({ model }) {
         loop();
       });
   });
-  model.on("figures", () => {
-    if (page.covered === "stability") redraw();
-  });
+  model.on("figures", show);
   page.on("look", () => {
     mode.drawing.look();
     redraw();
@@ -260,7 +206,7 @@ export function render({ model }) {
   const sized = new ResizeObserver(() => {
     if (page.covered === "stability") redraw();
   });
-  for (const host of [circle, canvas, wiggles]) sized.observe(host);
+  for (const host of [canvas, wiggles]) sized.observe(host);
   show();
   return root;
 }

@@ -1,7 +1,7 @@
 // The Stability tab of the corner: the unit circle and the sentence; it draws what the Stability page holds.
 
 import { part } from "../../parts/dom.js";
-import { circlePicture } from "./multipliers.js";
+import { Embedded, fillModels } from "../../parts/embedded.js";
 
 export function stabilityTab() {
   const page = window.granchain;
@@ -10,15 +10,18 @@ export function stabilityTab() {
     more = part("p", { className: "soft" });
   const open = part("button", { textContent: "open the page", type: "button", className: "open" });
   open.addEventListener("click", () => page.cover("stability"));
+  const figure = new Embedded(host, (one) => fillModels(one, page.stability?.state.plane));
   const show = () => {
-    const { state = {}, trail = [] } = page.stability ?? {};
+    const { state = {}, small } = page.stability ?? {};
     said.textContent = state.sentence || "Follows the settled picture.";
     more.textContent =
       state.failure ||
       { compiling: "compiling …", computing: "computing …", searching: "searching …" }[state.status] ||
       "";
     host.classList.toggle("stale", Boolean(state.stale));
-    if (host.isConnected) circlePicture(host, { state, trail }, true);
+    if (!host.isConnected) return;
+    if (figure.item !== small) figure.load(small, "multipliers and the unit circle");
+    else fillModels(figure, state.plane);
   };
   requestAnimationFrame(show);
   return { show, content: [part("div", { className: "beside" }, host, part("div", {}, said, more, open))] };

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from functools import cache
 from typing import Any
@@ -21,6 +20,7 @@ from ...page.format import duration, short_error
 from ...page.frames import prefixed
 from ...parts.component import text
 from ...parts.drawn import Drawn
+from ...pictures.multipliers import multiplier_words, plane, plane_state
 from ...pictures.section import SectionPoints, close_up, section, section_state
 from ...pictures.theme import Theme
 from ...scripts import module
@@ -31,10 +31,10 @@ class Stability(Drawn):
     """The page over the pictures and, through what it shares in the browser, the small version in the corner."""
 
     _esm = module("stability.js")
-    _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "multipliers", "stability")]  # noqa: RUF012
+    _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "stability")]  # noqa: RUF012
 
     def empty_figures(self, theme: Theme) -> dict[str, Any]:
-        """The section without its points."""
+        """The plane, also small for the corner, and the section, all without points."""
         return empty_figures(theme)
 
     def section(self, shown: SectionPoints) -> None:
@@ -45,9 +45,11 @@ class Stability(Drawn):
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The section without its points."""
+    """The plane, also small for the corner, and the section, all without points."""
+    empty = plane_state(None)
     nothing = SectionPoints(np.zeros((1, 2)), np.zeros((0, 2)), 1, 0, False, 1, ("m", "m/s"))
-    return {"section": json_item(section(nothing, theme))}
+    return {"section": json_item(section(nothing, theme)), "plane": json_item(plane(empty, theme)),
+            "small": json_item(plane(empty, theme, compact=True))}
 
 
 def period_words(orbit: Orbit) -> str:
@@ -98,27 +100,10 @@ def no_multipliers(picture: Settled) -> str:
             f"{mean:+.3f} ± {error:.3f}).")
 
 
-def described_multipliers(orbit: Orbit, observer: bool = False) -> list[dict[str, Any]]:
-    """Marks in the plane, each with its words; `observer` for those of the observer."""
-    found = orbit.observer_multipliers if observer else orbit.multipliers
-    return [] if found is None else [
-        {"re": float(mu.real), "im": float(mu.imag), "size": float(abs(mu)), "observer": observer, "rank": rank,
-         "told": multiplier_words(complex(mu), orbit, observer)} for rank, mu in enumerate(found)]
-
-
-def multiplier_words(mu: complex, orbit: Orbit, observer: bool = False) -> list[str]:
-    """One multiplier in lines: itself, its angle as a frequency, its decay time."""
-    size, n = abs(mu), orbit.period
-    turn = abs(cmath.phase(mu)) / (2.0 * math.pi)
-    value = f"{mu.real:+.4f}" + (f" {'+' if mu.imag > 0 else '−'} {abs(mu.imag):.4f} i" if mu.imag else "")
-    lines = [f"{'observer ' if observer else ''}μ = {value}", f"|μ| = {modulus_words(size)}",
-             f"angle/2π = {turn:.3f} per orbit: {turn / n:.3g} of the drive frequency, "
-             f"{turn * orbit.scene.f / n:.3g} Hz"]
-    if size > 0.0 and size != 1.0:
-        periods = n / abs(math.log(size))
-        lines.append(f"{'dies out' if size < 1.0 else 'grows'} by e in {periods:.3g} drive periods "
-                     f"({duration(periods * orbit.scene.period)})")
-    return lines
+def multiplier_sentence(orbit: Orbit, rank: int) -> str:
+    """The multiplier at a place, or the last one, in one sentence."""
+    value, modulus, *_ = multiplier_words(complex(orbit.multipliers[:rank + 1][-1]), orbit)
+    return f"ringed: μ = {value}, |μ| {modulus}"
 
 
 def evidence(picture: Settled, analysis: Analysis | None, section: Section | None) -> list[dict[str, str]]:

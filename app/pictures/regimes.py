@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from granchain_core import CurvePoint
 
-from .figure_style import OUTPUT
+from .theme import THEMES
 
 #: Marker, colour and size of every regime: told apart with and without colour.
 REGIMES = {
-    "period 1": ("circle", OUTPUT, 7), "period 2": ("diamond", "#a855f7", 11),
+    "period 1": ("circle", THEMES["light"].output, 7), "period 2": ("diamond", "#a855f7", 11),
     "period 3": ("triangle", "#f59e0b", 10), "period 4": ("square", "#06b6d4", 8),
     "period 5+": ("star", "#ec4899", 12), "quasi-periodic": ("circle_dot", "#8b8bf0", 9),
     "chaotic": ("x", "#e879f9", 9), "unsettled": ("dash", "#8a8f98", 10),

@@ -1,0 +1,36 @@
+"""`--picture FILE.html`: the page's figure of a result, in a file that needs nothing else."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from granchain_core import BadInput
+
+
+def add_option(parser: argparse.ArgumentParser) -> None:
+    """The option of a command whose result has a picture."""
+    parser.add_argument("--picture", metavar="FILE.html", help="draw the result into a self-contained HTML file")
+
+
+def check_picture(name: str | None) -> None:
+    """Say before anything is computed that a picture cannot be written there."""
+    from granchain_core.store import check_writable
+
+    if name is None:
+        return
+    if Path(name).suffix.lower() not in (".html", ".htm"):
+        raise BadInput(f"--picture {name} is an HTML file; call it {Path(name).with_suffix('.html')}.")
+    check_writable(name)
+
+
+def write_picture(name: str | None, title: str, draw: Callable[[Any], Any]) -> None:
+    """Write what `draw` makes of a theme, where a picture is asked for."""
+    if name is None:
+        return
+    from app.pictures.file import page_of
+    from app.pictures.theme import THEMES
+
+    Path(name).write_text(page_of(draw(THEMES["light"]), title), encoding="utf-8")

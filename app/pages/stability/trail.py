@@ -1,0 +1,33 @@
+"""The multipliers of the orbits before the present one, which fade away behind it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_MOST = 14
+_SAME = 1e-4
+
+
+class Trail:
+    """Sets of multipliers with the period of their orbit, oldest first; another scene begins anew."""
+
+    def __init__(self) -> None:
+        self._sets: list[tuple[int, np.ndarray]] = []
+        self._last: tuple[int, np.ndarray] | None = None
+        self._scene = ""
+
+    def follow(self, found: np.ndarray, period: int, scene: str) -> None:
+        """Another orbit that the chain follows."""
+        if scene != self._scene:
+            self._sets, self._last, self._scene = [], None, scene
+        if self._last is not None and not _same(self._last[1], found):
+            self._sets = [*self._sets, self._last][-_MOST:]
+        self._last = period, found
+
+    def before(self, period: int) -> list[np.ndarray]:
+        """What was there before the present set, of orbits of this period."""
+        return [found for n, found in self._sets if n == period]
+
+
+def _same(one: np.ndarray, other: np.ndarray) -> bool:
+    return one.shape == other.shape and bool((np.abs(one - other) < _SAME).all())

@@ -1,0 +1,228 @@
+"""Branches of periodic orbits: largest force over the knob, stable solid, unstable dashed, special points by marks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from bokeh.models import ColumnDataSource, DataRange1d, HoverTool, Legend, LegendItem, Scatter, Span, TapTool
+from bokeh.plotting import figure
+
+from granchain_core.orbits import Branch, BranchPoint, SpecialPoint
+from granchain_core.steady.regime import modulus_words
+
+from ..page.format import short_error
+from .axes import Scale, force_scale, in_words, knob_scale
+from .theme import Theme, dress, frame, in_theme
+
+SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
+           "grazing": "grazing"}
+_LOOKS: dict[str, dict[str, Any]] = {
+    "fold": {"marker": "triangle", "size": 14, "colour": "#e0900a", "filled": True},
+    "period_doubling": {"marker": "diamond", "size": 16, "colour": "#9b6bf2", "filled": True},
+    "neimark_sacker": {"marker": "circle", "size": 12, "colour": "#0fa3b8", "filled": False},
+    "grazing": {"marker": "cross", "size": 9, "colour": "#8a8f98", "filled": True},
+}
+_LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
+"""Width and dash."""
+_ORBIT = ("x", "y", "told", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
+          "place")
+_MARK = ("x", "y", "told", "place")
+_TITLE = "largest elastic output force"
+_TARGET = 13
+"""Pixels around an orbit in which a pointer means it; the orbits beside a special point leave the place to it."""
+
+Columns = dict[str, dict[str, list[Any]]]
+
+
+class Growth:
+    """Branches as they grow: `add` gives what one more piece of an arm adds to the figure's sources.
+
+    The unit of force is that of the first orbit, or of `largest` [N] where that is known. `orbits` holds all drawn
+    orbits of every arm, `special` all special points, in their order; the sources refer to them by number.
+    """
+
+    def __init__(self, largest: float | None = None) -> None:
+        self._force = None if largest is None else force_scale(_TITLE, largest)
+        self._knob: Scale | None = None
+        self._last: dict[int, tuple[str, int]] = {}
+        self._pieces = dict.fromkeys(_LINES, 0)
+        self._models: dict[str, dict[str, Any]] = {}
+        self.orbits: dict[int, list[BranchPoint]] = {}
+        self.special: list[SpecialPoint] = []
+
+    def add(self, arm: int, branch: Branch, points: list[BranchPoint], special: list[SpecialPoint]) -> dict[str, Any]:
+        """Rows by source, pieces of lines as (source, number, x, y) to go on with, and what changes of other models."""
+        new = drawn_orbits(points, special)
+        self._force = self._force or force_scale(_TITLE, new[0].max_output_force_elastic)
+        self._knob = self._knob or knob_scale(branch.axis.knob, (branch.axis.high,))
+        before = self.orbits.setdefault(arm, [])
+        beside = {p for s in special for p in (s.before, s.after)}
+        rows: Columns = {"orbits": _columns(_ORBIT, [
+            (*self._place(p), *_orbit_words(p, branch), 1 if p in beside else _TARGET, arm, len(before) + i)
+            for i, p in enumerate(new)])}
+        for kind in SPECIAL:
+            rows[kind] = _columns(_MARK, [
+                (*self._place(s.before, s.knob), special_words(s, branch), len(self.special) + i)
+                for i, s in enumerate(special) if s.kind == kind])
+        pieces = self._lines(arm, before[-1:], new)
+        before.extend(new)
+        self.special.extend(special)
+        models: dict[str, dict[str, Any]] = {
+            **{f"legend of {s.kind}": {"visible": True} for s in special},
+            "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
+        fresh = {name: properties for name, properties in models.items() if name not in self._models}
+        self._models |= fresh
+        return {"rows": rows, "pieces": pieces, "models": fresh}
+
+    def _place(self, point: BranchPoint, knob: float | None = None) -> tuple[float, float]:
+        assert self._knob is not None and self._force is not None
+        return ((point.knob if knob is None else knob) / self._knob.factor,
+                point.max_output_force_elastic / self._force.factor)
+
+    def _lines(self, arm: int, last: list[BranchPoint], new: list[BranchPoint]) -> list[list[Any]]:
+        """Pieces on which all orbits are stable, or none is; a piece begins where the last one of its arm ended."""
+        pieces: list[list[Any]] = []
+        for point in new:
+            source = "stable" if point.stable else "unstable"
+            if arm not in self._last or self._last[arm][0] != source:
+                self._last[arm] = source, self._pieces[source]
+                self._pieces[source] += 1
+                pieces.append([*self._last[arm], *([value] for value in self._place(last[0]))] if last else
+                              [*self._last[arm], [], []])
+            elif not pieces:
+                pieces.append([*self._last[arm], [], []])
+            for column, value in zip(pieces[-1][2:], self._place(point), strict=True):
+                column.append(value)
+            last = [point]
+        return pieces
+
+
+def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, compact: bool = False) -> figure:
+    """The largest elastic output force of periodic orbits over the knob of their branches.
+
+    `now` is a value of the knob [SI] with a line. Sources have names: "stable" and "unstable" hold lines, "orbits"
+    one row for each orbit, the kinds of special points one for each point; `Growth` says what an orbit more adds.
+    """
+    growth = Growth(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
+    data: Columns = {**{name: {"x": [], "y": []} for name in _LINES}, "orbits": _columns(_ORBIT, []),
+                     **{kind: _columns(_MARK, []) for kind in SPECIAL}}
+    models: dict[str, Any] = {}
+    number = 0
+    for one in found:
+        for arm in one.arms:
+            if arm.points:
+                added = growth.add(number, one, arm.points, arm.special)
+                _put(data, added)
+                models |= added["models"]
+            number += 1
+    plot = _drawn(data, theme, compact)
+    factor = knob_scale(found[0].axis.knob, (found[0].axis.high,)).factor if found else 1.0
+    plot.select_one({"name": "now"}).update(location=None if now is None else now / factor, visible=now is not None)
+    if not compact:
+        for name, properties in models.items():
+            plot.select_one({"name": name}).update(**properties)
+    return plot
+
+
+def _put(data: Columns, added: dict[str, Any]) -> None:
+    """What a piece adds, put into whole columns."""
+    for name, columns in added["rows"].items():
+        for column, values in columns.items():
+            data[name][column].extend(values)
+    for name, number, x, y in added["pieces"]:
+        for column, values in (("x", x), ("y", y)):
+            if number == len(data[name][column]):
+                data[name][column].append([])
+            data[name][column][number].extend(values)
+
+
+def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
+    plot = frame(name="branches", min_border=4, toolbar_location=None if compact else "right",
+                 x_range=DataRange1d(range_padding=0.02), y_range=DataRange1d(start=0, range_padding=0.06))
+    if not compact:
+        plot.xaxis[0].name, plot.yaxis[0].name = "knob", "force"
+    sources = {name: ColumnDataSource(columns, name=name) for name, columns in data.items()}
+    items = []
+    for name, (width, dash) in _LINES.items():
+        line = plot.multi_line("x", "y", source=sources[name], line_dash=dash, line_join="round")
+        items.append(LegendItem(label=name, renderers=[in_theme(line, line_color="output", line_width=width)]))
+    dots = plot.scatter("x", "y", source=sources["orbits"], size=1 if compact else 4.5, line_color=None)
+    targets = plot.scatter("x", "y", source=sources["orbits"], size="target", alpha=0.0, fill_color=None)
+    chosen = targets.selection_glyph = Scatter(size=_TARGET, line_width=2.5, fill_color=None)
+    chosen.line_color = theme.ink
+    dots.nonselection_glyph = targets.nonselection_glyph = None
+    in_theme(dots, fill_color="output")
+    plot.add_layout(in_theme(Span(name="now", dimension="height", line_alpha=0.6, level="underlay", visible=False),
+                             line_color="ink", line_width=1.2))
+    items += [LegendItem(name=f"legend of {kind}", label=SPECIAL[kind], renderers=[one], visible=False)
+              for kind, one in _marks(plot, sources, compact).items()]
+    for both in (plot.x_range, plot.y_range):
+        both.renderers = [targets]
+    if not compact:
+        _tools(plot, targets, items)
+        plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, _TITLE
+    for axis in (plot.xaxis[0], plot.yaxis[0]):
+        axis.ticker.desired_num_ticks = 4 if compact else 7
+    return dress(plot, theme)
+
+
+def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) -> dict[str, Any]:
+    """Special points; grazings are too many for a small figure."""
+    made = {}
+    for kind, look in _LOOKS.items():
+        one = plot.scatter("x", "y", source=sources[kind], marker=look["marker"], line_color=look["colour"],
+                           fill_color=look["colour"], size=0.75 * look["size"] if compact else look["size"],
+                           visible=not (compact and kind == "grazing"))
+        one.nonselection_glyph = None
+        in_theme(one, line_width=2.2) if look["filled"] else in_theme(one, line_width=2.2, fill_color="card")
+        made[kind] = one
+    return made
+
+
+def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
+    """Hover and tap for orbits and special points, and a legend that hides what is clicked in it."""
+    marks = [one for item in items for one in item.renderers if item.label.value in SPECIAL.values()]
+    plot.add_tools(
+        HoverTool(renderers=[targets], limit=1, attachment="below", tooltips=[
+            ("orbit", "@told"), ("motion", "@motion"), ("elastic output force", "@elastic"),
+            ("output force", "@output"), ("input force", "@input"), ("relative error of the orbit", "@residual")]),
+        HoverTool(renderers=marks, tooltips=[("", "@told")], limit=2, attachment="above"),
+        TapTool(name="tap", renderers=[targets, *marks], mode="replace"))
+    plot.add_layout(Legend(name="legend", items=items, click_policy="hide", orientation="horizontal", ncols=len(items),
+                           padding=0, margin=4, spacing=12, glyph_width=26), "below")
+
+
+def drawn_orbits(points: list[BranchPoint], special: list[SpecialPoint]) -> list[BranchPoint]:
+    """What is drawn of a piece of a branch, in order.
+
+    The two orbits around each special point belong to it: so the line changes its dash where stability changes.
+    """
+    return sorted([*points, *(p for s in special for p in (s.before, s.after))], key=lambda point: point.arclength)
+
+
+def special_words(special: SpecialPoint, branch: Branch) -> str:
+    """What a special point is, where, and how sure that is."""
+    scale = knob_scale(branch.axis.knob, (branch.axis.high,))
+    low, high = special.interval
+    told = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "
+            f"{0.5 * (high - low) / scale.factor:.4f} {scale.unit}")
+    if special.contact is not None:
+        told += f": contact {special.contact} has one {special.event} more on one side"
+    elif special.kind == "neimark_sacker" and special.multiplier is not None:
+        told += f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i passes the circle"
+    return told
+
+
+def _orbit_words(point: BranchPoint, branch: Branch) -> tuple[Any, ...]:
+    """The columns of an orbit from `told` to `stable`."""
+    scale = knob_scale(branch.axis.knob, (branch.axis.high,))
+    forces = (point.max_output_force_elastic, point.max_output_force, point.max_input_force)
+    return (f"{point.knob / scale.factor:.7g} {scale.unit}, period {branch.period}",
+            *(in_words(force, "N") for force in forces), branch.period,
+            f"{'stable' if point.stable else 'unstable'}, |μ| {modulus_words(abs(point.multipliers[0]))}",
+            short_error(point.residual), int(point.stable))
+
+
+def _columns(names: Sequence[str], rows: Sequence[tuple[Any, ...]]) -> dict[str, list[Any]]:
+    return {name: [row[i] for row in rows] for i, name in enumerate(names)}

@@ -1,0 +1,55 @@
+"""A resonance curve: largest output force over drive frequency, every point marked by its regime."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from bokeh.models import ColumnDataSource, DataRange1d, HoverTool
+from bokeh.plotting import figure
+
+from granchain_core import Curve
+
+from ..page.format import short_error
+from .axes import force_scale, in_words, knob_scale
+from .regimes import REGIMES, regime_key
+from .theme import Theme, dress, frame, in_theme
+
+DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
+WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
+
+
+def curve(found: Sequence[Curve], theme: Theme) -> figure:
+    """Curves over one frequency axis, one for each way of sweeping; where the numbers failed there is no point."""
+    largest = max((p.max_output_force for one in found for p in one.points if math.isfinite(p.max_output_force)),
+                  default=1.0)
+    scale = force_scale("largest output force", largest)
+    plot = frame(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
+    for one in found:
+        points = [p for p in one.points if math.isfinite(p.max_output_force)]
+        looks = [REGIMES[regime_key(p)] for p in points]
+        source = ColumnDataSource(name=one.start, data={
+            "frequency": [p.frequency for p in points], "force": [p.max_output_force / scale.factor for p in points],
+            "marker": [look[0] for look in looks], "colour": [look[1] for look in looks],
+            "size": [look[2] + 3 for look in looks], "regime": [regime_key(p) for p in points],
+            "sentence": [p.regime.sentence for p in points],
+            "total": [in_words(p.max_output_force, "N") + _error(p.force_errors.output) for p in points],
+            "elastic": [in_words(p.max_output_force_elastic, "N") + _error(p.force_errors.elastic) for p in points],
+            "input": [in_words(p.max_input_force, "N") + _error(p.force_errors.input) for p in points]})
+        line = plot.line("frequency", "force", source=source, line_dash=DASHES[one.start] or "solid")
+        marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
+                             line_color="colour", line_width=1.5, legend_group="regime")
+        in_theme(line, line_color="output", line_width=1.8)
+        plot.add_tools(HoverTool(renderers=[marks], tooltips=[
+            ("drive frequency", "@frequency{0.0} Hz"), ("output force", "@total"), ("elastic output force", "@elastic"),
+            ("input force", "@input"), ("motion", "@sentence"), ("start", WORDS[one.start])]))
+    plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
+    for legend in plot.legend:
+        legend.update(orientation="horizontal", padding=0, margin=2, ncols=4)
+    if plot.legend:
+        plot.add_layout(plot.legend[0], "below")
+    return dress(plot, theme)
+
+
+def _error(relative: float | None) -> str:
+    return ", no error claimed" if relative is None else f", relative error {short_error(relative)}"

@@ -1,0 +1,63 @@
+"""`--picture FILE.html`: one file with the figure in it, which asks nobody for anything; the result is what it was."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from app.cli import main
+
+ROOT = Path(__file__).parents[2]
+SHORT = ["sec2", "--set", "N=2"]
+COMMANDS = {
+    "curve": [*SHORT, "--from", "1900", "--to", "2000", "--points", "2"],
+    "orbit": [*SHORT, "--set", "f=2000"],
+    "branch": [*SHORT, "--knob", "f", "--from", "2000", "--to", "2020"],
+    "map": [*SHORT, "--x", "f=1900:2000:2", "--y", "A0=5e-7:6e-7:2", "--out", "map.h5"],
+}
+#: A source of each figure that must have rows.
+SOURCES = {"curve": "rest", "orbit": "within", "branch": "orbits", "map": "cells"}
+
+
+def document(page: str) -> dict[str, object]:
+    """Bokeh's document in a page."""
+    (found,) = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', page, re.DOTALL)
+    return dict(next(iter(json.loads(found).values())))
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_figure_is_in_a_file_that_needs_nothing_else(command: str, tmp_path: Path) -> None:
+    # in a process of its own: Panel, which other tests import, puts its own scripts into every page of Bokeh's
+    done = subprocess.run([sys.executable, "-m", "app.cli", command, *COMMANDS[command], "--json", "--picture", "a.html"],
+                          cwd=tmp_path, capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    json.loads(done.stdout)  # still one object and nothing else
+    page = (tmp_path / "a.html").read_text(encoding="utf-8")
+    assert not re.search(r"<(script|link)[^>]+(src|href)=", page)
+    drawn = json.dumps(document(page))
+    name = SOURCES[command]
+    assert re.search(rf'"name": "ColumnDataSource", "id": "[^"]+", "attributes": {{"name": "{name}", ', drawn)
+
+
+def test_what_cannot_be_written_is_said_before_anything_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, words in (("a.png", "is an HTML file; call it"), (str(tmp_path / "none" / "a.html"), "Cannot write")):
+        assert main(["orbit", *COMMANDS["orbit"], "--picture", name]) == 2
+        assert words in capsys.readouterr().err
+
+
+def test_a_map_of_too_many_cells_is_not_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["map", "sec2", "--x", "f=100:200:300", "--y", "A0=5e-7:6e-7:300", "--out", str(tmp_path / "a.h5")]
+    assert main([*words, "--picture", str(tmp_path / "a.html")]) == 2
+    assert "--picture draws up to 40000 cells and this map has 90000" in capsys.readouterr().err
+
+
+def test_an_observers_forces_are_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    force = tmp_path / "force.csv"
+    force.write_text("time (ms),force (N)\n" + "".join(f"{0.01 * i:.2f},{min(i, 40 - i) / 20:.2f}\n" for i in range(41)))
+    assert main(["observe", *SHORT, "--input", str(force), "--json", "--picture", str(tmp_path / "a.html")]) == 0
+    assert '"output force, computed"' in json.dumps(document((tmp_path / "a.html").read_text(encoding="utf-8")))

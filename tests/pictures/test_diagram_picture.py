@@ -1,0 +1,88 @@
+"""The map over two knobs as a figure: where cells lie, what they say, and how it fills."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from bokeh.models import LogScale
+
+from app.pictures.diagram import CATEGORIES, category, cell_rows, cell_words, diagram, nothing, scale_models
+from app.pictures.theme import THEMES
+from granchain_core import scene
+from granchain_core.diagram import Axis, Diagram, Grid
+from granchain_core.diagram.cells import REGIMES, empty_cells
+
+GRID = Grid(scene("sec2").evolve(N=2), Axis.of("f", [1900.0, 2000.0, 2100.0]), Axis.of("A0", [1e-7, 1e-6, 1e-5]))
+
+
+def filled(*numbers: int, regime: str = "periodic", period: int = 2, force: float = 0.5) -> Diagram:
+    """A diagram of which some cells are computed."""
+    found = nothing(GRID)
+    for number in numbers:
+        found.cells[number]["regime"], found.cells[number]["period"] = REGIMES.index(regime), period
+        found.cells[number]["max_output_force"] = force * (1 + number)
+    return found
+
+
+def data(plot: Any, name: str) -> dict[str, list[Any]]:
+    """The columns of a source."""
+    return dict(plot.select_one({"name": name}).data)
+
+
+def test_cells_meet_half_way_and_coarse_ones_stand_for_those_around_them() -> None:
+    plot = diagram(filled(0, 4), THEMES["light"])
+    cells = data(plot, "cells")
+    assert cells["number"] == [0, 4] and cells["spacing"][0] > 1 == cells["spacing"][1]
+    assert (cells["left"], cells["right"]) == ([1850.0, 1950.0], [2150.0, 2050.0])  # evenly spaced
+    assert cells["bottom"][1] == pytest.approx(10**-0.5, rel=1e-6) and cells["top"][1] == pytest.approx(10**0.5, rel=1e-6)
+    assert cells["own_right"] == [1950.0, 2050.0]
+    assert isinstance(plot.y_scale, LogScale) and not isinstance(plot.x_scale, LogScale)
+    assert plot.yaxis[0].axis_label == "drive amplitude A₀ (µm)"
+    assert (plot.x_range.start, plot.x_range.end) == (1850.0, 2150.0)
+
+
+def test_only_what_is_computed_is_drawn() -> None:
+    plot = diagram(nothing(GRID), THEMES["dark"])
+    assert data(plot, "cells")["number"] == [] and data(plot, "now") == {"x": [], "y": []}
+    assert scale_models(nothing(GRID).cells[:0]) == {}
+    failed = filled(4, regime="failed", period=0)
+    failed.cells[4]["max_output_force"] = np.nan
+    rows = cell_rows(GRID, failed.cells[[4]])
+    assert rows["force"] == [None] and rows["regime"] == ["failed"] and rows["told"] == ["2000 Hz, 1 µm: the numbers failed"]
+
+
+def test_a_cell_is_told_with_its_error_or_without_a_claim() -> None:
+    cell = filled(4).cells[4]
+    assert cell_words(GRID, cell) == "2000 Hz, 1 µm: period 2, largest output force 2.5 N, the largest seen"
+    cell["error_estimate"] = 3e-5
+    assert cell_words(GRID, cell).endswith("2.5 N, relative error 3e-5")
+    cell["regime"], cell["period"], cell["lyapunov"], cell["lyapunov_error"] = REGIMES.index("chaotic"), 0, 0.21, 0.02
+    assert cell_words(GRID, cell).endswith("Lyapunov exponent 0.210 ± 0.020") and ": chaotic," in cell_words(GRID, cell)
+
+
+def test_every_regime_and_period_has_its_category() -> None:
+    cell = empty_cells(GRID)[0]
+    told = {}
+    for name, period in (("periodic", 1), ("periodic", 4), ("periodic", 5), ("periodic", 16), ("chaotic", 0),
+                         ("quasi-periodic", 0), ("unsettled", 0), ("failed", 0)):
+        cell["regime"], cell["period"] = REGIMES.index(name), period
+        told[name, period] = category(cell)
+    assert told["periodic", 1] == "period 1" and told["periodic", 4] == "period 4"
+    assert told["periodic", 5] == told["periodic", 16] == "period 5+"
+    assert all(told[name, 0] == name for name in ("chaotic", "quasi-periodic", "unsettled", "failed"))
+
+
+@pytest.mark.parametrize("shown", ["force", "regime"])
+def test_forces_have_a_scale_and_regimes_a_legend_with_a_hatch_for_each(shown: str) -> None:
+    plot = diagram(filled(0, 4, 8), THEMES["projector"], shown, now=(1950.0, 2e-6))
+    seen = {name: plot.select_one({"name": name}).visible for name in ("force", "bar", "regime", "regimes")}
+    assert seen == {"force": shown == "force", "bar": shown == "force", "regime": shown == "regime", "regimes": shown == "regime"}
+    mapper = plot.select_one({"name": "force colours"})
+    assert (mapper.low, mapper.high) == (0.5, 4.5)
+    looks = [plot.select_one({"name": f"all {name}"}) for name in CATEGORIES]
+    assert len({one.glyph.hatch_pattern for one in looks}) == len(CATEGORIES)  # the hatch alone tells regimes apart
+    assert {one.visible for one in looks} == {shown == "regime"}
+    assert [item.label.value for item in plot.legend[0].items if item.visible] == ["period 2"]
+    assert data(plot, "now") == {"x": [1950.0], "y": [pytest.approx(2.0)]}
