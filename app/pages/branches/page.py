@@ -103,7 +103,7 @@ class BranchesPage(Page):
 
     def _load_orbit(self, message: dict[str, Any]) -> None:
         """An orbit goes to the main page: a stable one settled, an unstable one live, so that one sees it leave."""
-        arm = message.get("arm")
+        arm: Any = message.get("arm")
         drawn = listed("branch", self._drawn, arm)
         point = listed("orbit", self._growth.orbits.get(arm, []), message.get("place"))
         self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
