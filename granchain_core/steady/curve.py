@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
 from ..integrate import Engine, State
 from ..integrate.batch import can_share_batch
-from ..integrate.methods import jump_errors
+from ..integrate.methods import jump_errors, typical_error
 from ..result import ForceErrors, relative_changes
 from ..scene import Scene
 from ..stop import Stop
@@ -149,7 +149,8 @@ def _certified(way: Settling) -> SteadyState:
     finer.start(engine.state)
     tops = finer.largest_forces(n)
     jumps = jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
-    errors = orbit_force_errors(relative_changes(tops, before), distance, way.regime.slowness, jumps)
+    errors = orbit_force_errors(relative_changes(tops, before), distance, way.regime.slowness, jumps,
+                                typical_error(finer.setting))
     return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..integrate import Engine, Setting, State, live, method_for
-from ..integrate.methods import jump_errors
+from ..integrate.methods import jump_errors, typical_error
 from ..result import Cost, Run, relative_changes, run_from
 from ..scene import Scene
 from ..state import rest
@@ -295,7 +295,8 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     still = 1.0 / (1.0 - way.regime.slowness)
     integration *= still
     jumps = jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
-    forces = orbit_force_errors(relative_changes(fine.tops, coarse.tops), distance, way.regime.slowness, jumps)
+    forces = orbit_force_errors(relative_changes(fine.tops, coarse.tops), distance, way.regime.slowness, jumps,
+                                typical_error(fine.setting))
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces)
     return Settled(run, regime, start, origin, False, True)
 
