@@ -104,7 +104,7 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
     monkeypatch.setattr(module, "_ROW_LIMIT", 1.0)
     found = work_precision(SHORT)
     failures = {row.method: row.failure for row in found.rows if row.failure}
-    assert "lost the motion" in failures["scipy LSODA"] and "given up" in failures["scipy RK45"]
+    assert "lost the motion" in failures["scipy LSODA"] and "stopped" in failures["scipy RK45"]
     assert "scipy DOP853" not in failures
     assert all(np.isinf(row.error) for row in found.rows if row.failure)
     assert main(["accuracy", "sec2", "--set", "N=2", "--set", "f=2000"]) == 0

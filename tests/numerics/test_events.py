@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels.dop853 import located as certified
+from granchain_core.kernels.dop853 import run as certified
 
 
 def grazing(depth: float, method: str, tolerance: float = 1e-9):

@@ -91,8 +91,8 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
 
 def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same factor 1/(1 − |μ|) for a point of a curve that was settled by itself."""
-    way = settle.settle(scene("sec2"), None, None)
-    monkeypatch.setattr(curve, "settle", lambda *words: way)
+    way = settle.run_until_settled(scene("sec2"), None, None)
+    monkeypatch.setattr(curve, "run_until_settled", lambda *words: way)
     stated = []
     for modulus in (0.1, 0.9):
         engine = Engine(way.scene, certified(1e-6), 1)

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from granchain_core.kernels.dop853 import located as certified
+from granchain_core.kernels.dop853 import run as certified
 from granchain_core.kernels.effects.balance import Balance
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from granchain_core.kernels.rk4 import contact_events as events
