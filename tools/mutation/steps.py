@@ -81,7 +81,7 @@ CERTIFIED = (
     Mutant("events-not-located", _CERTIFIED, "        if aimed < 0 or x > 1.0 - 1e-9:",
            "        aimed = -1\n        if aimed < 0 or x > 1.0 - 1e-9:",
            "a smooth method steps across every contact event", k.CERTIFIED_ORDER),
-    Mutant("last-event-of-a-step", _CERTIFIED, "if root < first and t", "if root <= 2.0 and t",
+    Mutant("last-event-of-a-step", _CERTIFIED, "if root < first and 0.1", "if root <= 2.0 and 0.1",
            "of several contacts that change in a step the last is taken", k.TOUCHES),
     Mutant("rejection-loose", _CERTIFIED, "        if error > 1.0:", "        if error > 1000.0:",
            "steps a thousand times worse than asked for are accepted", k.CERTIFIED_ORDER),

@@ -41,6 +41,9 @@ _BEHIND_CUT = 1e-14
 _NEAR_CUT = 100.0
 #: A step that is to end at an event may become longer by this factor.
 _LONGER = 1.01
+#: Spacing of floating-point numbers at 1: how well a time is known, relative to the time since the period began plus a
+#: sixth of the period, 1/β.
+_RESOLUTION = 2.2e-16
 #: No contact opens and closes more often than this in one period unless it chatters.
 _EVENTS_PER_CONTACT = 2000
 
@@ -104,7 +107,8 @@ def may_turn(d0, s0, d1, s1, sign):
 def first_crossing(slots, beta, t, h, y, work, counts):
     """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
-    Events closer to t than floating-point resolution are ignored.
+    Events closer to t than the resolution of a period's time are ignored. That of t itself would be too fine at the
+    start of a period: steps too small to change the state would follow each other without end.
     """
     contact, first, dense_ready = -1, 2.0, False
     k = work.k
@@ -126,7 +130,7 @@ def first_crossing(slots, beta, t, h, y, work, counts):
             if sign * overlap_in_step(slots, beta, t, h, y, work, c, high) <= 0.0:
                 continue
         root = overlap_root(slots, beta, t, h, y, work, c, 0.0, high)
-        if root < first and t + 0.1 * root * h > t:
+        if root < first and 0.1 * root * h > _RESOLUTION * (t + 1.0 / beta):
             contact, first = c, root
     return contact, first
 
