@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 from granchain_core import Cancelled, State, run, scene
 from granchain_core.integrate import Engine, Setting, live
+from granchain_core.kernels.status import STEPS_BETWEEN_STOP_CHECKS
 from granchain_core.steady.lyapunov import exponents
 from granchain_core.stop import Stop
 
@@ -99,6 +101,22 @@ def test_drive_displacement_column_is_exact_at_any_time():
     assert result.time[0] == 5000 / result.scene.f
 
 
+def steps_after_the_flag(slow: Engine, stop: Stop, computation: Callable[[], object]) -> int:
+    """Steps that a computation takes after its flag is raised from another thread, once the kernel counts steps."""
+    steps: list[int] = []
+
+    def raise_flag() -> None:
+        while slow.counts.rhs == 0:
+            time.sleep(0.001)
+        steps.append(slow.counts.steps)
+        stop.set()
+
+    threading.Thread(target=raise_flag, daemon=True).start()
+    with pytest.raises(Cancelled):
+        computation()
+    return int(slow.counts.steps - steps[0])
+
+
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
 @pytest.mark.parametrize("recording", [False, True])
 def test_stop_flag_ends_a_long_run_soon(method, recording):
@@ -108,18 +126,8 @@ def test_stop_flag_ends_a_long_run_soon(method, recording):
     quick = Engine(scene("sec2").evolve(f=1e5, N=300), Setting(method, tolerance=1e-3), 1)
     quick.record(1) if recording else quick.periods(1)  # compiling asks no flag
     slow = Engine(scene("sec2").evolve(f=0.5, N=300), Setting(method, refine=16, tolerance=1e-11), 1, stop=stop)
-    steps: list[int] = []
-
-    def raise_flag() -> None:
-        while slow.counts.rhs == 0:
-            time.sleep(0.001)
-        steps.append(slow.counts.steps)
-        stop.set()
-
-    threading.Thread(target=raise_flag, daemon=True).start()
-    with pytest.raises(Cancelled):
-        slow.record(20) if recording else slow.periods(20)
-    assert slow.counts.steps - steps[0] <= 2 * 4096
+    after = steps_after_the_flag(slow, stop, lambda: slow.record(20) if recording else slow.periods(20))
+    assert after <= 2 * STEPS_BETWEEN_STOP_CHECKS
 
 
 def test_stop_flag_ends_a_lyapunov_exponent_soon():
@@ -127,18 +135,7 @@ def test_stop_flag_ends_a_lyapunov_exponent_soon():
     stop = Stop()
     exponents(Engine(scene("sec2").evolve(f=1e5, N=300), live(), 1), 1, 1)  # compiling asks no flag
     slow = Engine(scene("sec2").evolve(f=0.5, N=300), live(16), 1, stop=stop)
-    steps: list[int] = []
-
-    def raise_flag() -> None:
-        while slow.counts.rhs == 0:
-            time.sleep(0.001)
-        steps.append(slow.counts.steps)
-        stop.set()
-
-    threading.Thread(target=raise_flag, daemon=True).start()
-    with pytest.raises(Cancelled):
-        exponents(slow, 1, 1)
-    assert slow.counts.steps - steps[0] <= 2 * 2 * 4096
+    assert steps_after_the_flag(slow, stop, lambda: exponents(slow, 1, 1)) <= 2 * 2 * STEPS_BETWEEN_STOP_CHECKS
 
 
 @pytest.mark.parametrize("beads", [11, 300])
