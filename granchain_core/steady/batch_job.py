@@ -15,7 +15,7 @@ from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 from .decide import MOST_PERIODS, SLOW_PERIODS
-from .orbit_errors import orbit_force_errors
+from .orbit_errors import force_distances, orbit_force_errors
 from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
 from .steady_state import SteadyState
@@ -78,7 +78,8 @@ class Job:
             tops, change = np.where(at_jump, located, tops), np.where(at_jump, 0.0, change)
             further = np.where(at_jump, moved, 0.0)
         # either run has come to its own orbit: the change is that of the orbits
-        errors = orbit_force_errors(change, max(distance, regime.distance), further=further)
+        left = force_distances(max(distance, regime.distance), self.lowered, tops, y)
+        errors = orbit_force_errors(change, left, further=further)
         tops = tops * self.lowered.scales.force
         return SteadyState(self.scene, tops, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
                           number=self.number)

@@ -18,7 +18,7 @@ from ..result import ForceErrors, relative_changes
 from ..scene import Scene
 from ..stop import Stop
 from .batch_settle import batch_results
-from .orbit_errors import orbit_force_errors
+from .orbit_errors import force_distances, orbit_force_errors
 from .regime import Regime
 from .settle import Settling, relax, run_until_settled
 from .steady_state import SteadyState
@@ -149,7 +149,8 @@ def _certified(way: Settling) -> SteadyState:
     finer.start(engine.state)
     tops = finer.largest_forces(n)
     jumps = jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
-    errors = orbit_force_errors(relative_changes(tops, before), distance, way.regime.slowness, jumps,
+    left = force_distances(distance, finer.lowered, finer.tops, finer.y)
+    errors = orbit_force_errors(relative_changes(tops, before), left, way.regime.slowness, jumps,
                                 typical_error(finer.setting))
     return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
 

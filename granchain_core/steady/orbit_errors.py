@@ -4,19 +4,35 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..lower import Lowered
 from ..result import CAUTION
 
 #: F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
 _FORCE_PER_OVERLAP = 1.5
 
 
-def orbit_force_errors(change: np.ndarray | float, distance: float, slowness: float = 0.0,
+def force_distances(distance: float, lowered: Lowered, tops: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Relative changes (3,) of the largest forces over a relative `distance` of states.
+
+    The distance is relative to the largest displacement of the scaled state y, a force follows its overlap: where a
+    contact of the first or last bead overlaps less than that, as in the stop band, it feels the distance the more.
+    `tops` are the scaled forces.
+    """
+    stiffness = lowered.slots.chain.stiffness[[0, -1, -1]]
+    overlaps = (tops / stiffness) ** (1.0 / _FORCE_PER_OVERLAP)
+    largest = float(np.abs(lowered.rows(y)[0]).max())
+    nearer = np.ones(3)
+    np.divide(largest, overlaps, out=nearer, where=(overlaps > 0.0) & (overlaps < largest))
+    return np.asarray(_FORCE_PER_OVERLAP * distance * nearer)
+
+
+def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float, slowness: float = 0.0,
                        further: np.ndarray | float = 0.0, least: float = 0.0) -> np.ndarray:
-    """Relative errors of the three largest forces on an orbit at the relative `distance` from the true one.
+    """Relative errors of the three largest forces on an orbit: of its integration, and of the way left to it.
 
     `change` (3,) is the relative change of the forces from one computation to a finer one. Where both began in the same
     state, `slowness` is |μ|, the part of a distance that is left after an orbit: an error e of the n-period map moves
     its fixed point by e/(1 − |μ|), and the forces with it. Where each ran on its own orbit it is 0. `further` errors
-    (3,), as of jumps, are added. `least` is the typical error of the finer computation: two may agree by chance.
+    (3,), as of jumps, are added, and `distance` (3,), what the way left changes (`force_distances`). `least` is the typical error of the finer computation: two may agree by chance.
     """
-    return np.asarray(np.maximum(CAUTION * change, least) / (1.0 - slowness) + _FORCE_PER_OVERLAP * distance + further)
+    return np.asarray(np.maximum(CAUTION * change, least) / (1.0 - slowness) + distance + further)

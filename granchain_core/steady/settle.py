@@ -21,7 +21,7 @@ from ..state import rest
 from ..stop import Stop
 from .decide import MOST_PERIODS, REMEMBERED, Decisions
 from .extrapolate import ORDER, reduced_rank, within_reach
-from .orbit_errors import orbit_force_errors
+from .orbit_errors import force_distances, orbit_force_errors
 from .regime import Regime, changes, find_period
 
 #: Most steps of the live method while settling: about half a minute.
@@ -295,7 +295,8 @@ def certified_picture(way: Settling, samples: int, began: float, origin: str) ->
     still = 1.0 / (1.0 - way.regime.slowness)
     integration *= still
     jumps = jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
-    forces = orbit_force_errors(relative_changes(fine.tops, coarse.tops), distance, way.regime.slowness, jumps,
+    left = force_distances(distance, fine.lowered, fine.tops, fine.y)
+    forces = orbit_force_errors(relative_changes(fine.tops, coarse.tops), left, way.regime.slowness, jumps,
                                 typical_error(fine.setting))
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces)
     return Settled(run, regime, start, origin, False, True)
