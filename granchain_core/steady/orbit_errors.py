@@ -32,7 +32,8 @@ def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float,
 
     `change` (3,) is the relative change of the forces from one computation to a finer one. Where both began in the same
     state, `slowness` is |μ|, the part of a distance that is left after an orbit: an error e of the n-period map moves
-    its fixed point by e/(1 − |μ|), and the forces with it. Where each ran on its own orbit it is 0. `further` errors
-    (3,), as of jumps, are added, and `distance` (3,), what the way left changes (`force_distances`). `least` is the typical error of the finer computation: two may agree by chance.
+    its fixed point by e/(1 − |μ|), and the forces with it. Where each ran on its own orbit it is 0. `distance` (3,) is
+    what the way left changes (`force_distances`), and `further` errors (3,), as of jumps, are added. `least` is the
+    typical error of the finer computation: two may agree by chance.
     """
     return np.asarray(np.maximum(CAUTION * change, least) / (1.0 - slowness) + distance + further)
