@@ -21,6 +21,8 @@ FEW = STRUCTURES[:3]
 RANGES = {"f": (0.0, 3.7), "A0": (-9.0, -5.0), "lambda": (-2.3, 0.7), "kappa": (-4.0, -1.0), "F0": (-2.0, 1.3), "thrown": (-1.0, 0.5)}
 ACCURACIES = (1e-4, 1e-6, 1e-8)
 MOST_BEADS, MOST_PERIODS, MOST_RECORDED = 40, 20, 3
+#: A run of several periods is not longer than so many times 1/φ: its truth takes a hundred thousand steps.
+_LONGEST = 1e4
 _WALLS = ("bead", "same-material", "rigid")
 
 
@@ -46,7 +48,7 @@ def draw(seed: int, index: int, structures: list) -> Draw:
     if rng.random() < 0.3:
         speed = _rate(chosen) * chosen.A0 * _decade(rng, "thrown") * rng.choice([-1.0, 1.0])
         chosen = replace(chosen, start_velocity=((int(rng.integers(1, chosen.N + 1)), float(speed)),))
-    return Draw(index, chosen, int(rng.integers(0, MOST_PERIODS + 1)), int(rng.integers(1, MOST_RECORDED + 1)))
+    return Draw(index, chosen, *_shortened(chosen, int(rng.integers(0, MOST_PERIODS + 1)), int(rng.integers(1, MOST_RECORDED + 1))))
 
 
 def draw_steady(seed: int, index: int, structures: list) -> Scene:
@@ -60,6 +62,13 @@ def draw_steady(seed: int, index: int, structures: list) -> Scene:
         wall=str(rng.choice(_WALLS)), dissipation=law, tension=tension, accuracy=float(rng.choice(ACCURACIES)))
     kappa = _decade(rng, "kappa") if founded else 0.001 if rig else 0.0
     return chosen.evolve(kappa=kappa, **({"F0": _decade(rng, "F0")} if pressed else {}))
+
+
+def _shortened(chosen: Scene, periods: int, record: int) -> tuple[int, int]:
+    """Periods discarded and recorded, at least one of these, within the longest time."""
+    most = max(1, int(_LONGEST * chosen.f / _rate(chosen)))
+    record = min(record, most)
+    return min(periods, most - record), record
 
 
 def _decade(rng: np.random.Generator, name: str) -> float:
