@@ -55,12 +55,14 @@ DONE, TOO_LONG, NOT_FINITE = 0, 1, 2
 #: What is counted: steps, refused steps, events and closings; then the lengths of the next step, of the last behind a
 #: closing, and of usual ones.
 _STEPS, _REFUSED, _EVENTS, _CLOSINGS, _NEXT, _BEHIND, _USUAL = range(7)
+#: Most events in a row at one instant: contacts that change to and fro there have no truth in this computation.
+_MOST_AT_ONCE = 1000
 #: Most closings that are kept.
 _MOST_CLOSINGS = 100_000
 
 
 class TooLong(Exception):
-    """More steps than allowed."""
+    """More steps than allowed, or contacts that change to and fro at one instant."""
 
 
 @jit
@@ -132,7 +134,7 @@ def _sample(y, t, h, step, rows, row, period, samples):
 def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, counts, rows, tops, closings):
     """One drive period from phase 0, y and mode left at its end; where `watched`, `rows` (samples + 1, N) and `tops`."""
     period, t, row, samples = 2.0 * np.pi / law.beta, 0.0, 1, len(rows) - 1
-    kept, behind = np.empty(y.size), False
+    kept, behind, at_once = np.empty(y.size), False, 0
     while t < period * (1.0 - 1e-15):
         if counts[_STEPS] + counts[_REFUSED] > most_steps:
             return TOO_LONG
@@ -147,7 +149,9 @@ def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, c
             where, c, what = first_event(law, mode, t, y, step.scale, h, step.polynomial)
             if where <= 0.0:
                 _pass(law, mode, y, c, what, time, t, counts, closings)
-                behind = True
+                behind, at_once = True, at_once + 1
+                if at_once > _MOST_AT_ONCE:
+                    return TOO_LONG
                 continue
             if where <= 1.0:
                 h, error = _landed(law, mode, t, y, where * h, step, c, what)
@@ -158,6 +162,7 @@ def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, c
                 return NOT_FINITE
             continue
         counts[_STEPS] += 1
+        at_once = 0
         if watched:
             largest_in(law, mode, t, y, h, step, tops, kept)
             row = _sample(y, t, h, step, rows, row, period, samples)
