@@ -1,4 +1,4 @@
-"""What is kept of a motion: samples, states a period apart, and the first number that is not finite."""
+"""What is kept of a motion: samples, states a period apart, forces and costs, the first number that is not finite."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from .effects.balance import Balance, account_ends
 from .equations.motion import contact_force, stored_energy
+from .forces.largest import ForceLog
 from .jit import by_slot, kernel
 
 
@@ -21,6 +22,14 @@ class Samples(NamedTuple):
     velocity: np.ndarray
     force: np.ndarray
     energy: Any
+
+
+class Output(NamedTuple):
+    """What a kernel writes beside its result, and the stop flag (1,) that it reads; `counts` (4,) as in status.py."""
+
+    log: ForceLog
+    counts: np.ndarray
+    stop: np.ndarray
 
 
 @kernel

@@ -52,12 +52,14 @@ def change(slots, path, tangent, c, t):
 
 
 @kernel
-def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent, counts, stop):
+def run_flow(method, course, periods, counts, stop):
     """Carry motion and tangents through whole periods from phase 0.
 
     Returns (status, periods done, ∫ trace); the log's times count from the first period's start.
     """
-    m, trace, onset = slots.chain.inverse_mass.size, 0.0, -np.inf
+    trajectory, path, tangent = course
+    slots, drive, y, work = trajectory
+    m, period, trace, onset = slots.chain.inverse_mass.size, drive.period, 0.0, -np.inf
     begin(slots, y, path)
     path.logged[0] = 0
     for p in range(periods):
@@ -68,9 +70,8 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
                 return CANCELLED, p, trace
             if steps > _MOST_STEPS:
                 return TOO_MANY_STEPS, p, trace
-            evaluate(slots, beta, t, y, path.first, work.forces)
-            status, time, h, contact = flow_step(method, slots, beta, t, period, onset, y, work, path, clock, tangent,
-                                                 counts)
+            evaluate(slots, drive.beta, t, y, path.first, work.forces)
+            status, time, h, contact = flow_step(method, course, t, onset, counts)
             if status != DONE:
                 return status, p, trace
             if h > 0.0:

@@ -16,9 +16,8 @@ from math import sqrt
 from typing import NamedTuple
 
 from ..effects.dissipation import LAWS, exponent
-from ..jit import by_slot, inline_numba, kernel
-from .step import combine, dense_coefficients, evaluate
-from .tableau import ALL_STAGES, STAGES, C
+from ..jit import by_slot, kernel
+from .step import evaluate
 
 #: Kinds of time: behind an onset, plain, before a release.
 BEHIND, PLAIN, BEFORE = 1, 0, -1
@@ -97,13 +96,3 @@ def slope_in_x(slots, beta, time, x, state, row, work):
     rate = rate_at(time, x)
     for i in range(state.size):
         work.k[row, i] = rate * work.slope[i]
-
-
-@inline_numba
-def prepare_dense_in_time(slots, beta, time, h, y, work):
-    """Fill work.dense for the step of size h in x from y to work.end; work.slope is again that of the end."""
-    for s in range(STAGES + 1, ALL_STAGES):
-        combine(y, h, work.k, s, work.stage)
-        slope_in_x(slots, beta, time, C[s] * h, work.stage, s, work)
-    dense_coefficients(h, y, work)
-    evaluate(slots, beta, time_at(time, h), work.end, work.slope, work.forces)

@@ -48,6 +48,18 @@ class Forces(NamedTuple):
     held: Any = None
 
 
+class Trajectory(NamedTuple):
+    """A chain on its way: its effects, its driver's course through a period, state y (M,), the method's workspace.
+
+    `drive` is a `Cycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py).
+    """
+
+    slots: Slots
+    drive: Any
+    y: np.ndarray
+    work: Any
+
+
 check_effects("granchain_core.kernels.effects")
 
 

@@ -43,16 +43,17 @@ class LongChain(NamedTuple):
 
 
 @inline_numba
-def steps_without_events(simd, slots, drive, j, count, dtheta, h, y, peaks):
+def steps_without_events(simd, trajectory, j, count, peaks):
     """Take up to `count` steps from half-step index 2j of the drive; how many were taken."""
-    now, before, blocks = simd.now, simd.before, simd.inverse_mass.shape[0]
+    slots, drive, y, _ = trajectory
+    h, now, before, blocks = drive.h, simd.now, simd.before, simd.inverse_mass.shape[0]
     m = slots.chain.inverse_mass.size
     unpack(y, m, now, blocks)
     done, first, last = 0, False, False
     while True:
         i = 2 * (j + done)
-        changed = first_stage(simd, slots, drive_displacement(slots, drive, i, dtheta), h)
-        v0 = drive_velocity(slots, drive, i, dtheta)
+        changed = first_stage(simd, slots, drive_displacement(slots, drive, i), h)
+        v0 = drive_velocity(slots, drive, i)
         first_before, last_before = first, last
         first, last = comes_nearer(simd, slots, v0)
         if done > 0:
@@ -64,7 +65,7 @@ def steps_without_events(simd, slots, drive, j, count, dtheta, h, y, peaks):
         if done == count:
             pack(now, blocks, y, m)
             return done
-        middle, end = drive_displacement(slots, drive, i + 1, dtheta), drive_displacement(slots, drive, i + 2, dtheta)
+        middle, end = drive_displacement(slots, drive, i + 1), drive_displacement(slots, drive, i + 2)
         later_stage(simd, slots, middle, simd.first, simd.second, h, 0.5, 1.0 / 3.0)
         later_stage(simd, slots, middle, simd.second, simd.first, h, 1.0, 1.0 / 3.0)
         later_stage(simd, slots, end, simd.first, simd.second, h, 0.0, 1.0 / 6.0)
