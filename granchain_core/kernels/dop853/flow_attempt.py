@@ -15,7 +15,7 @@ import numpy as np
 from ..effects.preload import overlap
 from ..equations.motion import Trajectory
 from ..jit import by_slot, inline_numba, kernel
-from ..status import EVALUATIONS
+from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .bracket import may_turn, value_at
 from .step import (
     Overlap,
@@ -25,6 +25,7 @@ from .step import (
     drive_phase,
     error_norm,
     evaluate,
+    shrunk,
     turning_point,
 )
 from .tableau import ALL_STAGES, STAGES, C
@@ -87,6 +88,22 @@ def attempt_in_time(method, course, time, h):
         slope_in_x(slots, drive.beta, time, C[s] * h, work.end, s, work)
         keep_gaps(tangent, slots, work.end, work.slope, s)
     return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
+
+
+@inline_numba
+def accepted_in_time(method, course, time, h, counts):
+    """Shrink a step until its error is tolerable: (status, size, error over the tolerance)."""
+    while True:
+        error = attempt_in_time(method, course, time, h)
+        counts[EVALUATIONS] += STAGES
+        if not np.isfinite(error):
+            return NOT_FINITE, h, error
+        if error <= 1.0:
+            return DONE, h, error
+        counts[REJECTED] += 1
+        h = shrunk(h, error)
+        if not time.start + 0.1 * (time_at(time, h) - time.start) > time.start:
+            return STEP_TOO_SMALL, h, error
 
 
 @inline_numba

@@ -10,7 +10,7 @@ import numpy as np
 from ..effects.preload import overlap
 from ..jit import inline_numba
 from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .flow_attempt import attempt_in_time, first_change
+from .flow_attempt import accepted_in_time, attempt_in_time, first_change
 from .step import growth, shrunk
 from .tableau import STAGES
 from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
@@ -42,8 +42,10 @@ def next_release(slots, y, path):
 
 @inline_numba
 def locate_change(method, course, time, h, c, counts):
-    """Correct the size of a step until it ends on the change of contact c; returns it."""
+    """Repeat a step with another size until it ends on the change of contact c, first with h; returns the size."""
     slots, _, _, work = course.trajectory
+    attempt_in_time(method, course, time, h)
+    counts[EVALUATIONS] += STAGES
     for _ in range(_TRIALS):
         d = overlap(slots.preload, work.end, c)
         speed = (work.slope[c] - work.slope[c + 1]) * rate_at(time, h)
@@ -124,20 +126,11 @@ def flow_step(method, course, t, onset, counts):
                 aiming, lost = False, True
                 time, h = usual, size_of(usual, dt)
                 continue
-            if status != DONE:
-                return status, time, h, -1
         else:
-            error = attempt_in_time(method, course, time, h)
-            counts[EVALUATIONS] += STAGES
-            if not np.isfinite(error):
-                return NOT_FINITE, time, h, -1
-            if error > 1.0:
-                counts[REJECTED] += 1
-                h = shrunk(h, error)
-                dt = time_at(time, h) - t
-                if not t + 0.1 * dt > t:
-                    return STEP_TOO_SMALL, time, h, -1
-                continue
+            status, h, error = accepted_in_time(method, course, time, h, counts)
+            dt = min(dt, time_at(time, h) - t)
+        if status != DONE:
+            return status, time, h, -1
         contact, x = first_change(course, time, h, landed, counts)
         if contact < 0:
             if not aiming:
@@ -152,10 +145,7 @@ def flow_step(method, course, t, onset, counts):
                 h *= _PART * x
                 dt = time_at(time, h) - t
             continue
-        h *= x
-        attempt_in_time(method, course, time, h)
-        counts[EVALUATIONS] += STAGES
-        return DONE, time, locate_change(method, course, time, h, contact, counts), contact
+        return DONE, time, locate_change(method, course, time, h * x, contact, counts), contact
     return STEP_TOO_SMALL, time, h, -1
 
 

@@ -147,6 +147,22 @@ def locate_event(method, step, limit, c, counts):
 
 
 @inline_numba
+def accepted_step(method, trajectory, t, h, counts):
+    """Shrink a step from t until its error is tolerable: (status, size, factor by which the next one may grow)."""
+    while True:
+        error = attempt(method, Step(trajectory, t, h))
+        counts[EVALUATIONS] += STAGES
+        if not np.isfinite(error):
+            return NOT_FINITE, h, 1.0
+        if error <= 1.0:
+            return DONE, h, growth(error)
+        counts[REJECTED] += 1
+        h = shrunk(h, error)
+        if t + 0.1 * h == t:
+            return STEP_TOO_SMALL, h, 1.0
+
+
+@inline_numba
 def certified_step(method, trajectory, t, limit, counts):
     """One accepted step from y at local time t, at most to `limit`; the result is work.end.
 
@@ -155,23 +171,16 @@ def certified_step(method, trajectory, t, limit, counts):
     tension, clock = trajectory.slots.tension, trajectory.work.clock
     h = min(clock[0], method.largest_step, limit - t)
     enter_force_free(tension, trajectory, t)
-    aimed, kinked, again, factor = -1, False, False, 1.0
+    aimed, kinked, again = -1, False, False
     while True:
+        tried = h
+        status, h, factor = accepted_step(method, trajectory, t, tried, counts)
+        if status != DONE:
+            return status, h, -1
         step = Step(trajectory, t, h)
-        error = attempt(method, step)
-        counts[EVALUATIONS] += STAGES
-        if not np.isfinite(error):
-            return NOT_FINITE, h, -1
-        if error > 1.0:
-            aimed, kinked = -1, False
-            counts[REJECTED] += 1
-            h = shrunk(h, error)
-            if t + 0.1 * h == t:
-                return STEP_TOO_SMALL, h, -1
-            continue
-        factor = growth(error)
-        if aimed >= 0 or kinked:
+        if h == tried and (aimed >= 0 or kinked):
             break
+        kinked = False
         aimed, x = first_crossing(step, counts)
         kink = first_kink(tension, step, min(x, 1.0), counts, again)
         if kink == 0.0:
