@@ -9,7 +9,7 @@ import numpy as np
 from .effects.balance import Balance, account_ends
 from .equations.motion import contact_force, stored_energy
 from .forces.largest import ForceLog
-from .jit import by_slot, kernel
+from .jit import by_slot, internal, kernel
 
 
 class Samples(NamedTuple):
@@ -32,7 +32,7 @@ class Output(NamedTuple):
     stop: np.ndarray
 
 
-@kernel
+@internal
 def keep(slots, row, y, dy, e, samples):
     """Write one sample of state y, whose slope is dy and whose forces are in e."""
     n = samples.displacement.shape[1]
@@ -66,7 +66,7 @@ def first_not_finite(y, m):
     return 0
 
 
-@kernel
+@internal
 def keep_strobe(y, dy, strobe):
     """Displacements and velocities of the beads at one instant; driver and wall stay zero."""
     for i in range(1, strobe.shape[1] - 1):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import by_slot, inline_numba, kernel
+from ..jit import by_slot, inline_numba, internal
 
 #: Factor by which a golden section shrinks the bracket.
 _RATIO = 0.6180339887498949
@@ -30,7 +30,7 @@ def value_at(quantity, step, x):
     raise NotImplementedError
 
 
-@kernel
+@internal
 def between(bracket):
     """Where the straight line through both ends is zero; the middle where rounding has it outside."""
     low, high, f_low, f_high, _ = bracket
@@ -38,7 +38,7 @@ def between(bracket):
     return x if low <= x <= high else 0.5 * (low + high)
 
 
-@kernel
+@internal
 def narrowed(bracket, x, f):
     """The bracket once the quantity is known to be f at x."""
     low, high, f_low, f_high, moved = bracket

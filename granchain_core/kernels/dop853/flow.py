@@ -11,7 +11,7 @@ import numpy as np
 from ..effects.preload import overlap
 from ..equations.motion import copy
 from ..equations.tangent import Tangent, carry
-from ..jit import by_slot, kernel
+from ..jit import by_slot, internal, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
 from .flow_events import flow_step
@@ -32,14 +32,14 @@ def _(tangent, slots, c, closes):
     pass
 
 
-@kernel
+@internal
 def begin(slots, y, path):
     """Which contacts are closed at the start."""
     for c in range(path.closed.size):
         path.closed[c] = 1 if overlap(slots.preload, y, c) > 0.0 else 0
 
 
-@kernel
+@internal
 def change(slots, path, tangent, c, t):
     """Change contact c at time t; returns whether it closed."""
     closes = path.closed[c] == 0

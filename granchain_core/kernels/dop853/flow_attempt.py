@@ -14,7 +14,7 @@ import numpy as np
 
 from ..effects.preload import overlap
 from ..equations.motion import Trajectory
-from ..jit import by_slot, inline_numba, kernel
+from ..jit import by_slot, inline_numba, internal
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .bracket import may_turn, value_at
 from .step import (
@@ -71,7 +71,7 @@ def keep_gaps(tangent, slots, state, slope, stage):
     """Keep what tangents need of one stage, its overlaps; `slope` has its velocities. Absent: nobody needs them."""
 
 
-@kernel
+@internal
 def attempt_in_time(method, course, time, h):
     """Try a step of size h in x from y; the result is work.end, its slope in t work.slope.
 

@@ -18,7 +18,7 @@ from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import OUTPUT
-from ..jit import kernel
+from ..jit import internal
 from ..simd.functions import root
 from ..status import EVALUATIONS
 from .bracket import top_inside, value_at
@@ -41,7 +41,7 @@ class Force(NamedTuple):
     counts: np.ndarray
 
 
-@kernel
+@internal
 def forces_of(slots, y, dy):
     """Input, output and elastic output force at state y, velocities in dy."""
     last = slots.chain.stiffness.size - 1
@@ -52,7 +52,7 @@ def forces_of(slots, y, dy):
     return cut_at_zero(slots.tension, pushed), cut_at_zero(slots.tension, passed), elastic
 
 
-@kernel
+@internal
 def forces_in_step(step, x):
     """The same at fraction x of the step, whose dense output is prepared."""
     slots, drive, y, work = step.trajectory
@@ -67,7 +67,7 @@ def _(quantity, step, x):
     return forces_in_step(step, x)[quantity.number]
 
 
-@kernel
+@internal
 def keep_end_forces(slots, y, dy, e):
     """The elastic forces, those of a cut included, of the two outer contacts at either end."""
     last = slots.chain.stiffness.size - 1
@@ -78,7 +78,7 @@ def keep_end_forces(slots, y, dy, e):
         e[c] = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped) - damped
 
 
-@kernel
+@internal
 def slopes_of(slots, y, dy, work):
     """Ḟ of the same at state y."""
     last = slots.chain.stiffness.size - 1
@@ -88,7 +88,7 @@ def slopes_of(slots, y, dy, work):
     return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
 
 
-@kernel
+@internal
 def is_monotone(f0, s0, f1, s1, h):
     """Whether the cubic with values f0, f1 and slopes s0, s1 at the ends of a step of size h rises or falls throughout.
 
@@ -98,7 +98,7 @@ def is_monotone(f0, s0, f1, s1, h):
     return chord * s0 >= 0.0 and chord * s1 >= 0.0 and h * max(abs(s0), abs(s1)) <= abs(chord)
 
 
-@kernel
+@internal
 def follow_step(step, ready, peaks, counts):
     """Raise the largest forces to those in the accepted step; whether its dense output is prepared now.
 

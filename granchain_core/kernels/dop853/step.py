@@ -10,7 +10,7 @@ import numpy as np
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import motion
-from ..jit import by_slot, inline_numba, kernel
+from ..jit import by_slot, inline_numba, internal, kernel
 from .bracket import Bracket, root_inside, top_inside, value_at
 from .tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
 
@@ -75,7 +75,7 @@ def evaluate(slots, beta, t, y, dy, forces):
     motion(slots, driver_displacement(slots.driver, beta * t), driver_velocity(slots.driver, beta * t), y, dy, forces)
 
 
-@kernel
+@internal
 def combine(y, h, k, row, out):
     """out = y + h Σ_s A[row, s] k_s, the state at which slope `row` is taken."""
     for i in range(y.size):
@@ -87,7 +87,7 @@ def combine(y, h, k, row, out):
                 out[i] += a * k[s, i]
 
 
-@kernel
+@internal
 def attempt(method, step):
     """Try a step from y, whose slope is work.k[0]; the result is work.end, its slope work.k[12].
 
@@ -100,13 +100,13 @@ def attempt(method, step):
     return error_norm(method.tolerance, step.h, y, work, slots.chain.inverse_mass.size)
 
 
-@kernel
+@internal
 def shrunk(h, error):
     """A smaller step after one with too large an error."""
     return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
 
 
-@kernel
+@internal
 def growth(error):
     """The next step over one whose error was tolerable."""
     return min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
@@ -134,7 +134,7 @@ def error_norm(tolerance, h, y, work, m):
     return abs(h) * fifth / sqrt((fifth + 0.01 * third) * (2 * (m - 2)))
 
 
-@kernel
+@internal
 def prepare_dense(step):
     """Fill work.dense for the step from y to work.end: three more slopes and seven coefficients."""
     slots, drive, y, work = step.trajectory
@@ -163,7 +163,7 @@ def dense_coefficients(h, y, work):
                     dense[3 + row, i] += a * k[s, i]
 
 
-@kernel
+@internal
 def dense_value(dense, y0, x, i):
     """Component i at fraction x of the step."""
     value = dense[6, i] * x
@@ -175,7 +175,7 @@ def dense_value(dense, y0, x, i):
     return y0 + (value + dense[0, i]) * x
 
 
-@kernel
+@internal
 def interpolate(y, work, x):
     """Write the state at fraction x of the step from y into work.probe."""
     for i in range(y.size):
@@ -204,21 +204,21 @@ def _(quantity, step, x):
     return quantity.sign * overlap(slots.preload, probe, c)
 
 
-@kernel
+@internal
 def turning_point(pressed, step):
     """Fraction at which an overlap is largest inside the step."""
     x, _ = top_inside(pressed, step, _SECTIONS)
     return x
 
 
-@kernel
+@internal
 def crossing(pressed, step, low, high):
     """Fraction between `low` and `high` at which an overlap changes sign."""
     f_low, f_high = value_at(pressed, step, low), value_at(pressed, step, high)
     return root_inside(pressed, step, Bracket(low, high, f_low, f_high, 0), _FOUND)
 
 
-@kernel
+@internal
 def new_scale(y, work, m):
     """Let the scale of the tolerance grow with the motion."""
     for row in range(2):

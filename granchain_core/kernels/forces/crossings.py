@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS
 from ..effects.preload import overlap
-from ..jit import by_slot, inline_llvm, kernel
+from ..jit import by_slot, inline_llvm, internal
 from ..simd.functions import clip, root
 from .largest import UNRESOLVED, note_closing
 
@@ -56,7 +56,7 @@ def brief_touch(before, after, rate, rate_after, h):
     return root(clip(2.0 * fall * top))
 
 
-@kernel
+@internal
 def approach_of(slots, instant, c):
     """Overlap and rate of contact c."""
     return Approach(overlap(slots.preload, instant.y, c), instant.dy[c] - instant.dy[c + 1])

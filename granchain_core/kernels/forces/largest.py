@@ -21,7 +21,7 @@ from ..effects.driver import driver_acceleration
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..equations.motion import contact_force
-from ..jit import by_slot, inline_llvm, inline_numba, kernel
+from ..jit import by_slot, inline_llvm, inline_numba, internal
 from ..rk4.contact_events import GAP, RATE, TINY, hermite_turn
 from ..simd.functions import root
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
@@ -73,14 +73,14 @@ def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
     return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(3, dtype=np.int64))
 
 
-@kernel
+@internal
 def reach(peaks, row, value):
     """Raise one largest force to `value`."""
     if value > peaks[row]:
         peaks[row] = value
 
 
-@kernel
+@internal
 def force_beside(slots, y, dy, e, c, event, closed):
     """Total force of contact c; at the event of contact `event` that one is just closed or just open."""
     if c != event:
@@ -90,7 +90,7 @@ def force_beside(slots, y, dy, e, c, event, closed):
     return cut_at_zero(slots.tension, damping(slots.dissipation, TINY) * (dy[c] - dy[c + 1]))
 
 
-@kernel
+@internal
 def acceleration(slots, y, dy, e, i, event, closed):
     """v̇ of body i."""
     if i == 0:
@@ -101,7 +101,7 @@ def acceleration(slots, y, dy, e, i, event, closed):
     return slots.chain.inverse_mass[i] * force_on_bead(slots, force, y[i], dy[i])
 
 
-@kernel
+@internal
 def force_slope(slots, y, dy, e, c, event, closed):
     """Ḟ = (3/2) K √δ δ̇ + g'(δ) δ̇² + g(δ) δ̈ of contact c; 0 where it is open."""
     d, rate = positive_part(overlap(slots.preload, y, c)), dy[c] - dy[c + 1]
@@ -112,7 +112,7 @@ def force_slope(slots, y, dy, e, c, event, closed):
             + damping(slots.dissipation, d) * change)
 
 
-@kernel
+@internal
 def cubic_top(f0, s0, f1, s1, h):
     """Largest value of the cubic with values f0, f1 and slopes s0, s1 at the ends of a step of size h."""
     largest = max(f0, f1)
@@ -124,7 +124,7 @@ def cubic_top(f0, s0, f1, s1, h):
     return max(largest, f0 + x * (a + x * (3.0 * (f1 - f0) - 2.0 * a - b + x * (2.0 * (f0 - f1) + a + b))))
 
 
-@kernel
+@internal
 def follow(log, q, value, slope, h):
     """Follow force number q to its value at a state that lies h behind the last one."""
     peaks, last = log.peaks, log.last
@@ -133,7 +133,7 @@ def follow(log, q, value, slope, h):
     last[q, 0], last[q, 1] = value, slope
 
 
-@kernel
+@internal
 def watch_beside(slots, y, dy, e, h, event, closed, log):
     """Follow the three forces to state y, whose slope is dy, h behind the last one; h = 0 begins anew there."""
     last = e.size - 1
@@ -165,7 +165,7 @@ def watch_state(slots, y, dy, e, h, log):
         log.last[0, 1] = log.last[1, 1] = log.last[2, 1] = np.nan
 
 
-@kernel
+@internal
 def watch_event(slots, y, dy, e, h, c, theta, log):
     """Follow the forces up to the event of contact c at drive phase θ, and begin anew behind it."""
     rate = dy[c] - dy[c + 1]

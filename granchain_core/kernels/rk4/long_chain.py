@@ -16,7 +16,7 @@ from ..effects.dissipation import LAWS, damping, primitive
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..jit import by_slot, inline_numba, kernel
+from ..jit import by_slot, inline_numba, internal
 from ..simd.vector import LANES, from_left, from_right, load, positive_mask, splat, store, with_first
 from .step import drive_displacement, drive_velocity
 
@@ -104,7 +104,7 @@ def first_stage(simd, slots, u0, h):
     return changed != 0
 
 
-@kernel
+@internal
 def later_stage(simd, slots, u0, y, out, h, forward, weight):
     """A later stage at state y: out = now + forward·h·slope, acc += weight·h·slope."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
@@ -144,7 +144,7 @@ def comes_nearer(simd, slots, v0):
     return (first_rate > 0.0) != (first_gap > 0.0), (last_rate > 0.0) != (last_gap > 0.0)
 
 
-@kernel
+@internal
 def watch_ends(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
@@ -164,7 +164,7 @@ def unpack(y, m, blocked, blocks):
             blocked[row * blocks + i // LANES, i % LANES] = y[row * m + i]
 
 
-@kernel
+@internal
 def pack(blocked, blocks, y, m):
     """Two rows of blocks back into two rows of m bodies."""
     for row in range(2):

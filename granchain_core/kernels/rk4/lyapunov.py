@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import log, sqrt
 
 from ..equations.motion import place
-from ..jit import kernel
+from ..jit import internal, kernel
 from ..samples import first_not_finite, keep_strobe
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .step import step
@@ -37,7 +37,7 @@ def run_two_trajectories(method, one, other, growth, strobes, out):
     return DONE, growth.size
 
 
-@kernel
+@internal
 def distance(y, other, m):
     """Euclidean distance of two states in (u, w)."""
     total = 0.0

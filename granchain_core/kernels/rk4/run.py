@@ -11,7 +11,7 @@ from ..effects.preload import overlap
 from ..equations.motion import contact_force, copy, motion
 from ..forces.largest import SAMPLE, watch_state
 from ..forces.peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
-from ..jit import by_slot_inlined, kernel
+from ..jit import by_slot_inlined, internal, kernel
 from ..samples import Samples, first_not_finite, keep, keep_strobe
 from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS, STEPS_BETWEEN_STOP_CHECKS
 from .long_chain import LongChain, steps_without_events
@@ -61,7 +61,7 @@ def _(simd, method, trajectory, j, count, out):
             done += 1
 
 
-@kernel
+@internal
 def watch_equal(slots, y, dy, e, peaks):
     """Follow the three forces at one of equal steps (forces/peaks.py)."""
     last = e.size - 1

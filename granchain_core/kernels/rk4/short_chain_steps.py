@@ -9,7 +9,7 @@ from ..effects.dissipation import damping
 from ..effects.driver import driver_displacement, driver_velocity
 from ..forces.largest import watch_ends
 from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..jit import inline_llvm, inline_numba, kernel
+from ..jit import inline_llvm, inline_numba, internal
 from ..simd.functions import larger
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import at, blank, positive_mask, store
@@ -89,7 +89,7 @@ def keep_forces(wide, row, last, k, x):
     return pushed, passed, elastic
 
 
-@kernel
+@internal
 def watch_block(values, count, largest, peaks, first):
     """Follow one force through the steps of a block; step by step only where a largest value may be among them."""
     skipped = 0 if HIGHEST * largest > peaks[first] else max(0, count - 4)

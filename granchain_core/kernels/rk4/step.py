@@ -15,7 +15,7 @@ from ..effects.preload import overlap
 from ..equations.motion import copy, motion
 from ..forces.crossings import end_overlaps, watch_crossings
 from ..forces.largest import Instant, Span, watch_event
-from ..jit import by_slot, by_slot_inlined, inline_numba, kernel
+from ..jit import by_slot, by_slot_inlined, inline_numba, internal
 from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
     DISPLACEMENT_ERROR,
@@ -69,21 +69,21 @@ class DriveTable(NamedTuple):
     h: float
 
 
-@kernel
+@internal
 def drive_displacement(slots, drive, i):
     """u_0 at half-step index i of the period."""
     values, dtheta, _ = drive
     return values[i, 0] if values.shape[0] > 0 else driver_displacement(slots.driver, 0.5 * dtheta * i)
 
 
-@kernel
+@internal
 def drive_velocity(slots, drive, i):
     """v_0 at half-step index i of the period."""
     values, dtheta, _ = drive
     return values[i, 1] if values.shape[0] > 0 else driver_velocity(slots.driver, 0.5 * dtheta * i)
 
 
-@kernel
+@internal
 def rk4(slots, ua, va, ub, vb, h, y, stages):
     """One RK4 step from y, whose slope is stages.k[0], to stages.end; (u, v)_a at mid-step, _b at its end."""
     k, stage, end, forces = stages.k, stages.stage, stages.end, stages.forces
@@ -114,7 +114,7 @@ def may_change(slots, y, slope, end, end_slope):
     return changed > 0
 
 
-@kernel
+@internal
 def keep_overlaps(slots, y, slope, ends, overlaps, rates):
     """Overlaps and their rates at one end of a step."""
     for c in range(slots.chain.stiffness.size):
@@ -122,7 +122,7 @@ def keep_overlaps(slots, y, slope, ends, overlaps, rates):
         ends[rates, c] = slope[c] - slope[c + 1]
 
 
-@kernel
+@internal
 def correct_state(slots, ends, v0, y):
     """Subtract the quadrature errors beside contact events from y; the driver moves at v0."""
     inverse_mass = slots.chain.inverse_mass
@@ -153,7 +153,7 @@ def step(method, trajectory, j, out):
     raise NotImplementedError
 
 
-@kernel
+@internal
 def whole_step(trajectory, j):
     """One RK4 step from half-step index 2j to stages.end; returns the driver's displacement and velocity there."""
     slots, drive, y, stages = trajectory
@@ -163,7 +163,7 @@ def whole_step(trajectory, j):
     return ub, vb
 
 
-@kernel
+@internal
 def span_of(drive, j):
     """Step j of the period."""
     return Span(drive.h, j * drive.dtheta, drive.dtheta)
@@ -198,7 +198,7 @@ def _(method, trajectory, j, out):
     return left
 
 
-@kernel
+@internal
 def split(trajectory, j, u_end, v_end, out):
     """Repeat step j of the period, in which contacts change, from event to event; leaves its end in stages.end.
 
