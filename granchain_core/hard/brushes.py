@@ -13,12 +13,12 @@ from math import asin, pi
 import numpy as np
 
 from ..kernels.dop853.run import certified_step
-from ..kernels.dop853.step import ALL_STAGES, STAGES, Dop853, Work, evaluate
+from ..kernels.dop853.step import ALL_STAGES, STAGES, Cycle, Dop853, Work, evaluate
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.foundation import Foundation
 from ..kernels.effects.preload import Preload
-from ..kernels.equations.motion import Forces, Slots, copy
+from ..kernels.equations.motion import Forces, Slots, Trajectory, copy
 from ..kernels.jit import kernel
 
 #: Columns of a drawn case: the driver's rate β (or the bead's own ω), depth, phase it starts at, tolerance, largest
@@ -43,7 +43,7 @@ def draw(count: int, seed: int, driven: bool) -> np.ndarray:
 
 
 @kernel
-def touch(cases, driven, work, y, clock, counts, static, chain, found):  # type: ignore[no-untyped-def]
+def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore[no-untyped-def]
     """Run every case from its phase until the driver, or the bead, is back at middle position.
 
     The gap is 1 − depth. A bead that rests is where it was until the touch, so the analytic onset is asin(gap); the
@@ -62,13 +62,14 @@ def touch(cases, driven, work, y, clock, counts, static, chain, found):  # type:
         if not driven:
             y[1], y[4] = np.sin(start), rate * np.cos(start)
         t, end = start / rate, pi / rate
-        clock[0] = method.largest_step * cases[n, FIRST]
+        work.clock[0] = method.largest_step * cases[n, FIRST]
         work.scale[0], work.scale[1] = 1.0, rate
         evaluate(slots, rate, t, y, work.k[0], work.forces)
+        trajectory = Trajectory(slots, Cycle(rate, period), y, work)
         contact = 0 if driven else 1
         while t < end * (1.0 - 1e-12):
             before = y[contact] - y[contact + 1] + static[contact] > 0.0
-            status, h, changed = certified_step(method, slots, rate, t, end, y, work, clock, counts)
+            status, h, changed = certified_step(method, trajectory, t, end, counts)
             if status != 0:
                 found[n, ONSETS] = -1.0
                 break
@@ -87,8 +88,8 @@ def run(cases: np.ndarray, driven: bool) -> np.ndarray:
     """Results for each case (count, 3)."""
     row, found = 3, np.zeros((len(cases), 3))
     chain = Chain(np.array([0.0, 1.0, 0.0]), np.ones(2))
-    touch(cases, driven, workspace(row), np.zeros(2 * row), np.zeros(1), np.zeros(4, dtype=np.int64), np.zeros(2),
-          chain, found)
+    touch(cases, driven, workspace(row), np.zeros(2 * row), np.zeros(4, dtype=np.int64), np.zeros(2), chain,
+          found)
     return found
 
 
@@ -96,7 +97,7 @@ def workspace(row: int) -> Work:
     """Arrays of the certified method for a chain of `row` bodies."""
     return Work(k=np.zeros((ALL_STAGES, 2 * row)), stage=np.zeros(2 * row), end=np.zeros(2 * row),
                 probe=np.zeros(2 * row), slope=np.zeros(2 * row), dense=np.zeros((7, 2 * row)), scale=np.zeros(2),
-                forces=Forces(np.zeros(row - 1), None))
+                clock=np.zeros(1), forces=Forces(np.zeros(row - 1), None))
 
 
 def missed(cases: np.ndarray, found: np.ndarray) -> np.ndarray:

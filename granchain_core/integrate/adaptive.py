@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kernels.dop853.run import run_certified
-from ..kernels.dop853.step import ALL_STAGES, Dop853, Work
-from ..kernels.equations.motion import place
+from ..kernels.dop853.run import Stretch, run_certified
+from ..kernels.dop853.step import ALL_STAGES, Cycle, Dop853, Work
+from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.peaks import MEMORY, ROWS, next_period
-from ..kernels.samples import Samples
+from ..kernels.samples import Output, Samples
 from ..kernels.status import DONE
 from ..lower import Lowered
 from .failure import not_finite
-from .stepper import Output, Start, empty_samples
+from .stepper import Start, empty_samples
 
 #: At least this many steps are made in a period, so that the driver is never stepped over.
 _LEAST_STEPS = 16
@@ -23,7 +23,7 @@ _LEAST_SCALE = 1e-3
 
 
 class Adaptive:
-    """Dormand–Prince 8 in (u, w) at a relative tolerance per step; `clock` (1,) is the next step to try."""
+    """Dormand–Prince 8 in (u, w) at a relative tolerance per step."""
 
     def __init__(self, tolerance: float, lowered: Lowered, samples: int) -> None:
         largest, size = lowered.period / _LEAST_STEPS, lowered.size
@@ -31,8 +31,8 @@ class Adaptive:
         self.lowered = lowered
         self.grid = samples
         self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
-                         slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2), forces=lowered.forces())
-        self.clock = np.array([min(_FIRST_STEP, largest)])
+                         slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
+                         clock=np.array([min(_FIRST_STEP, largest)]), forces=lowered.forces())
 
     def use(self, lowered: Lowered) -> None:
         """Go on with other values in the same slots, or with other effects."""
@@ -43,6 +43,11 @@ class Adaptive:
         """Begin from a new state: errors are measured on its scale."""
         for i, values in enumerate(self.lowered.rows(y)):
             self.work.scale[i] = max(_LEAST_SCALE, float(np.abs(values).max()))
+
+    def trajectory(self, y: np.ndarray) -> Trajectory:
+        """The state y with all that its kernels need."""
+        lo = self.lowered
+        return Trajectory(lo.slots, Cycle(lo.beta, lo.period), y, self.work)
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
@@ -69,9 +74,8 @@ class Adaptive:
 
     def _run(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: Output) -> tuple[int, int]:
-        lo = self.lowered
-        status, rows = run_certified(self.method, lo.slots, lo.beta, lo.period, y, self.work, self.clock, first, points,
-                                     self.grid, every, samples, *out)
+        status, rows = run_certified(self.method, self.trajectory(y), Stretch(first, points, self.grid, every), samples,
+                                     out)
         return status, rows
 
     def step_at(self, grid_index: int) -> int | None:

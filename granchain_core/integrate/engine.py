@@ -8,7 +8,7 @@ import numpy as np
 
 from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
 from ..kernels.forces.peaks import MEMORY, ROWS, forget
-from ..kernels.samples import Samples
+from ..kernels.samples import Output, Samples
 from ..kernels.status import DONE, NOT_FINITE
 from ..lower import Lowered, lower
 from ..scene import Scene
@@ -18,7 +18,7 @@ from .counts import Counts
 from .failure import Failure, not_finite
 from .flushed import flushed
 from .methods import METHODS, Setting
-from .stepper import Output, Start, empty_samples
+from .stepper import Start, empty_samples
 
 #: Places for closings of a contact in one period; bounces beyond that are ever weaker.
 _CLOSINGS = 4

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..kernels.equations.motion import place
+from ..kernels.equations.motion import Trajectory, place
 from ..kernels.equations.velocity_form import naive_motion
 from ..kernels.forces.largest import new_log
 from ..kernels.jit import all_in_simd_kernels
@@ -19,13 +19,13 @@ from ..kernels.rk4.contact_events import ENDS
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import Kept, run_steps
 from ..kernels.rk4.short_chain import BLOCK, KEPT, WIDTHS, ShortChain
-from ..kernels.rk4.step import Stages
-from ..kernels.samples import Samples
+from ..kernels.rk4.step import DriveTable, Stages
+from ..kernels.samples import Output, Samples
 from ..kernels.simd.vector import LANES, aligned
 from ..lower import Lowered
 from ..stop import Stop
 from .failure import not_finite
-from .stepper import Output, Start, empty_samples
+from .stepper import Start, empty_samples
 
 #: Steps in a period up to which the driver's motion is tabulated.
 _LARGEST_TABLE = 200_000
@@ -74,6 +74,11 @@ class FixedStep:
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: nothing is remembered of the last."""
 
+    def trajectory(self, y: np.ndarray) -> Trajectory:
+        """The state y with all that its kernels need."""
+        return Trajectory(self.lowered.slots, DriveTable(self.drive, 2.0 * np.pi / self.grid, self.h), y,
+                          self.work)
+
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
         place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
@@ -88,8 +93,7 @@ class FixedStep:
         return self._run(y, 0, self.grid, Kept(self._no_samples, strobes, tops), out)
 
     def _run(self, y: np.ndarray, first: int, stride: int, kept: Kept, out: Output) -> tuple[int, int]:
-        status, done = run_steps(self.method, self.lowered.slots, self.drive, self.h, y, self.work, first, stride, kept,
-                                 *out)
+        status, done = run_steps(self.method, self.trajectory(y), first, stride, kept, out)
         return status, done
 
     def step_at(self, grid_index: int) -> int | None:
@@ -125,12 +129,12 @@ class FixedStep:
         # new vectors: those of the failed call are full of what failed
         work = self.work._replace(simd=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
         work.k[0] = slope
+        trajectory = self.trajectory(now)._replace(work=work)
         kept, out = empty_samples(self.lowered, 2), Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
         j = first
         while j < last:
             stride = min(last, (j // n + 1) * n) - j
-            run_steps(self.method, self.lowered.slots, self.drive, self.h, now, work, j % n, stride,
-                      Kept(kept, *self._no_periods), *out)
+            run_steps(self.method, trajectory, j % n, stride, Kept(kept, *self._no_periods), out)
             j += stride
         return now, work.k
 

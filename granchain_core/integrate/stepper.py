@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
-from ..kernels.forces.largest import ForceLog
-from ..kernels.samples import Samples
+from ..kernels.equations.motion import Trajectory
+from ..kernels.samples import Output, Samples
 from ..lower import Lowered
 
 #: Where a call began: state and slope (M,), and the grid index.
 Start = tuple[np.ndarray, np.ndarray, int]
-
-
-class Output(NamedTuple):
-    """Arrays that every kernel writes beside its result, and the stop flag that it reads."""
-
-    log: ForceLog
-    counts: np.ndarray
-    stop: np.ndarray
 
 
 class Stepper(Protocol):
@@ -34,6 +26,9 @@ class Stepper(Protocol):
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state."""
+
+    def trajectory(self, y: np.ndarray) -> Trajectory:
+        """The state y with all that the method's kernels need."""
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the driver and the slope in step with y at drive phase `theta`."""

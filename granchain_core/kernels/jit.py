@@ -10,6 +10,7 @@
 
 from __future__ import annotations
 
+import functools
 import gc
 import hashlib
 import os
@@ -27,6 +28,10 @@ from numba.extending import overload
 #: need no C entry: that is less code to compile and to run.
 _OPTIONS: Any = {"fastmath": {"nsz", "arcp", "contract", "reassoc"}, "error_model": "numpy", "_nrt": False,
                  "no_cfunc_wrapper": True}
+
+
+#: Code that only kernels call needs no entry for Python either, which would take another fifth of the compiler's time.
+_INTERNAL = _OPTIONS | {"no_cpython_wrapper": True}
 
 
 class _CollectorPause(event.Listener):
@@ -81,19 +86,46 @@ def cache_folder() -> Path:
 CACHE_FOLDER = cache_folder()
 
 
-def inline_llvm(function):
-    """Decorator for what belongs into its caller's code: values that stay in registers."""
-    return numba.njit(nogil=True, forceinline=True, **_OPTIONS)(function)
+class Internal:
+    """A compiled function that only kernels call; called from Python it runs uncompiled.
+
+    Numba finds the compiled code by the attribute `_numba_type_`, by which it knows its own dispatchers too. One without
+    an entry for Python must not be called from there: this object stands between the two.
+    """
+
+    def __init__(self, dispatcher: Any) -> None:
+        functools.update_wrapper(self, dispatcher.py_func)
+        self.py_func = dispatcher.py_func
+        self.dispatcher = dispatcher
+        self._numba_type_ = types.Dispatcher(dispatcher)
+
+    def __call__(self, *args: Any) -> Any:
+        """The function itself."""
+        return self.py_func(*args)
 
 
-def kernel(function):
-    """Decorator for compiled, cached kernels on floats and arrays."""
+def _cached(function: Any, options: dict[str, Any]) -> Any:
     before = numba.config.CACHE_DIR
     numba.config.CACHE_DIR = str(CACHE_FOLDER)
     try:
-        return numba.njit(cache=True, nogil=True, **_OPTIONS)(function)
+        return numba.njit(cache=True, nogil=True, **options)(function)
     finally:
         numba.config.CACHE_DIR = before
+
+
+def kernel(function):
+    """Decorator for compiled, cached kernels on floats and arrays that Python calls."""
+    return _cached(function, _OPTIONS)
+
+
+def internal(function):
+    """Decorator for parts of kernels, compiled and cached for themselves."""
+    return Internal(_cached(function, _INTERNAL))
+
+
+def inline_llvm(function):
+    """Decorator for what belongs into its caller's code: values that stay in registers."""
+    return Internal(numba.njit(nogil=True, forceinline=True, **_INTERNAL)(function))
 
 
 def inline_numba(function):
@@ -131,7 +163,7 @@ def by_slot(absent, forceinline=False):
     generic.__name__ = generic.__qualname__ = absent.__name__
     generic.__doc__, generic.__module__ = absent.__doc__, absent.__module__
 
-    @overload(generic, strict=False, jit_options=_OPTIONS | {"forceinline": forceinline})
+    @overload(generic, strict=False, jit_options=_INTERNAL | {"forceinline": forceinline})
     def _typed(*args):
         slot = args[0]
         return chosen(slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None))

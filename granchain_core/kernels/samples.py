@@ -1,4 +1,4 @@
-"""What is kept of a motion: samples, states a period apart, and the first number that is not finite."""
+"""What is kept of a motion: samples, states a period apart, forces and costs, the first number that is not finite."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import numpy as np
 
 from .effects.balance import Balance, account_ends
 from .equations.motion import contact_force, stored_energy
-from .jit import by_slot, kernel
+from .forces.largest import ForceLog
+from .jit import by_slot, internal, kernel
 
 
 class Samples(NamedTuple):
@@ -23,7 +24,15 @@ class Samples(NamedTuple):
     energy: Any
 
 
-@kernel
+class Output(NamedTuple):
+    """What a kernel writes beside its result, and the stop flag (1,) that it reads; `counts` (4,) as in status.py."""
+
+    log: ForceLog
+    counts: np.ndarray
+    stop: np.ndarray
+
+
+@internal
 def keep(slots, row, y, dy, e, samples):
     """Write one sample of state y, whose slope is dy and whose forces are in e."""
     n = samples.displacement.shape[1]
@@ -57,7 +66,7 @@ def first_not_finite(y, m):
     return 0
 
 
-@kernel
+@internal
 def keep_strobe(y, dy, strobe):
     """Displacements and velocities of the beads at one instant; driver and wall stay zero."""
     for i in range(1, strobe.shape[1] - 1):

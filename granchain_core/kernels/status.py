@@ -12,6 +12,8 @@ NOT_FINITE = 2
 STEP_TOO_SMALL = 3
 #: A contact opens and closes more often than time can resolve.
 CHATTER = 4
+#: No contact opens and closes more often than this in one period unless it chatters.
+EVENTS_PER_CONTACT = 2000
 #: A period took more steps than are worth waiting for.
 TOO_MANY_STEPS = 5
 #: What is kept of a run did not fit into the places for it.

@@ -9,13 +9,13 @@ import numpy as np
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..integrate import Counts, State
 from ..kernels.effects.given_force import Sampled
-from ..kernels.equations.motion import place
+from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
 from ..kernels.forces.peaks import MEMORY, ROWS, forget
 from ..kernels.rk4.contact_events import ENDS
-from ..kernels.rk4.observed import run_observed
-from ..kernels.rk4.step import Rk4Split, Stages
-from ..kernels.samples import Samples, first_not_finite
+from ..kernels.rk4.observed import SampledForce, run_observed
+from ..kernels.rk4.step import DriveTable, Rk4Split, Stages
+from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import CANCELLED, NOT_FINITE
 from ..lower import lower
 from ..scene import Scene
@@ -67,8 +67,10 @@ class PushedChain:
         forget(self._log.peaks)
         rows = len(self._spans) + 1
         samples = Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
-        status, done = run_observed(Rk4Split(0), lo.slots, self._spans, self._pieces, substeps, y, stages,
-                                    np.zeros((0, 2)), samples, self._log, self.counts.array, self._stop.flag)
+        nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)
+        status, done = run_observed(Rk4Split(0), Trajectory(lo.slots, nothing, y, stages),
+                                    SampledForce(self._spans, self._pieces, substeps), samples,
+                                    Output(self._log, self.counts.array, self._stop.flag))
         if status == CANCELLED:
             raise Cancelled
         if status == NOT_FINITE:

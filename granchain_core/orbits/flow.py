@@ -9,21 +9,20 @@ import numpy as np
 from ..errors import BadInput
 from ..integrate import Engine, certified
 from ..kernels.dop853.flow import run_flow
-from ..kernels.dop853.flow_attempt import Path
+from ..kernels.dop853.flow_attempt import Course, Path
 from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.equations.tangent import Tangent
 from ..kernels.saltation import VelocityTangent
 from ..kernels.simd.vector import LANES, aligned
+from ..kernels.status import EVENTS_PER_CONTACT
 from ..lower import Lowered
 from ..scene import Scene
 from ..stop import Stop
 
 #: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
 TOLERANCE = 1e-13
-#: More contact events than this for each contact in one period are chatter.
-_EVENTS_PER_CONTACT = 500
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +59,7 @@ class StroboscopicMap:
         self.periods = periods
         row = self.engine.lowered.row
         self._path = Path(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
-                          np.zeros((_EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))
+                          np.zeros((EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))
         held = self.engine.stepper.work.forces._replace(held=Held(self._path.closed))
         self._work = self.engine.stepper.work._replace(forces=held)
 
@@ -112,11 +111,10 @@ class StroboscopicMap:
     def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent | None) -> float:
         engine = self.engine
         engine.start_scaled(x)
-        lo = engine.lowered
-        engine.stepper.clock[0] = min(0.1, lo.period / STAGES)
-        status, done, trace = run_flow(engine.stepper.method, lo.slots, lo.beta, lo.period, self.periods, engine.y,
-                                       self._work, self._path, engine.stepper.clock, tangent, engine.counts.array,
-                                       engine.stop.flag)
+        self._work.clock[0] = min(0.1, engine.lowered.period / STAGES)
+        trajectory = engine.stepper.trajectory(engine.y)._replace(work=self._work)
+        status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._path, tangent), self.periods,
+                                       engine.counts.array, engine.stop.flag)
         engine.raise_for(status, done)
         return float(trace)
 

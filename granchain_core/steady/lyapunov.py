@@ -9,6 +9,7 @@ from ..integrate.batch import NEVER, Batch
 from ..kernels.batch.period_end import REMEMBERED
 from ..kernels.forces.largest import new_log
 from ..kernels.rk4.lyapunov import run_two_trajectories
+from ..kernels.samples import Output
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..lower import Lowered
 from ..stop import Stop
@@ -66,9 +67,9 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     strobes = np.zeros((len(growth), 2, row))
     # step by step, whatever vectors the engine has: one kernel for chains of every length
     stepper = engine.stepper
-    one, other = stepper.work._replace(simd=None), shadow.stepper.work._replace(simd=None)
-    status, done = run_two_trajectories(stepper.method, engine.lowered.slots, stepper.drive, stepper.h, engine.y,
-                                        shadow.y, one, other, growth, strobes, new_log(), engine.counts.array,
-                                        engine.stop.flag)
+    one, other = (each.stepper.trajectory(each.y)._replace(work=each.stepper.work._replace(simd=None))
+                  for each in (engine, shadow))
+    status, done = run_two_trajectories(stepper.method, one, other, growth, strobes,
+                                        Output(new_log(), engine.counts.array, engine.stop.flag))
     engine.raise_for(status, done)
     return growth[block:].reshape(blocks, block).mean(axis=1), strobes[:, :, 1:-1]

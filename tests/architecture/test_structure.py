@@ -74,6 +74,14 @@ def test_code_inlined_by_numba_is_called_at_one_place() -> None:
     assert all(1 <= len(found) <= 2 for found in callers.values()), callers
 
 
+def test_kernels_take_few_arguments() -> None:
+    """What belongs together is a named tuple: a step, a trajectory, the arrays that are written."""
+    many = {f"{_dotted(path)}.{node.name}": len(node.args.args) for path in CORE if "kernels" in path.parts
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.FunctionDef) and len(node.args.args) > 8}
+    assert many == {}
+
+
 def _dotted(path: Path) -> str:
     return ".".join(path.relative_to(ROOT).with_suffix("").parts)
 

@@ -9,6 +9,7 @@ from granchain_core import NumbersFailed, run, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.failure import Failure
 from granchain_core.kernels.dop853 import flow
+from granchain_core.kernels.dop853.flow_attempt import Course
 from granchain_core.kernels.status import CHATTER, DONE, TOO_MANY_STEPS
 from granchain_core.orbits.flow import StroboscopicMap
 
@@ -100,8 +101,7 @@ def test_a_period_of_too_many_steps_is_no_step_that_shrank(monkeypatch: pytest.M
     monkeypatch.setattr(flow, "flow_step", step)
     strobe = StroboscopicMap(scene("sec2"), 1)
     engine = strobe.engine
-    status, done, _ = flow.run_flow.py_func(engine.stepper.method, engine.lowered.slots, 1.0, 1.0, 1, engine.y,
-                                            strobe._work, strobe._path, engine.stepper.clock, None,
+    status, done, _ = flow.run_flow.py_func(engine.stepper.method, Course(engine.stepper.trajectory(engine.y), strobe._path, None), 1,
                                             engine.counts.array, engine.stop.flag)
     assert (status, done) == (TOO_MANY_STEPS, 0)
     assert failure(status).error.status == "too-many-steps"

@@ -26,6 +26,7 @@ from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch.run import batch_steps
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
+from granchain_core.kernels.samples import Output
 from granchain_core.stop import Stop
 
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
@@ -76,8 +77,7 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     chain = scene("sec2").evolve(**knobs)
     e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, Stop())
     stepper = e.stepper
-    one = (stepper.work.simd, e.lowered.slots, stepper.drive, 0, 4, 0.01, stepper.h, e.y, stepper.work.k[0],
-           stepper.work.forces.e, e.log, e.counts.array, e.stop.flag)
+    one = (stepper.work.simd, stepper.trajectory(e.y), 0, 4, Output(e.log, e.counts.array, e.stop.flag))
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.lanes, block.state, 4)))}
 
 

@@ -75,9 +75,8 @@ def test_certified_steps_end_on_the_events():
     engine.periods(2)
     t, landed = 0.0, []
     for _ in range(400):
-        status, h, contact = certified.certified_step(engine.stepper.method, engine.lowered.slots, engine.lowered.beta, t,
-                                                      engine.lowered.period, engine.y, engine.stepper.work, engine.stepper.clock,
-                                                      engine.counts.array)
+        status, h, contact = certified.certified_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
+                                                      engine.lowered.period, engine.counts.array)
         assert status == 0
         if contact >= 0:
             end = engine.stepper.work.end

@@ -27,28 +27,29 @@ from granchain_core.hard.brushes import (
     workspace,
 )
 from granchain_core.kernels.dop853.run import certified_step
-from granchain_core.kernels.dop853.step import STAGES, Dop853, evaluate
+from granchain_core.kernels.dop853.step import STAGES, Cycle, Dop853, evaluate
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.foundation import Foundation
 from granchain_core.kernels.effects.preload import Preload
-from granchain_core.kernels.equations.motion import Slots
+from granchain_core.kernels.equations.motion import Slots, Trajectory
 
 __all__ = ["DEPTH", "ONSETS", "ONSET_ERROR", "RELEASE_ERROR", "TOLERANCE", "draw", "missed", "moved", "run", "run_pairs"]
 
 
 @numba.njit(nogil=True, error_model="numpy")
-def two_touches(rate, gaps, tolerance, work, y, clock, counts, static, chain, times):
+def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
     """Times at which two beads on springs, thrown apart with amplitude 1, reach standing driver and wall."""
     static[0], static[1], static[2] = -gaps[0], -1e3, -gaps[1]
     slots = Slots(chain, None, None, Foundation(rate * rate), Preload(static), Harmonic(0.0, rate), None)
     end = 0.5 * pi / rate
     y[:] = 0.0
     y[5], y[6] = -rate, rate
-    clock[0], work.scale[0], work.scale[1], t = 0.1 * end, 1.0, rate, 0.0
+    work.clock[0], work.scale[0], work.scale[1], t = 0.1 * end, 1.0, rate, 0.0
     evaluate(slots, rate, t, y, work.k[0], work.forces)
+    trajectory = Trajectory(slots, Cycle(rate, 4.0 * end), y, work)
     while t < end * (1.0 - 1e-12):
-        status, h, _ = certified_step(Dop853(tolerance, 0.25 * end), slots, rate, t, end, y, work, clock, counts)
+        status, h, _ = certified_step(Dop853(tolerance, 0.25 * end), trajectory, t, end, counts)
         if status != 0:
             return
         t += h
@@ -69,8 +70,8 @@ def run_pairs(count: int, seed: int, tolerance: float) -> np.ndarray:
         rate, apart = 10.0 ** rng.uniform(-1.0, 1.0), 2.0 * pi * 10.0 ** rng.uniform(-13.0, -1.5)
         angles = rng.permutation([first := rng.uniform(0.2, 1.2), first + apart])
         times = np.zeros(2)
-        two_touches(rate, np.sin(angles), tolerance, work, np.zeros(8), np.zeros(1), np.zeros(4, dtype=np.int64),
-                    np.zeros(3), chain, times)
+        two_touches(rate, np.sin(angles), tolerance, work, np.zeros(8), np.zeros(4, dtype=np.int64), np.zeros(3),
+                    chain, times)
         found[n] = apart / (2.0 * pi), *np.abs(times * rate - angles) / (2.0 * pi)
     return found
 

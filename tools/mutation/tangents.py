@@ -38,7 +38,7 @@ FLOW = (
            "the flow's slope has a kink inside its steps", k.MONODROMY),
     Mutant("flow-steps-over-a-touch", _STEP, "if not (crossed or may_turn(d0, s0, d1, s1, sign)):", "if not crossed:",
            "a touch inside a step of the flow is not seen, nor is its share of the derivative", k.FLOW_TOUCH),
-    Mutant("flow-driver-stands", _STEP, "beta * time_at(time, x * h)", "beta * time_at(time, h)",
+    Mutant("flow-driver-stands", _STEP, "beta * time_at(step.time, x * step.h)", "beta * time_at(step.time, step.h)",
            "the driver stands still while its contact is looked for", k.MONODROMY),
     Mutant("flow-event_tolerance-loose", _LANDING, "_LANDED = 1e-14", "_LANDED = 1e-7",
            "the flow's events are located to 1e-7", k.MONODROMY),

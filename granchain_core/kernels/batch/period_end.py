@@ -15,7 +15,7 @@ import numpy as np
 
 from ..equations.motion import copy
 from ..forces.peaks import MEMORY, ROWS
-from ..jit import inline_numba, kernel
+from ..jit import inline_numba, internal
 from ..strobes.extrapolation import ORBITS, reduced_rank
 from ..strobes.periodicity import (
     LONGEST_PERIOD,
@@ -57,7 +57,7 @@ _SLOWEST = 0.98
 PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
 
 
-@kernel
+@internal
 def keep_member_strobe(state, lane):
     """Append the state to the strobes, dropping the oldest half if they are full; whether the state is finite."""
     strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
@@ -75,7 +75,7 @@ def keep_member_strobe(state, lane):
     return finite
 
 
-@kernel
+@internal
 def place_member(state, lane, where):
     """Put a lane into the state `where` (2, m); its record begins there."""
     m = where.shape[1]
@@ -89,7 +89,7 @@ def place_member(state, lane, where):
     keep_member_strobe(state, lane)
 
 
-@kernel
+@internal
 def follow(state, lane, n, rate, change):
     """Put a lane into the limit of its last strobes, n periods apart, if that is within reach; whether it was."""
     kept = state.kept[lane]
@@ -107,7 +107,7 @@ def follow(state, lane, n, rate, change):
     return True
 
 
-@kernel
+@internal
 def check_coarse(state, lane):
     """Whether a lane's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
     kept, periods = state.kept[lane], state.periods[lane]
@@ -187,7 +187,7 @@ def decayed(state, lane):
     return False
 
 
-@kernel
+@internal
 def largest_top(state, lane, n, q):
     """The largest force of kind q in a lane's last n periods."""
     largest = 0.0
@@ -229,7 +229,7 @@ def check_fine(state, lane):
     return False
 
 
-@kernel
+@internal
 def end_period(state, lane):
     """Keep strobe and largest forces of a member and restart its phase exactly; whether it is due for a check."""
     state.periods[lane] += 1

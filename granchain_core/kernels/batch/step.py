@@ -9,7 +9,7 @@ from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, damping, shape
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..effects.unequal import over_mass, times_stiffness
-from ..forces.largest import brief_touch, closing_rate
+from ..forces.crossings import Approach, brief_touch, closing_rate
 from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_lanes
 from ..jit import by_slot, inline_llvm
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
@@ -150,41 +150,40 @@ def batch_step(values, y, h, u0, middle, end):
 @inline_llvm
 def watch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
     """Follow input force, output force and its elastic part in all lanes, where a step began."""
-    first = damping(values.law, positive_part(gap_first)) * (v0 - ends.v_first)
-    last = damping(values.law, positive_part(gap_last)) * ends.v_last
-    watch_lanes(peaks, INPUT, ends.pushed + first)
-    watch_lanes(peaks, OUTPUT, ends.passed + last)
+    first, last = Approach(gap_first, v0 - ends.v_first), Approach(gap_last, ends.v_last)
+    watch_lanes(peaks, INPUT, ends.pushed + damping(values.law, positive_part(first.gap)) * first.rate)
+    watch_lanes(peaks, OUTPUT, ends.passed + damping(values.law, positive_part(last.gap)) * last.rate)
     watch_lanes(peaks, OUTPUT_ELASTIC, ends.passed)
-    watch_jumps(values.law, values, h, gap_first, v0 - ends.v_first, gap_last, ends.v_last, before, peaks)
+    watch_jumps(values.law, values, h, first, last, before, peaks)
 
 
 @by_slot
-def watch_jumps(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks):
+def watch_jumps(law, values, h, first, last, before, peaks):
     """Follow the jumps of both end contacts over the last step. Absent, and where g(0) = 0: forces have none."""
 
 
 @watch_jumps.of(*JUMP_LAWS)
-def _(law, values, h, gap_first, rate_first, gap_last, rate_last, before, peaks):
-    first, last = over_mass(values.unequal, 1, law.coefficient), over_mass(values.unequal, values.last, law.coefficient)
-    watch_jump(law.coefficient, first, h, gap_first, rate_first, before, 0, peaks, INPUT_JUMP)
-    watch_jump(law.coefficient, last, h, gap_last, rate_last, before, 2, peaks, OUTPUT_JUMP)
+def _(law, values, h, first, last, before, peaks):
+    watch_jump(law, over_mass(values.unequal, 1, law.coefficient), h, first, before, 0, peaks, INPUT_JUMP)
+    watch_jump(law, over_mass(values.unequal, values.last, law.coefficient), h, last, before, 2, peaks, OUTPUT_JUMP)
 
 
 watch_jumps.absent_for(*SMOOTH_LAWS)
 
 
 @inline_llvm
-def watch_jump(coefficient, own, h, gap, rate, before, row, peaks, peak):
-    """Follow the jump of one contact; its overlap and rate a step ago are rows of `before`, and become those of now."""
+def watch_jump(law, own, h, approach, before, row, peaks, peak):
+    """Follow the jump of one contact; overlap and rate a step ago are rows of `before`, and become those of now."""
+    gap, rate = approach
     gap_before, rate_before = load(before, row), load(before, row + 1)
     store(before, row, gap)
     store(before, row + 1, rate)
     zero, was, now = blank(gap), positive_mask(gap_before), positive_mask(gap)
     if now & ~was != 0:
         _, closing = closing_rate(gap_before, gap, rate_before, rate + own * clip(gap), own, h)
-        closed = gate(zero - gap_before, gate(gap, coefficient * closing))
+        closed = gate(zero - gap_before, gate(gap, law.coefficient * closing))
         store(peaks, peak, larger(load(peaks, peak), closed))
     if ~now & ~was & positive_mask(rate_before) & positive_mask(zero - rate) != 0:
-        touched = coefficient * brief_touch(gap_before, gap, rate_before, rate, h)
+        touched = law.coefficient * brief_touch(gap_before, gap, rate_before, rate, h)
         open_still = gate(zero - gap_before, gate(zero - gap, gate(rate_before, gate(zero - rate, touched))))
         store(peaks, peak, larger(load(peaks, peak), open_still))

@@ -1,20 +1,92 @@
-"""A bracketed sign change, narrowed step by step: regula falsi that halves the end that stays (Illinois)."""
+"""Roots and largest values of a quantity inside a step, on its dense output.
+
+A quantity is a NamedTuple that says what it is (an overlap, a force) and has code for `value_at`. Roots are found by
+regula falsi that halves the end that stays (Illinois), largest values by golden section.
+"""
 
 from __future__ import annotations
 
-from ..jit import kernel
+from typing import NamedTuple
+
+from ..jit import by_slot, inline_numba, internal
+
+#: Factor by which a golden section shrinks the bracket.
+_RATIO = 0.6180339887498949
 
 
-@kernel
-def between(low, high, f_low, f_high):
+class Bracket(NamedTuple):
+    """Fractions of a step between which a quantity changes sign, its values there, the end that moved last (−1, 1)."""
+
+    low: float
+    high: float
+    f_low: float
+    f_high: float
+    moved: int
+
+
+@by_slot
+def value_at(quantity, step, x):
+    """A quantity at fraction x of a step."""
+    raise NotImplementedError
+
+
+@internal
+def between(bracket):
     """Where the straight line through both ends is zero; the middle where rounding has it outside."""
+    low, high, f_low, f_high, _ = bracket
     x = (low * f_high - high * f_low) / (f_high - f_low)
     return x if low <= x <= high else 0.5 * (low + high)
 
 
-@kernel
-def narrowed(low, high, f_low, f_high, side, x, f):
-    """(low, high, f_low, f_high, side) once x has the value f; `side` is the end that moved, −1 or 1."""
+@internal
+def narrowed(bracket, x, f):
+    """The bracket once the quantity is known to be f at x."""
+    low, high, f_low, f_high, moved = bracket
     if (f > 0.0) == (f_low > 0.0):
-        return x, high, f, 0.5 * f_high if side < 0 else f_high, -1
-    return low, x, 0.5 * f_low if side > 0 else f_low, f, 1
+        return Bracket(x, high, f, 0.5 * f_high if moved < 0 else f_high, -1)
+    return Bracket(low, x, 0.5 * f_low if moved > 0 else f_low, f, 1)
+
+
+@inline_numba
+def root_inside(quantity, step, bracket, near):
+    """Fraction in the bracket at which the quantity changes sign, to about `near`."""
+    x = bracket.high
+    for _ in range(80):
+        before = x
+        x = between(bracket)
+        f = value_at(quantity, step, x)
+        if f == 0.0 or abs(x - before) < near:
+            break
+        bracket = narrowed(bracket, x, f)
+    return x
+
+
+@inline_numba
+def top_inside(quantity, step, sections):
+    """(fraction, value) where the quantity is largest in the step, if it has one maximum there."""
+    low, high = 0.0, 1.0
+    a, b = 1.0 - _RATIO, _RATIO
+    fa, fb = value_at(quantity, step, a), value_at(quantity, step, b)
+    for _ in range(sections):
+        if fa > fb:
+            high, b, fb = b, a, fa
+            a = high - _RATIO * (high - low)
+            fa = value_at(quantity, step, a)
+        else:
+            low, a, fa = a, b, fb
+            b = low + _RATIO * (high - low)
+            fb = value_at(quantity, step, b)
+    return 0.5 * (low + high), max(fa, fb)
+
+
+@inline_numba
+def may_turn(d0, s0, d1, s1, sign):
+    """Whether an overlap with the same sign at both ends of a step may cross zero in between.
+
+    It must move towards zero first and away last; then the smaller of the two straight continuations bounds how
+    near it can come, up to the curvature in a step that the error control accepted.
+    """
+    if not (sign * s0 > 0.0 and sign * s1 < 0.0):
+        return False
+    reach = max(sign * (d0 + s0), sign * (d1 - s1))
+    return reach > 0.0

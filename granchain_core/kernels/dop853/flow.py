@@ -11,7 +11,7 @@ import numpy as np
 from ..effects.preload import overlap
 from ..equations.motion import copy
 from ..equations.tangent import Tangent, carry
-from ..jit import by_slot, kernel
+from ..jit import by_slot, internal, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
 from .flow_events import flow_step
@@ -32,14 +32,14 @@ def _(tangent, slots, c, closes):
     pass
 
 
-@kernel
+@internal
 def begin(slots, y, path):
     """Which contacts are closed at the start."""
     for c in range(path.closed.size):
         path.closed[c] = 1 if overlap(slots.preload, y, c) > 0.0 else 0
 
 
-@kernel
+@internal
 def change(slots, path, tangent, c, t):
     """Change contact c at time t; returns whether it closed."""
     closes = path.closed[c] == 0
@@ -52,12 +52,14 @@ def change(slots, path, tangent, c, t):
 
 
 @kernel
-def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent, counts, stop):
+def run_flow(method, course, periods, counts, stop):
     """Carry motion and tangents through whole periods from phase 0.
 
     Returns (status, periods done, ∫ trace); the log's times count from the first period's start.
     """
-    m, trace, onset = slots.chain.inverse_mass.size, 0.0, -np.inf
+    trajectory, path, tangent = course
+    slots, drive, y, work = trajectory
+    m, period, trace, onset = slots.chain.inverse_mass.size, drive.period, 0.0, -np.inf
     begin(slots, y, path)
     path.logged[0] = 0
     for p in range(periods):
@@ -68,9 +70,8 @@ def run_flow(method, slots, beta, period, periods, y, work, path, clock, tangent
                 return CANCELLED, p, trace
             if steps > _MOST_STEPS:
                 return TOO_MANY_STEPS, p, trace
-            evaluate(slots, beta, t, y, path.first, work.forces)
-            status, time, h, contact = flow_step(method, slots, beta, t, period, onset, y, work, path, clock, tangent,
-                                                 counts)
+            evaluate(slots, drive.beta, t, y, path.first, work.forces)
+            status, time, h, contact = flow_step(method, course, t, onset, counts)
             if status != DONE:
                 return status, p, trace
             if h > 0.0:

@@ -8,24 +8,35 @@ distance, and Newton's method on the resulting overlap corrects the estimate.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..effects.preload import overlap
-from ..jit import by_slot, inline_numba, kernel
-from ..status import EVALUATIONS
-from .run import may_turn
-from .step import combine, error_norm, overlap_inside
-from .tableau import STAGES, C
-from .time_map import prepare_dense_in_time, rate_at, slope_in_x, time_at
+from ..equations.motion import Trajectory
+from ..jit import by_slot, inline_numba, internal
+from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
+from .bracket import may_turn, value_at
+from .step import (
+    Overlap,
+    combine,
+    crossing,
+    dense_coefficients,
+    drive_phase,
+    error_norm,
+    evaluate,
+    shrunk,
+    turning_point,
+)
+from .tableau import ALL_STAGES, STAGES, C
+from .time_map import Time, rate_at, slope_in_x, time_at
 
 
 class Path(NamedTuple):
-    """Beside the workspace: slope in t at the step's start, which contacts are closed, overlaps of every stage.
+    """Beside the workspace: slope in t at the step's start (M,), and which contacts are closed (N+1,).
 
-    `log` (events, 2) has contact + 1 with the sign of onset or release and the time of each event, `logged` their
-    number; `gaps` is None where there are no tangents.
+    `log` (events, 2) has contact + 1 with the sign of onset or release and the time of each event, `logged` (1,) their
+    number.
     """
 
     first: np.ndarray
@@ -34,73 +45,85 @@ class Path(NamedTuple):
     logged: np.ndarray
 
 
+class Course(NamedTuple):
+    """A trajectory that is followed from contact event to contact event, with its tangents or None."""
+
+    trajectory: Trajectory
+    path: Path
+    tangent: Any
+
+
+class FlowStep(NamedTuple):
+    """A step of a trajectory, of size h in the variable x of `time`."""
+
+    trajectory: Trajectory
+    time: Time
+    h: float
+
+
+@drive_phase.of(FlowStep)
+def _(step, x):
+    return step.trajectory.drive.beta * time_at(step.time, x * step.h)
+
+
 @by_slot
 def keep_gaps(tangent, slots, state, slope, stage):
     """Keep what tangents need of one stage, its overlaps; `slope` has its velocities. Absent: nobody needs them."""
 
 
-@kernel
-def attempt_in_time(method, slots, beta, time, h, y, work, path, tangent):
+@internal
+def attempt_in_time(method, course, time, h):
     """Try a step of size h in x from y; the result is work.end, its slope in t work.slope.
 
     Returns the error over the tolerance.
     """
+    trajectory, path, tangent = course
+    slots, drive, y, work = trajectory
     rate = rate_at(time, 0.0)
     for i in range(y.size):
         work.k[0, i] = rate * path.first[i]
     keep_gaps(tangent, slots, y, path.first, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, work.k, s, work.end)
-        slope_in_x(slots, beta, time, C[s] * h, work.end, s, work)
+        slope_in_x(slots, drive.beta, time, C[s] * h, work.end, s, work)
         keep_gaps(tangent, slots, work.end, work.slope, s)
     return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
 
 
-@kernel
-def overlap_at(slots, beta, time, h, y, work, c, x):
-    """δ_c at fraction x of the step in x."""
-    return overlap_inside(slots, beta * time_at(time, x * h), y, work, c, x)
+@inline_numba
+def accepted_in_time(method, course, time, h, counts):
+    """Shrink a step until its error is tolerable: (status, size, error over the tolerance)."""
+    while True:
+        error = attempt_in_time(method, course, time, h)
+        counts[EVALUATIONS] += STAGES
+        if not np.isfinite(error):
+            return NOT_FINITE, h, error
+        if error <= 1.0:
+            return DONE, h, error
+        counts[REJECTED] += 1
+        h = shrunk(h, error)
+        if not time.start + 0.1 * (time_at(time, h) - time.start) > time.start:
+            return STEP_TOO_SMALL, h, error
 
 
 @inline_numba
-def root_between(slots, beta, time, h, y, work, c, low, high, rising):
-    """Fraction in [low, high] at which δ_c changes sign, upwards if `rising` (bisection and regula falsi in turn)."""
-    f_low = overlap_at(slots, beta, time, h, y, work, c, low)
-    f_high = overlap_at(slots, beta, time, h, y, work, c, high)
-    for trial in range(100):
-        x = 0.5 * (low + high)
-        if trial % 3 != 2 and f_high != f_low:
-            x = min(high, max(low, (low * f_high - high * f_low) / (f_high - f_low)))
-        f = overlap_at(slots, beta, time, h, y, work, c, x)
-        if (f > 0.0) == rising:
-            high, f_high = x, f
-        else:
-            low, f_low = x, f
-        if high - low < 1e-14 or f == 0.0:
-            return x
-    return high
-
-
-@kernel
-def turning_point(slots, beta, time, h, y, work, c, sign):
-    """Fraction at which sign·δ_c is largest inside the step, by golden section on the dense output."""
-    ratio = 0.6180339887498949
-    low, high = 0.0, 1.0
-    for _ in range(45):
-        a, b = high - ratio * (high - low), low + ratio * (high - low)
-        fa = sign * overlap_at(slots, beta, time, h, y, work, c, a)
-        fb = sign * overlap_at(slots, beta, time, h, y, work, c, b)
-        if fa > fb:
-            high = b
-        else:
-            low = a
-    return 0.5 * (low + high)
+def prepare_dense_in_time(step):
+    """Fill work.dense for the step in x from y to work.end; work.slope is again that of the end."""
+    slots, drive, y, work = step.trajectory
+    time, h = step.time, step.h
+    for s in range(STAGES + 1, ALL_STAGES):
+        combine(y, h, work.k, s, work.stage)
+        slope_in_x(slots, drive.beta, time, C[s] * h, work.stage, s, work)
+    dense_coefficients(h, y, work)
+    evaluate(slots, drive.beta, time_at(time, h), work.end, work.slope, work.forces)
 
 
 @inline_numba
-def first_change(slots, beta, time, h, y, work, path, counts, but):
+def first_change(course, time, h, but, counts):
     """(contact, fraction) of the first change inside the step of any contact but one; (−1, 2) if there is none."""
-    contact, first, ready = -1, 2.0, False
+    trajectory, path, _ = course
+    slots, _, y, work = trajectory
+    step, contact, first, ready = FlowStep(trajectory, time, h), -1, 2.0, False
     dt = time_at(time, h) - time.start
     for c in range(path.closed.size):
         if c == but:
@@ -113,19 +136,19 @@ def first_change(slots, beta, time, h, y, work, path, counts, but):
         if not (crossed or may_turn(d0, s0, d1, s1, sign)):
             continue
         if not ready:
-            prepare_dense_in_time(slots, beta, time, h, y, work)
+            prepare_dense_in_time(step)
             counts[EVALUATIONS] += 4
             ready = True
-        low, high = 0.0, 1.0
+        pressed, low, high = Overlap(c, sign), 0.0, 1.0
         if not crossed:
-            high = turning_point(slots, beta, time, h, y, work, c, sign)
-            if sign * overlap_at(slots, beta, time, h, y, work, c, high) <= 0.0:
+            high = turning_point(pressed, step)
+            if value_at(pressed, step, high) <= 0.0:
                 continue
         elif sign * d0 > 0.0 or d0 == 0.0:  # a contact that has just changed: rounding has the wrong sign
-            low = turning_point(slots, beta, time, h, y, work, c, -sign) if sign * s0 < 0.0 else 1.0
-            if low == 1.0 or sign * overlap_at(slots, beta, time, h, y, work, c, low) >= 0.0:
+            low = turning_point(Overlap(c, -sign), step) if sign * s0 < 0.0 else 1.0
+            if low == 1.0 or value_at(pressed, step, low) >= 0.0:
                 return c, 0.0
-        x = root_between(slots, beta, time, h, y, work, c, low, high, not was)
+        x = crossing(pressed, step, low, high)
         if x < first:
             contact, first = c, x
     return contact, first

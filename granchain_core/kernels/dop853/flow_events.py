@@ -10,7 +10,7 @@ import numpy as np
 from ..effects.preload import overlap
 from ..jit import inline_numba
 from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .flow_attempt import attempt_in_time, first_change
+from .flow_attempt import accepted_in_time, attempt_in_time, first_change
 from .step import growth, shrunk
 from .tableau import STAGES
 from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
@@ -41,8 +41,11 @@ def next_release(slots, y, path):
 
 
 @inline_numba
-def locate_change(method, slots, beta, time, h, y, work, path, tangent, c, counts):
-    """Correct the size of a step until it ends on the change of contact c; returns it."""
+def locate_change(method, course, time, h, c, counts):
+    """Repeat a step with another size until it ends on the change of contact c, first with h; returns the size."""
+    slots, _, _, work = course.trajectory
+    attempt_in_time(method, course, time, h)
+    counts[EVALUATIONS] += STAGES
     for _ in range(_TRIALS):
         d = overlap(slots.preload, work.end, c)
         speed = (work.slope[c] - work.slope[c + 1]) * rate_at(time, h)
@@ -51,22 +54,23 @@ def locate_change(method, slots, beta, time, h, y, work, path, tangent, c, count
         if h - d / speed == h:
             break
         h -= d / speed
-        attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
+        attempt_in_time(method, course, time, h)
         counts[EVALUATIONS] += STAGES
     return h
 
 
 @inline_numba
-def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
+def aim(method, course, t, goal, c, counts):
     """Step from t towards the release of contact c, estimated at `goal`: onto it, or part of the way.
 
     Returns (status, time, size, c or −1, goal), with a status of LOST where the contact does not open there.
     """
+    slots, drive, _, work = course.trajectory
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
     time = time_from(BEFORE, goal, t, power)
     error, landed = np.inf, False
     for _ in range(_TRIALS):
-        error = attempt_in_time(method, slots, beta, time, time.s, y, work, path, tangent)
+        error = attempt_in_time(method, course, time, time.s)
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, time, 0.0, -1, goal
@@ -82,10 +86,10 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
         time = time_from(BEFORE, goal, t, power)
     if not landed:
         return LOST, time, 0.0, -1, goal
-    h = size_of(time, min(goal, limit) - t)
-    if goal > limit:
+    h = size_of(time, min(goal, drive.period) - t)
+    if goal > drive.period:
         landed = False
-        error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
+        error = attempt_in_time(method, course, time, h)
         counts[EVALUATIONS] += STAGES
     while error > 1.0:
         landed = False
@@ -93,49 +97,41 @@ def aim(method, slots, beta, t, limit, goal, y, work, path, tangent, c, counts):
         h = shrunk(h, error)
         if not t + 0.1 * (time_at(time, h) - t) > t:
             return STEP_TOO_SMALL, time, h, -1, goal
-        error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
+        error = attempt_in_time(method, course, time, h)
         counts[EVALUATIONS] += STAGES
     return DONE, time, h, c if landed else -1, goal
 
 
 @inline_numba
-def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangent, counts):
-    """One accepted step from y at local time t, at most to `limit`, with the last onset at `onset` (−∞: none).
+def flow_step(method, course, t, onset, counts):
+    """One accepted step from y at local time t, at most to the period's end, with the last onset at `onset` (−∞: none).
 
-    Returns (status, time, size, contact); a size of 0 with a contact is a change at t itself. `clock[0]` is the next
+    Returns (status, time, size, contact); a size of 0 with a contact is a change at t itself. work.clock[0] is the next
     step to try, in t.
     """
-    power = smooth_power(slots.dissipation)
+    trajectory, path, _ = course
+    slots, drive, y, work = trajectory
+    clock, limit = work.clock, drive.period
     dt = min(clock[0], method.largest_step, limit - t)
     target, wait = next_release(slots, y, path)
     goal = t + wait
     aiming, lost = target >= 0 and wait < _AIM * dt and t > onset, False
-    usual = time_from(BEHIND if onset > -np.inf else PLAIN, onset, t, power)
+    usual = time_from(BEHIND if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
     time, h = usual, size_of(usual, dt)
     for _ in range(_ATTEMPTS):
         landed, error = -1, 0.0
         if aiming:
-            status, time, h, landed, goal = aim(method, slots, beta, t, limit, goal, y, work, path, tangent, target,
-                                                counts)
+            status, time, h, landed, goal = aim(method, course, t, goal, target, counts)
             if status == LOST:
                 aiming, lost = False, True
                 time, h = usual, size_of(usual, dt)
                 continue
-            if status != DONE:
-                return status, time, h, -1
         else:
-            error = attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-            counts[EVALUATIONS] += STAGES
-            if not np.isfinite(error):
-                return NOT_FINITE, time, h, -1
-            if error > 1.0:
-                counts[REJECTED] += 1
-                h = shrunk(h, error)
-                dt = time_at(time, h) - t
-                if not t + 0.1 * dt > t:
-                    return STEP_TOO_SMALL, time, h, -1
-                continue
-        contact, x = first_change(slots, beta, time, h, y, work, path, counts, landed)
+            status, h, error = accepted_in_time(method, course, time, h, counts)
+            dt = min(dt, time_at(time, h) - t)
+        if status != DONE:
+            return status, time, h, -1
+        contact, x = first_change(course, time, h, landed, counts)
         if contact < 0:
             if not aiming:
                 clock[0] = next_dt(time, h, error, clock[0], limit)
@@ -149,10 +145,7 @@ def flow_step(method, slots, beta, t, limit, onset, y, work, path, clock, tangen
                 h *= _PART * x
                 dt = time_at(time, h) - t
             continue
-        h *= x
-        attempt_in_time(method, slots, beta, time, h, y, work, path, tangent)
-        counts[EVALUATIONS] += STAGES
-        return DONE, time, locate_change(method, slots, beta, time, h, y, work, path, tangent, contact, counts), contact
+        return DONE, time, locate_change(method, course, time, h * x, contact, counts), contact
     return STEP_TOO_SMALL, time, h, -1
 
 

@@ -6,22 +6,33 @@ F/g = K δ^{3/2}/g(δ) + δ̇, which unlike F passes through zero nowhere else, 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from ..effects.balance import add_to_account, ends_of
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, power
 from ..effects.preload import overlap
 from ..effects.tension import NoTension, slacken
 from ..equations.motion import write_w
-from ..jit import by_slot, inline_numba, kernel
+from ..jit import by_slot
 from ..simd.functions import gate, root
 from ..status import EVALUATIONS
-from .bracket import between, narrowed
-from .step import STAGES, dense_value, evaluate, prepare_dense
+from .bracket import Bracket, root_inside, value_at
+from .step import STAGES, evaluate, interpolate, prepare_dense
 
 #: A kink nearer to an end of the step than this changes the motion by less than rounding: by its square.
 _NEAR = 1e-8
 #: A contact whose F/g is a smaller part of the largest velocity is at rest ahead of a wave: its sign is rounding.
 _STILL = 1e-15
+
+
+class ScaledForce(NamedTuple):
+    """F/g of a contact inside a step; its evaluations are counted."""
+
+    contact: int
+    counts: np.ndarray
 
 
 @by_slot
@@ -36,13 +47,25 @@ def _(law, stiffness, d, rate):
     return gate(d, stiffness * d * (r / power(law, d, r)) / law.coefficient) + rate
 
 
+@value_at.of(ScaledForce)
+def _(quantity, step, x):
+    slots, drive, y, work = step.trajectory
+    c = quantity.contact
+    interpolate(y, work, x)
+    evaluate(slots, drive.beta, step.t + x * step.h, work.probe, work.slope, work.forces)
+    quantity.counts[EVALUATIONS] += 1
+    d = positive_part(overlap(slots.preload, work.probe, c))
+    return scaled_force(slots.dissipation, slots.chain.stiffness[c], d, work.slope[c] - work.slope[c + 1])
+
+
 @by_slot
-def enter_force_free(tension, slots, beta, t, y, work):
+def enter_force_free(tension, trajectory, t):
     """Mark the contacts that are slack at the start of a step and evaluate the slope anew. Absent: none is."""
 
 
 @enter_force_free.of(NoTension)
-def _(tension, slots, beta, t, y, work):
+def _(tension, trajectory, t):
+    slots, drive, y, work = trajectory
     found = False
     for c in range(tension.slack.size):
         d, rate = overlap(slots.preload, y, c), work.k[0, c] - work.k[0, c + 1]
@@ -50,12 +73,12 @@ def _(tension, slots, beta, t, y, work):
             slacken(tension, slots, y, c)
             found = True
     if found:
-        evaluate(slots, beta, t, y, work.k[0], work.forces)
+        evaluate(slots, drive.beta, t, y, work.k[0], work.forces)
 
 
 @by_slot
-def leave_force_free(tension, slots, y, dy, forces):
-    """At a step's end no contact is slack: velocities in dy stay, w and the account use the law's own G again.
+def leave_force_free(tension, trajectory):
+    """At a step's end no contact is slack: velocities stay, w and the account use the law's own G again.
 
     Returns whether anything changed, and the slope with it. Absent: no contact is slack.
     """
@@ -63,47 +86,23 @@ def leave_force_free(tension, slots, y, dy, forces):
 
 
 @leave_force_free.of(NoTension)
-def _(tension, slots, y, dy, forces):
-    found = False
+def _(tension, trajectory):
+    slots, _, y, work = trajectory
+    dy, found = work.k[0], False
     for c in range(tension.slack.size):
         found = found or tension.slack[c] != 0
     if found:
-        work, lost = ends_of(slots.balance, slots, y, dy)
+        work_done, lost = ends_of(slots.balance, slots, y, dy)
         for c in range(tension.slack.size):
             tension.slack[c] = 0
-        write_w(slots, y, dy, forces)
+        write_w(slots, y, dy, work.forces)
         own_work, own_lost = ends_of(slots.balance, slots, y, dy)
-        add_to_account(slots.balance, y, work - own_work, lost - own_lost)
+        add_to_account(slots.balance, y, work_done - own_work, lost - own_lost)
     return found
 
 
-@kernel
-def scaled_force_in_step(slots, beta, t, h, y, work, c, x):
-    """F/g of contact c at fraction x of the step, on the dense output."""
-    for i in range(y.size):
-        work.probe[i] = dense_value(work.dense, y[i], x, i)
-    evaluate(slots, beta, t + x * h, work.probe, work.slope, work.forces)
-    d = positive_part(overlap(slots.preload, work.probe, c))
-    return scaled_force(slots.dissipation, slots.chain.stiffness[c], d, work.slope[c] - work.slope[c + 1])
-
-
-@inline_numba
-def scaled_force_root(slots, beta, t, h, y, work, c, low, high, f_low, f_high, counts):
-    """Fraction between `low` and `high` where F of contact c changes sign."""
-    x, side = high, 0
-    for _ in range(60):
-        before = x
-        x = between(low, high, f_low, f_high)
-        f = scaled_force_in_step(slots, beta, t, h, y, work, c, x)
-        counts[EVALUATIONS] += 1
-        if abs(x - before) < 0.1 * _NEAR:
-            break
-        low, high, f_low, f_high, side = narrowed(low, high, f_low, f_high, side, x, f)
-    return x
-
-
 @by_slot
-def first_kink(tension, slots, beta, t, h, y, work, until, counts, again):
+def first_kink(tension, step, until, counts, again):
     """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
 
     0 where the step must be repeated: rounding put a contact on the wrong side of F = 0 at the start. All such contacts
@@ -114,7 +113,8 @@ def first_kink(tension, slots, beta, t, h, y, work, until, counts, again):
 
 
 @first_kink.of(NoTension)
-def _(tension, slots, beta, t, h, y, work, until, counts, again):
+def _(tension, step, until, counts, again):
+    slots, drive, y, work = step.trajectory
     first, ready, turned, k, still = 2.0, False, False, work.k, _STILL * work.scale[1]
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)
@@ -127,19 +127,19 @@ def _(tension, slots, beta, t, h, y, work, until, counts, again):
         if max(abs(f0), abs(f1)) < still or (until == 1.0 and slack != (f1 > 0.0)):
             continue
         if not ready:
-            prepare_dense(slots, beta, t, h, y, work)
+            prepare_dense(step)
             counts[EVALUATIONS] += 3
             ready = True
+        force = ScaledForce(c, counts)
         if until < 1.0:
-            f1 = scaled_force_in_step(slots, beta, t, h, y, work, c, until)
-            counts[EVALUATIONS] += 1
+            f1 = value_at(force, step, until)
             if abs(f1) < still or slack != (f1 > 0.0):
                 continue
         x = 0.0
         if f0 * f1 < 0.0:  # else F is rounding at the start
-            x = scaled_force_root(slots, beta, t, h, y, work, c, 0.0, until, f0, f1, counts)
-        if x * h > _NEAR:
-            if x < first and x * h < until * h - _NEAR:
+            x = root_inside(force, step, Bracket(0.0, until, f0, f1, 0), 0.1 * _NEAR)
+        if x * step.h > _NEAR:
+            if x < first and x * step.h < until * step.h - _NEAR:
                 first = x
         elif not again:
             if slack:
@@ -148,6 +148,6 @@ def _(tension, slots, beta, t, h, y, work, until, counts, again):
                 slacken(tension, slots, y, c)
             turned = True
     if turned:
-        evaluate(slots, beta, t, y, k[0], work.forces)
+        evaluate(slots, drive.beta, step.t, y, k[0], work.forces)
         return 0.0
     return first

@@ -8,16 +8,21 @@ largest value so far. It is then as exact as the dense output, whatever the size
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import damping
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import OUTPUT
-from ..jit import inline_numba, kernel
+from ..jit import internal
 from ..simd.functions import root
 from ..status import EVALUATIONS
-from .step import dense_value, evaluate, prepare_dense
+from .bracket import top_inside, value_at
+from .step import evaluate, interpolate, prepare_dense
 from .tableau import STAGES
 
 #: Golden sections around a maximum of a force; each shrinks the bracket by 0.618 and, since a maximum is flat, its
@@ -27,10 +32,16 @@ _SECTIONS = 24
 _FAINT = 0.3
 #: A maximum that the cubic through values and slopes at both ends estimates below this part of it is not searched.
 _WORTH = 0.98
-_RATIO = 0.6180339887498949
 
 
-@kernel
+class Force(NamedTuple):
+    """Input, output or elastic output force (0, 1, 2) inside a step; its evaluations are counted."""
+
+    number: int
+    counts: np.ndarray
+
+
+@internal
 def forces_of(slots, y, dy):
     """Input, output and elastic output force at state y, velocities in dy."""
     last = slots.chain.stiffness.size - 1
@@ -41,16 +52,22 @@ def forces_of(slots, y, dy):
     return cut_at_zero(slots.tension, pushed), cut_at_zero(slots.tension, passed), elastic
 
 
-@kernel
-def forces_in_step(slots, beta, t, h, y, work, x):
+@internal
+def forces_in_step(step, x):
     """The same at fraction x of the step, whose dense output is prepared."""
-    for i in range(y.size):
-        work.probe[i] = dense_value(work.dense, y[i], x, i)
-    evaluate(slots, beta, t + x * h, work.probe, work.slope, work.forces)
+    slots, drive, y, work = step.trajectory
+    interpolate(y, work, x)
+    evaluate(slots, drive.beta, step.t + x * step.h, work.probe, work.slope, work.forces)
     return forces_of(slots, work.probe, work.slope)
 
 
-@kernel
+@value_at.of(Force)
+def _(quantity, step, x):
+    quantity.counts[EVALUATIONS] += 1
+    return forces_in_step(step, x)[quantity.number]
+
+
+@internal
 def keep_end_forces(slots, y, dy, e):
     """The elastic forces, those of a cut included, of the two outer contacts at either end."""
     last = slots.chain.stiffness.size - 1
@@ -61,7 +78,7 @@ def keep_end_forces(slots, y, dy, e):
         e[c] = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped) - damped
 
 
-@kernel
+@internal
 def slopes_of(slots, y, dy, work):
     """Ḟ of the same at state y."""
     last = slots.chain.stiffness.size - 1
@@ -71,27 +88,7 @@ def slopes_of(slots, y, dy, work):
     return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
 
 
-@inline_numba
-def top_in_step(slots, beta, t, h, y, work, q, counts):
-    """Largest value of force number q inside the step."""
-    low, high = 0.0, 1.0
-    a, b = 1.0 - _RATIO, _RATIO
-    fa = forces_in_step(slots, beta, t, h, y, work, a)[q]
-    fb = forces_in_step(slots, beta, t, h, y, work, b)[q]
-    for _ in range(_SECTIONS):
-        if fa > fb:
-            high, b, fb = b, a, fa
-            a = high - _RATIO * (high - low)
-            fa = forces_in_step(slots, beta, t, h, y, work, a)[q]
-        else:
-            low, a, fa = a, b, fb
-            b = low + _RATIO * (high - low)
-            fb = forces_in_step(slots, beta, t, h, y, work, b)[q]
-    counts[EVALUATIONS] += _SECTIONS + 2
-    return max(fa, fb)
-
-
-@kernel
+@internal
 def is_monotone(f0, s0, f1, s1, h):
     """Whether the cubic with values f0, f1 and slopes s0, s1 at the ends of a step of size h rises or falls throughout.
 
@@ -101,12 +98,13 @@ def is_monotone(f0, s0, f1, s1, h):
     return chord * s0 >= 0.0 and chord * s1 >= 0.0 and h * max(abs(s0), abs(s1)) <= abs(chord)
 
 
-@kernel
-def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
-    """Raise the largest forces to those in the step from y; whether its dense output is prepared now.
+@internal
+def follow_step(step, ready, peaks, counts):
+    """Raise the largest forces to those in the accepted step; whether its dense output is prepared now.
 
     work.k[0] and work.k[12] are its slopes at both ends. A force that rises or falls throughout is largest at an end.
     """
+    slots, _, y, work = step.trajectory
     start, end = forces_of(slots, y, work.k[0]), forces_of(slots, work.end, work.k[STAGES])
     bright = False
     for q in range(3):
@@ -117,17 +115,18 @@ def follow_step(slots, beta, t, h, y, work, ready, peaks, counts):
     rises, falls = slopes_of(slots, y, work.k[0], work), slopes_of(slots, work.end, work.k[STAGES], work)
     turns = False
     for q in range(3):
-        turns = turns or not is_monotone(start[q], rises[q], end[q], falls[q], h)
+        turns = turns or not is_monotone(start[q], rises[q], end[q], falls[q], step.h)
     if not turns:
         return ready
     if not ready:
-        prepare_dense(slots, beta, t, h, y, work)
+        prepare_dense(step)
         counts[EVALUATIONS] += 3
-    middle = forces_in_step(slots, beta, t, h, y, work, 0.5)
+    middle = forces_in_step(step, 0.5)
     counts[EVALUATIONS] += 1
     for q in range(3):
         peaks[q * OUTPUT] = max(peaks[q * OUTPUT], middle[q])
-        guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], h))
+        guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], step.h))
         if rises[q] > 0.0 and falls[q] < 0.0 and guess > _WORTH * peaks[q * OUTPUT]:
-            peaks[q * OUTPUT] = max(peaks[q * OUTPUT], top_in_step(slots, beta, t, h, y, work, q, counts))
+            _, top = top_inside(Force(q, counts), step, _SECTIONS)
+            peaks[q * OUTPUT] = max(peaks[q * OUTPUT], top)
     return True

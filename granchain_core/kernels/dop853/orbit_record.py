@@ -15,9 +15,10 @@ from ..equations.motion import copy
 from ..jit import inline_numba, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, DONE, FULL, NOT_FINITE
+from .bracket import value_at
 from .force_search import follow_step
-from .run import certified_step, inner_extremum, overlap_in_step
-from .step import evaluate, new_scale, prepare_dense
+from .run import certified_step
+from .step import Overlap, Step, evaluate, new_scale, prepare_dense, turning_point
 from .tableau import STAGES
 
 
@@ -34,44 +35,47 @@ class OrbitRecord(NamedTuple):
 
 
 @inline_numba
-def follow_turns(slots, beta, t, h, y, work, since, record, row):
+def follow_turns(step, since, record, row):
     """Keep the turning points of all overlaps inside the step; returns the next free row.
 
-    The step has work.k[0] and work.k[12] as slopes at its ends; `since` is the time from the orbit's start to t.
+    The step has work.k[0] and work.k[12] as slopes at its ends; `since` is the time from the orbit's start to its own.
     """
+    slots, _, _, work = step.trajectory
     k = work.k
     for c in range(slots.chain.stiffness.size):
         s0, s1 = k[0, c] - k[0, c + 1], k[STAGES, c] - k[STAGES, c + 1]
         if (s0 > 0.0) != (s1 > 0.0):
             if row < record.turns.shape[0]:
                 sign = 1.0 if s0 > 0.0 else -1.0
-                x = inner_extremum(slots, beta, t, h, y, work, c, sign)
+                x = turning_point(Overlap(c, sign), step)
                 record.turns[row, 0], record.turns[row, 1] = c, sign
-                record.turns[row, 2] = since + x * h
-                record.turns[row, 3] = overlap_in_step(slots, beta, t, h, y, work, c, x)
+                record.turns[row, 2] = since + x * step.h
+                record.turns[row, 3] = value_at(Overlap(c, 1.0), step, x)
             row += 1
     return row
 
 
 @kernel
-def record_orbit(method, slots, beta, period, periods, y, work, clock, record, counts, stop):
+def record_orbit(method, trajectory, periods, record, counts, stop):
     """Run whole periods from phase 0 and fill `record`. Returns (status, periods done, number of turning points)."""
-    m, row = slots.chain.inverse_mass.size, 0
-    evaluate(slots, beta, 0.0, y, work.k[0], work.forces)
+    slots, drive, y, work = trajectory
+    m, period, row = slots.chain.inverse_mass.size, drive.period, 0
+    evaluate(slots, drive.beta, 0.0, y, work.k[0], work.forces)
     for p in range(periods):
         t = 0.0
         while t < period:
-            status, h, _ = certified_step(method, slots, beta, t, period, y, work, clock, counts)
+            status, h, _ = certified_step(method, trajectory, t, period, counts)
             if status != DONE:
                 return status, p, row
-            prepare_dense(slots, beta, t, h, y, work)
-            row = follow_turns(slots, beta, t, h, y, work, p * period + t, record, row)
-            follow_step(slots, beta, t, h, y, work, True, record.peaks, counts)
+            step = Step(trajectory, t, h)
+            prepare_dense(step)
+            row = follow_turns(step, p * period + t, record, row)
+            follow_step(step, True, record.peaks, counts)
             copy(work.end, y)
             new_scale(y, work, m)
             copy(work.k[STAGES], work.k[0])
             t = period if period - (t + h) < 1e-13 * period else t + h
-        evaluate(slots, beta, 0.0, y, work.k[0], work.forces)
+        evaluate(slots, drive.beta, 0.0, y, work.k[0], work.forces)
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p, row
         if stop[0] != 0:

@@ -10,9 +10,14 @@ import numpy as np
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import motion
-from ..jit import inline_numba, kernel
+from ..jit import by_slot, inline_numba, internal, kernel
+from .bracket import Bracket, root_inside, top_inside, value_at
 from .tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
 
+#: Golden sections around a turning point of an overlap.
+_SECTIONS = 40
+#: Change of the fraction of a step below which an overlap's root is found.
+_FOUND = 1e-15
 #: Growth and shrinkage of the step from one to the next.
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 
@@ -27,7 +32,8 @@ class Dop853(NamedTuple):
 class Work(NamedTuple):
     """Workspace: slopes k (16, M), stage, step end, probe and its slope (M,), dense output (7, M), forces.
 
-    `scale` (2,) is the largest displacement and the largest w so far, to which the tolerance is relative.
+    `scale` (2,) is the largest displacement and the largest w so far, to which the tolerance is relative; `clock` (1,)
+    the next step to try.
     """
 
     k: np.ndarray
@@ -37,7 +43,30 @@ class Work(NamedTuple):
     slope: np.ndarray
     dense: np.ndarray
     scale: np.ndarray
+    clock: np.ndarray
     forces: Any
+
+
+class Cycle(NamedTuple):
+    """The driver's cycle in scaled time: its rate β, and its period 2π/β."""
+
+    beta: float
+    period: float
+
+
+class Step(NamedTuple):
+    """A step of size h from the state of a trajectory at local time t of the period; the rest is in the workspace."""
+
+    trajectory: Any
+    t: float
+    h: float
+
+
+class Overlap(NamedTuple):
+    """The overlap of a contact inside a step, times a sign."""
+
+    contact: int
+    sign: float
 
 
 @kernel
@@ -46,7 +75,7 @@ def evaluate(slots, beta, t, y, dy, forces):
     motion(slots, driver_displacement(slots.driver, beta * t), driver_velocity(slots.driver, beta * t), y, dy, forces)
 
 
-@kernel
+@internal
 def combine(y, h, k, row, out):
     """out = y + h Σ_s A[row, s] k_s, the state at which slope `row` is taken."""
     for i in range(y.size):
@@ -58,25 +87,26 @@ def combine(y, h, k, row, out):
                 out[i] += a * k[s, i]
 
 
-@kernel
-def attempt(method, slots, beta, t, h, y, work):
-    """Try a step of size h from y, whose slope is work.k[0]; the result is work.end, its slope work.k[12].
+@internal
+def attempt(method, step):
+    """Try a step from y, whose slope is work.k[0]; the result is work.end, its slope work.k[12].
 
     Returns the error over the tolerance: at most 1 for a step to accept, NaN if the numbers failed.
     """
+    slots, drive, y, work = step.trajectory
     for s in range(1, STAGES + 1):  # row 12 is the step itself, its slope the next step's first
-        combine(y, h, work.k, s, work.end)
-        evaluate(slots, beta, t + C[s] * h, work.end, work.k[s], work.forces)
-    return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
+        combine(y, step.h, work.k, s, work.end)
+        evaluate(slots, drive.beta, step.t + C[s] * step.h, work.end, work.k[s], work.forces)
+    return error_norm(method.tolerance, step.h, y, work, slots.chain.inverse_mass.size)
 
 
-@kernel
+@internal
 def shrunk(h, error):
     """A smaller step after one with too large an error."""
     return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
 
 
-@kernel
+@internal
 def growth(error):
     """The next step over one whose error was tolerable."""
     return min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
@@ -104,14 +134,14 @@ def error_norm(tolerance, h, y, work, m):
     return abs(h) * fifth / sqrt((fifth + 0.01 * third) * (2 * (m - 2)))
 
 
-@kernel
-def prepare_dense(slots, beta, t, h, y, work):
+@internal
+def prepare_dense(step):
     """Fill work.dense for the step from y to work.end: three more slopes and seven coefficients."""
-    k = work.k
+    slots, drive, y, work = step.trajectory
     for s in range(STAGES + 1, ALL_STAGES):
-        combine(y, h, k, s, work.stage)
-        evaluate(slots, beta, t + C[s] * h, work.stage, k[s], work.forces)
-    dense_coefficients(h, y, work)
+        combine(y, step.h, work.k, s, work.stage)
+        evaluate(slots, drive.beta, step.t + C[s] * step.h, work.stage, work.k[s], work.forces)
+    dense_coefficients(step.h, y, work)
 
 
 @inline_numba
@@ -133,7 +163,7 @@ def dense_coefficients(h, y, work):
                     dense[3 + row, i] += a * k[s, i]
 
 
-@kernel
+@internal
 def dense_value(dense, y0, x, i):
     """Component i at fraction x of the step."""
     value = dense[6, i] * x
@@ -145,18 +175,50 @@ def dense_value(dense, y0, x, i):
     return y0 + (value + dense[0, i]) * x
 
 
-@kernel
-def overlap_inside(slots, theta, y, work, c, x):
-    """δ_c at fraction x of the step, at drive phase θ; the driver's own motion is taken exactly."""
-    probe = work.probe
+@internal
+def interpolate(y, work, x):
+    """Write the state at fraction x of the step from y into work.probe."""
+    for i in range(y.size):
+        work.probe[i] = dense_value(work.dense, y[i], x, i)
+
+
+@by_slot
+def drive_phase(step, x):
+    """Drive phase at fraction x of the step."""
+    raise NotImplementedError
+
+
+@drive_phase.of(Step)
+def _(step, x):
+    return step.trajectory.drive.beta * (step.t + x * step.h)
+
+
+@value_at.of(Overlap)
+def _(quantity, step, x):
+    slots, _, y, work = step.trajectory
+    probe, c = work.probe, quantity.contact
     for i in range(c, c + 2):
         probe[i] = dense_value(work.dense, y[i], x, i)
-    if c == 0:
-        probe[0] = driver_displacement(slots.driver, theta)
-    return overlap(slots.preload, probe, c)
+    if c == 0:  # the driver's own motion is known exactly
+        probe[0] = driver_displacement(slots.driver, drive_phase(step, x))
+    return quantity.sign * overlap(slots.preload, probe, c)
 
 
-@kernel
+@internal
+def turning_point(pressed, step):
+    """Fraction at which an overlap is largest inside the step."""
+    x, _ = top_inside(pressed, step, _SECTIONS)
+    return x
+
+
+@internal
+def crossing(pressed, step, low, high):
+    """Fraction between `low` and `high` at which an overlap changes sign."""
+    f_low, f_high = value_at(pressed, step, low), value_at(pressed, step, high)
+    return root_inside(pressed, step, Bracket(low, high, f_low, f_high, 0), _FOUND)
+
+
+@internal
 def new_scale(y, work, m):
     """Let the scale of the tolerance grow with the motion."""
     for row in range(2):

@@ -16,9 +16,8 @@ from math import sqrt
 from typing import NamedTuple
 
 from ..effects.dissipation import LAWS, exponent
-from ..jit import by_slot, inline_numba, kernel
-from .step import combine, dense_coefficients, evaluate
-from .tableau import ALL_STAGES, STAGES, C
+from ..jit import by_slot, internal
+from .step import evaluate
 
 #: Kinds of time: behind an onset, plain, before a release.
 BEHIND, PLAIN, BEFORE = 1, 0, -1
@@ -46,7 +45,7 @@ def _(dissipation):
     return 2 if twice == int(twice) else 4
 
 
-@kernel
+@internal
 def distance_root(distance, power):
     """The p-th root of a distance in time, 0 where rounding made it negative."""
     if distance <= 0.0:
@@ -54,13 +53,13 @@ def distance_root(distance, power):
     return sqrt(distance) if power == 2 else sqrt(sqrt(distance))
 
 
-@kernel
+@internal
 def time_from(kind, event, start, power):
     """Time of a step from `start` beside `event`."""
     return Time(kind, event, start, distance_root(kind * (start - event), power), power)
 
 
-@kernel
+@internal
 def time_at(time, x):
     """t at x."""
     if time.kind == PLAIN:
@@ -72,7 +71,7 @@ def time_at(time, x):
     return time.event + time.kind * s
 
 
-@kernel
+@internal
 def rate_at(time, x):
     """dt/dx at x."""
     if time.kind == PLAIN:
@@ -81,7 +80,7 @@ def rate_at(time, x):
     return 2.0 * s if time.power == 2 else 4.0 * s * s * s
 
 
-@kernel
+@internal
 def size_of(time, dt):
     """The x at which t has gone on by dt."""
     if time.kind == PLAIN:
@@ -90,20 +89,10 @@ def size_of(time, dt):
     return time.kind * (distance_root(distance, time.power) - time.s)
 
 
-@kernel
+@internal
 def slope_in_x(slots, beta, time, x, state, row, work):
     """Slope `row` in x, at `state`; the slope in t is left in work.slope."""
     evaluate(slots, beta, time_at(time, x), state, work.slope, work.forces)
     rate = rate_at(time, x)
     for i in range(state.size):
         work.k[row, i] = rate * work.slope[i]
-
-
-@inline_numba
-def prepare_dense_in_time(slots, beta, time, h, y, work):
-    """Fill work.dense for the step of size h in x from y to work.end; work.slope is again that of the end."""
-    for s in range(STAGES + 1, ALL_STAGES):
-        combine(y, h, work.k, s, work.stage)
-        slope_in_x(slots, beta, time, C[s] * h, work.stage, s, work)
-    dense_coefficients(h, y, work)
-    evaluate(slots, beta, time_at(time, h), work.end, work.slope, work.forces)

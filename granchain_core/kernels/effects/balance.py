@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import by_slot, kernel
+from ..jit import by_slot, internal
 from .contact import elastic_force, positive_part
 from .driver import driver_acceleration
 from .foundation import add_foundation_force
@@ -29,7 +29,7 @@ class Balance(NamedTuple):
     present: int
 
 
-@kernel
+@internal
 def force_on_bead(slots, contacts, u, v):
     """Force on a bead at displacement u and velocity v, on which its two contacts act with `contacts`."""
     return add_foundation_force(slots.foundation, contacts, u)
@@ -81,7 +81,7 @@ def _(balance, y, work, lost):
     y[y.size - 1] += lost
 
 
-@kernel
+@internal
 def account_ends(slots, y, dy):
     """Boundary terms of the integration by parts at a state, to be added to the integrals of W and of Q."""
     m = slots.chain.inverse_mass.size

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import by_slot, in_simd_kernels, inline_llvm, kernel
+from ..jit import by_slot, in_simd_kernels, inline_llvm, internal
 from ..simd.functions import clip, root
 
 
@@ -29,7 +29,7 @@ class Held(NamedTuple):
     closed: np.ndarray
 
 
-@kernel
+@internal
 def positive_part(overlap):
     """[δ]_+, written so that a NaN overlap stays NaN instead of cutting the chain there."""
     return clip(overlap)
@@ -52,13 +52,13 @@ def three_halves(s):
     return s * root(s)
 
 
-@kernel
+@internal
 def elastic_force(stiffness, d):
     """K d^{3/2} for an overlap d that is already non-negative."""
     return stiffness * d * root(d)
 
 
-@kernel
+@internal
 def elastic_energy(stiffness, d):
     """(2/5) K d^{5/2}."""
     return 0.4 * stiffness * d * d * root(d)

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import by_slot, kernel
+from ..jit import by_slot, internal
 from .contact import elastic_energy, positive_part
 from .dissipation import damping, primitive, put_primitive
 from .preload import overlap
@@ -36,7 +36,7 @@ def no_tension(contacts: int) -> NoTension:
     return NoTension(np.zeros(contacts, dtype=np.uint8), np.zeros(contacts), np.zeros(contacts))
 
 
-@kernel
+@internal
 def slacken(tension, slots, y, c):
     """Mark contact c, which touches without force in state y, as slack for one step."""
     d = positive_part(overlap(slots.preload, y, c))

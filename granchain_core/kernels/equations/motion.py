@@ -22,7 +22,7 @@ from ..effects.foundation import foundation_energy
 from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
 from ..effects.tension import cut_tension, keep_slack_primitive, unless_slack
-from ..jit import check_effects, kernel
+from ..jit import check_effects, internal, kernel
 
 
 class Slots(NamedTuple):
@@ -48,10 +48,22 @@ class Forces(NamedTuple):
     held: Any = None
 
 
+class Trajectory(NamedTuple):
+    """A chain on its way: its effects, its driver's course through a period, state y (M,), the method's workspace.
+
+    `drive` is a `Cycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py).
+    """
+
+    slots: Slots
+    drive: Any
+    y: np.ndarray
+    work: Any
+
+
 check_effects("granchain_core.kernels.effects")
 
 
-@kernel
+@internal
 def motion(slots, u0, v0, y, dy, forces):
     """dy/dτ at state y with the driver at (u0, v0); leaves the contact forces in `forces`."""
     inverse_mass, stiffness = slots.chain.inverse_mass, slots.chain.stiffness
@@ -74,21 +86,21 @@ def motion(slots, u0, v0, y, dy, forces):
     account(slots.balance, slots, y, dy, e)
 
 
-@kernel
+@internal
 def contact_force(slots, y, dy, e, c):
     """Total force of contact c from the last evaluation of `motion`."""
     d = positive_part(overlap(slots.preload, y, c))
     return unless_slack(slots.tension, c, e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1]))
 
 
-@kernel
+@internal
 def copy(source, target):
     """Copy one array; a slice assignment would bring Numba's shape errors and seconds of compiling with it."""
     for i in range(source.size):
         target[i] = source[i]
 
 
-@kernel
+@internal
 def write_w(slots, y, dy, forces):
     """The variables w of state y from the velocities in dy."""
     m = slots.chain.inverse_mass.size
@@ -112,7 +124,7 @@ def place(slots, theta, y, dy, forces, from_velocity):
     motion(slots, u0, driver_velocity(slots.driver, theta), y, dy, forces)
 
 
-@kernel
+@internal
 def stored_energy(slots, y, dy):
     """Kinetic, contact and foundation energy; the velocities are read from dy."""
     inverse_mass = slots.chain.inverse_mass

@@ -22,7 +22,7 @@ from ..effects.contact import positive_part
 from ..effects.dissipation import damping
 from ..effects.foundation import foundation_pull
 from ..effects.preload import overlap
-from ..jit import by_slot, inline_llvm, inline_numba, kernel
+from ..jit import by_slot, inline_llvm, inline_numba, internal
 from ..simd.vector import blank, load, store
 
 
@@ -45,7 +45,7 @@ class Tangent(NamedTuple):
     first_contact: int
 
 
-@kernel
+@internal
 def stage_gaps(slots, state, stage, gaps):
     """Write the overlaps of one stage's state."""
     for c in range(gaps.shape[1]):

@@ -14,9 +14,10 @@ from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import damping
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
-from ..forces.largest import end_overlaps, watch_crossings
+from ..forces.crossings import end_overlaps, watch_crossings
+from ..forces.largest import Instant
 from ..jit import kernel
-from ..rk4.step import drive_displacement, drive_velocity, step
+from ..rk4.step import drive_displacement, drive_velocity, span_of, step
 from ..status import EVALUATIONS, STEPS
 
 
@@ -52,11 +53,13 @@ def naive_motion(slots, u0, v0, y, dy, forces):
 
 
 @step.of(Rk4Naive)
-def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
-    k, stage, forces = stages.k, stages.stage, stages.forces
-    before = end_overlaps(slots.dissipation, slots, y, k[0])
-    ua, va = drive_displacement(slots, drive, 2 * j + 1, dtheta), drive_velocity(slots, drive, 2 * j + 1, dtheta)
-    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
+def _(method, trajectory, j, out):
+    slots, drive, y, stages = trajectory
+    k, stage, forces, h = stages.k, stages.stage, stages.forces, drive.h
+    now = Instant(y, k[0])
+    before = end_overlaps(slots.dissipation, slots, now)
+    ua, va = drive_displacement(slots, drive, 2 * j + 1), drive_velocity(slots, drive, 2 * j + 1)
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2), drive_velocity(slots, drive, 2 * j + 2)
     for i in range(y.size):
         stage[i] = y[i] + 0.5 * h * k[0, i]
     naive_motion(slots, ua, va, stage, k[1], forces)
@@ -69,25 +72,27 @@ def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
     for i in range(y.size):
         y[i] += h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
     naive_motion(slots, ub, vb, y, k[0], forces)
-    watch_crossings(slots.dissipation, slots, before, y, k[0], h, theta, dtheta, log)
-    counts[STEPS] += 1
-    counts[EVALUATIONS] += 4
+    watch_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
+    out.counts[STEPS] += 1
+    out.counts[EVALUATIONS] += 4
     return h
 
 
 @step.of(VerletNaive)
-def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
-    m, k = slots.chain.inverse_mass.size, stages.k
-    before = end_overlaps(slots.dissipation, slots, y, k[0])
+def _(method, trajectory, j, out):
+    slots, drive, y, stages = trajectory
+    m, k, h = slots.chain.inverse_mass.size, stages.k, drive.h
+    now = Instant(y, k[0])
+    before = end_overlaps(slots.dissipation, slots, now)
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         y[i] += h * y[m + i]
-    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2), drive_velocity(slots, drive, 2 * j + 2)
     naive_motion(slots, ub, vb, y, k[0], stages.forces)
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         k[0, i] = y[m + i]
-    watch_crossings(slots.dissipation, slots, before, y, k[0], h, theta, dtheta, log)
-    counts[STEPS] += 1
-    counts[EVALUATIONS] += 1
+    watch_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
+    out.counts[STEPS] += 1
+    out.counts[EVALUATIONS] += 1
     return h

@@ -3,9 +3,8 @@
 Equation   F = K δ^{3/2} + g(δ) δ̇.  With a linear dashpot F jumps from 0 to λδ̇ at the instant a contact closes. The
            value behind the jump, its right limit, counts: it is often the largest force there is
 Method     Between two states the force is the cubic with its values and slopes at both. At an event it is evaluated on
-           either side: nothing is interpolated across a jump or a kink. Methods that do not locate events find the
-           closing as the zero of a smooth quantity: without the contact's own damping the rate of an overlap is
-           smooth, and its parabola gives the rate at the instant at which the overlap is zero
+           either side: nothing is interpolated across a jump or a kink. Methods that do not locate events look for
+           closings in their own way (crossings.py)
 Source     Zhang et al. 2016, eq. (1), for the force; docs/model.md for the definition
 """
 
@@ -22,9 +21,9 @@ from ..effects.driver import driver_acceleration
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..equations.motion import contact_force
-from ..jit import by_slot, inline_llvm, inline_numba, kernel
+from ..jit import by_slot, inline_llvm, inline_numba, internal
 from ..rk4.contact_events import GAP, RATE, TINY, hermite_turn
-from ..simd.functions import clip, root
+from ..simd.functions import root
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 
 #: A force below this part of the largest so far is followed without its slope: a maximum inside a step exceeds the
@@ -53,20 +52,35 @@ class ForceLog(NamedTuple):
     met: np.ndarray
 
 
+class Instant(NamedTuple):
+    """State y (M,) and its slope dy (M,) at one end of a step."""
+
+    y: np.ndarray
+    dy: np.ndarray
+
+
+class Span(NamedTuple):
+    """A step's size, the drive phase θ at its start, and by how much θ grows in it."""
+
+    h: float
+    theta: float
+    dtheta: float
+
+
 def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
     """A log with room for a number of closings; largest forces continue from an earlier log."""
     peaks, last = (np.zeros(PEAKS), np.zeros((3, 2))) if before is None else (before.peaks, before.last)
     return ForceLog(peaks, last, np.zeros((closings, 4)), np.zeros(3, dtype=np.int64))
 
 
-@kernel
+@internal
 def reach(peaks, row, value):
     """Raise one largest force to `value`."""
     if value > peaks[row]:
         peaks[row] = value
 
 
-@kernel
+@internal
 def force_beside(slots, y, dy, e, c, event, closed):
     """Total force of contact c; at the event of contact `event` that one is just closed or just open."""
     if c != event:
@@ -76,7 +90,7 @@ def force_beside(slots, y, dy, e, c, event, closed):
     return cut_at_zero(slots.tension, damping(slots.dissipation, TINY) * (dy[c] - dy[c + 1]))
 
 
-@kernel
+@internal
 def acceleration(slots, y, dy, e, i, event, closed):
     """v̇ of body i."""
     if i == 0:
@@ -87,7 +101,7 @@ def acceleration(slots, y, dy, e, i, event, closed):
     return slots.chain.inverse_mass[i] * force_on_bead(slots, force, y[i], dy[i])
 
 
-@kernel
+@internal
 def force_slope(slots, y, dy, e, c, event, closed):
     """Ḟ = (3/2) K √δ δ̇ + g'(δ) δ̇² + g(δ) δ̈ of contact c; 0 where it is open."""
     d, rate = positive_part(overlap(slots.preload, y, c)), dy[c] - dy[c + 1]
@@ -98,7 +112,7 @@ def force_slope(slots, y, dy, e, c, event, closed):
             + damping(slots.dissipation, d) * change)
 
 
-@kernel
+@internal
 def cubic_top(f0, s0, f1, s1, h):
     """Largest value of the cubic with values f0, f1 and slopes s0, s1 at the ends of a step of size h."""
     largest = max(f0, f1)
@@ -110,7 +124,7 @@ def cubic_top(f0, s0, f1, s1, h):
     return max(largest, f0 + x * (a + x * (3.0 * (f1 - f0) - 2.0 * a - b + x * (2.0 * (f0 - f1) + a + b))))
 
 
-@kernel
+@internal
 def follow(log, q, value, slope, h):
     """Follow force number q to its value at a state that lies h behind the last one."""
     peaks, last = log.peaks, log.last
@@ -119,7 +133,7 @@ def follow(log, q, value, slope, h):
     last[q, 0], last[q, 1] = value, slope
 
 
-@kernel
+@internal
 def watch_beside(slots, y, dy, e, h, event, closed, log):
     """Follow the three forces to state y, whose slope is dy, h behind the last one; h = 0 begins anew there."""
     last = e.size - 1
@@ -151,7 +165,7 @@ def watch_state(slots, y, dy, e, h, log):
         log.last[0, 1] = log.last[1, 1] = log.last[2, 1] = np.nan
 
 
-@kernel
+@internal
 def watch_event(slots, y, dy, e, h, c, theta, log):
     """Follow the forces up to the event of contact c at drive phase θ, and begin anew behind it."""
     rate = dy[c] - dy[c + 1]
@@ -197,8 +211,8 @@ def _(law, rate, c, last, theta, log):
 
 
 @by_slot
-def note_closings(law, slots, y, dy, end, end_slope, theta, dtheta, log):
-    """Record the contacts that closed in a located step from y at drive phase θ to `end`. Absent: no force jumps there.
+def note_closings(law, slots, start, end, span, log):
+    """Record the contacts that closed in a located step between two instants. Absent: no force jumps there.
 
     The step ends just behind an event; an event too near to the step's start to be distinguished from it belongs to
     the start.
@@ -206,97 +220,16 @@ def note_closings(law, slots, y, dy, end, end_slope, theta, dtheta, log):
 
 
 @note_closings.of(*JUMP_LAWS)
-def _(law, slots, y, dy, end, end_slope, theta, dtheta, log):
+def _(law, slots, start, end, span, log):
     last = slots.chain.stiffness.size - 1
     for c in range(last + 1):
-        before, after = overlap(slots.preload, y, c), overlap(slots.preload, end, c)
+        before, after = overlap(slots.preload, start.y, c), overlap(slots.preload, end.y, c)
         if before <= 0.0 and after > 0.0:
             if after < -before:
-                note_closing(law, end_slope[c] - end_slope[c + 1], c, last, theta + dtheta, log)
+                note_closing(law, end.dy[c] - end.dy[c + 1], c, last, span.theta + span.dtheta, log)
             else:
-                note_closing(law, dy[c] - dy[c + 1], c, last, theta, log)
+                note_closing(law, start.dy[c] - start.dy[c + 1], c, last, span.theta, log)
 
 
 note_closing.absent_for(*SMOOTH_LAWS)
 note_closings.absent_for(*SMOOTH_LAWS)
-
-
-@inline_llvm
-def closing_rate(before, after, rate, open_rate, own, h):
-    """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
-
-    `rate` is δ̇ before. `open_rate` is δ̇ after plus own·δ, by which the contact's own damping has reduced it since then.
-    Between the two the rate is a parabola, whose integral is the overlap's own change. For numbers and vectors.
-    """
-    s = before / (before - after)
-    closed = 0.5 * (1.0 - s) * after
-    for _ in range(2):
-        bend = 6.0 * ((after + own * h * closed - before) / h - 0.5 * (rate + open_rate))
-        for _ in range(2):
-            gap = before + h * s * (rate + s * (0.5 * (open_rate - rate + bend) - s * (bend * (1.0 / 3.0))))
-            s = s - gap / (h * (rate + s * (open_rate - rate + bend - s * bend)))
-        there = rate + s * (open_rate - rate + bend - s * bend)
-        left = 1.0 - s
-        # ∫δ over the closed part, over h: the trapezium with its slopes at both ends
-        closed = left * (0.5 * after - left * h * (open_rate - own * after - there) * (1.0 / 12.0))
-    return s, there
-
-
-@inline_llvm
-def brief_touch(before, after, rate, rate_after, h):
-    """Rate at which a touch within a step closes: √(2 a δ_max) for an overlap with constant acceleration −a.
-
-    The overlap is negative at both ends of the step and turns in between; 0 or a NaN where it does not touch. For
-    numbers and vectors.
-    """
-    fall = (rate - rate_after) / h
-    top = 0.5 * (before + after) + 0.25 * (rate * rate + rate_after * rate_after) / fall
-    return root(clip(2.0 * fall * top))
-
-
-@by_slot
-def end_overlaps(law, slots, y, dy):
-    """Overlap and rate of the first and the last contact at the start of a step. Absent: no force jumps there."""
-    return 0.0
-
-
-@end_overlaps.of(*JUMP_LAWS)
-def _(law, slots, y, dy):
-    last = slots.chain.stiffness.size - 1
-    return (overlap(slots.preload, y, 0), dy[0] - dy[1], overlap(slots.preload, y, last), dy[last] - dy[last + 1])
-
-
-@by_slot
-def watch_crossings(law, slots, before, y, dy, h, theta, dtheta, log):
-    """Record which end contacts closed between two states a step apart, for methods that do not locate events.
-
-    `before` are the overlaps and rates of `end_overlaps` at the first of them.
-    """
-
-
-@watch_crossings.of(*JUMP_LAWS)
-def _(law, slots, before, y, dy, h, theta, dtheta, log):
-    last = slots.chain.stiffness.size - 1
-    first_before, first_rate, last_before, last_rate = before
-    if first_before <= 0.0:
-        watch_crossing(law, slots, 0, first_before, first_rate, y, dy, h, theta, dtheta, log)
-    if last_before <= 0.0:
-        watch_crossing(law, slots, last, last_before, last_rate, y, dy, h, theta, dtheta, log)
-
-
-@inline_llvm
-def watch_crossing(law, slots, c, before, rate, y, dy, h, theta, dtheta, log):
-    """Record whether contact c, open at the start of the step, closed in it or touched."""
-    after, rate_after = overlap(slots.preload, y, c), dy[c] - dy[c + 1]
-    if after > 0.0:
-        own = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])
-        s, jump = closing_rate(before, after, rate, rate_after + own * after, own, h)
-        note_closing(law, jump, c, slots.chain.stiffness.size - 1, theta + s * dtheta, log)
-    elif rate > 0.0 and rate_after < 0.0:
-        jump = brief_touch(before, after, rate, rate_after, h)
-        note_closing(law, jump, c, slots.chain.stiffness.size - 1, theta + 0.5 * dtheta, log)
-        log.met[UNRESOLVED] += jump > 0.0
-
-
-end_overlaps.absent_for(*SMOOTH_LAWS)
-watch_crossings.absent_for(*SMOOTH_LAWS)

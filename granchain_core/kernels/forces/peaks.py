@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..jit import inline_llvm, kernel
+from ..jit import inline_llvm, internal, kernel
 from ..simd.functions import choose_peak, larger
 from ..simd.vector import load, positive_mask, store
 
@@ -21,7 +21,7 @@ INPUT, OUTPUT, OUTPUT_ELASTIC, MEMORY = 0, ROWS, 2 * ROWS, 3 * ROWS
 INPUT_JUMP, OUTPUT_JUMP, PEAKS = MEMORY, MEMORY + 1, MEMORY + 2
 
 
-@kernel
+@internal
 def quartic_top(a, b, c, d, e):
     """Maximum near the middle of the quartic through five equally spaced values, after two Newton steps."""
     first = (a - e + 8.0 * (d - b)) / 12.0
@@ -34,7 +34,7 @@ def quartic_top(a, b, c, d, e):
     return c + x * (first + x * (0.5 * second + x * (third / 6.0 + x * (fourth / 24.0))))
 
 
-@kernel
+@internal
 def watch(peaks, row, value):
     """Follow one force whose memory starts at peaks[row]."""
     d, c, b, a = peaks[row + 1], peaks[row + 2], peaks[row + 3], peaks[row + 4]

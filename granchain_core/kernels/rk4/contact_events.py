@@ -12,7 +12,7 @@ from math import copysign, sqrt
 
 from ..effects.contact import three_halves
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power
-from ..jit import by_slot, inline_llvm, inline_numba, kernel
+from ..jit import by_slot, inline_llvm, inline_numba, internal
 
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
 #: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
@@ -23,7 +23,7 @@ MOST_SPLITS = 64
 TINY = 1e-300
 
 
-@kernel
+@internal
 def hermite_root(d0, s0, d1, s1, high):
     """First root in [0, high] of the cubic with values d0, d1 and slopes s0, s1 at 0 and 1, of another sign there."""
     low = 0.0
@@ -46,7 +46,7 @@ def hermite_root(d0, s0, d1, s1, high):
     return x
 
 
-@kernel
+@internal
 def hermite_turn(d0, s0, d1, s1):
     """Where the same cubic turns between ends at which its slopes have opposite signs."""
     a = 2.0 * (d0 - d1) + s0 + s1
@@ -78,7 +78,7 @@ def contact_root(d0, s0, d1, s1):
     return hermite_root(d0, s0, d1, s1, x)
 
 
-@kernel
+@internal
 def first_event(ends, contacts, h):
     """Fraction of a step of size h at which the first contact opens or closes and that contact; (2, −1) if none."""
     first, contact = 2.0, -1
@@ -89,7 +89,7 @@ def first_event(ends, contacts, h):
     return first, contact
 
 
-@kernel
+@internal
 def reset_corrections(ends):
     """Reset the accumulated quadrature errors."""
     for c in range(ends.shape[1]):
@@ -121,7 +121,7 @@ def simpson_excess(r, p, half, one, inner, middle, far):
     return (part + whole) / 6.0 - 1.0 / (p + 1.0) * (r + 2.0) * far
 
 
-@kernel
+@internal
 def three_halves_excess(r):
     """`simpson_excess` of s^{3/2}."""
     inner = three_halves(r + 0.5) + three_halves(r + 1.5)

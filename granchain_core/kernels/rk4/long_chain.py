@@ -16,7 +16,7 @@ from ..effects.dissipation import LAWS, damping, primitive
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..jit import by_slot, inline_numba, kernel
+from ..jit import by_slot, inline_numba, internal
 from ..simd.vector import LANES, from_left, from_right, load, positive_mask, splat, store, with_first
 from .step import drive_displacement, drive_velocity
 
@@ -43,16 +43,17 @@ class LongChain(NamedTuple):
 
 
 @inline_numba
-def steps_without_events(simd, slots, drive, j, count, dtheta, h, y, peaks):
+def steps_without_events(simd, trajectory, j, count, peaks):
     """Take up to `count` steps from half-step index 2j of the drive; how many were taken."""
-    now, before, blocks = simd.now, simd.before, simd.inverse_mass.shape[0]
+    slots, drive, y, _ = trajectory
+    h, now, before, blocks = drive.h, simd.now, simd.before, simd.inverse_mass.shape[0]
     m = slots.chain.inverse_mass.size
     unpack(y, m, now, blocks)
     done, first, last = 0, False, False
     while True:
         i = 2 * (j + done)
-        changed = first_stage(simd, slots, drive_displacement(slots, drive, i, dtheta), h)
-        v0 = drive_velocity(slots, drive, i, dtheta)
+        changed = first_stage(simd, slots, drive_displacement(slots, drive, i), h)
+        v0 = drive_velocity(slots, drive, i)
         first_before, last_before = first, last
         first, last = comes_nearer(simd, slots, v0)
         if done > 0:
@@ -64,7 +65,7 @@ def steps_without_events(simd, slots, drive, j, count, dtheta, h, y, peaks):
         if done == count:
             pack(now, blocks, y, m)
             return done
-        middle, end = drive_displacement(slots, drive, i + 1, dtheta), drive_displacement(slots, drive, i + 2, dtheta)
+        middle, end = drive_displacement(slots, drive, i + 1), drive_displacement(slots, drive, i + 2)
         later_stage(simd, slots, middle, simd.first, simd.second, h, 0.5, 1.0 / 3.0)
         later_stage(simd, slots, middle, simd.second, simd.first, h, 1.0, 1.0 / 3.0)
         later_stage(simd, slots, end, simd.first, simd.second, h, 0.0, 1.0 / 6.0)
@@ -103,7 +104,7 @@ def first_stage(simd, slots, u0, h):
     return changed != 0
 
 
-@kernel
+@internal
 def later_stage(simd, slots, u0, y, out, h, forward, weight):
     """A later stage at state y: out = now + forward·h·slope, acc += weight·h·slope."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
@@ -143,7 +144,7 @@ def comes_nearer(simd, slots, v0):
     return (first_rate > 0.0) != (first_gap > 0.0), (last_rate > 0.0) != (last_gap > 0.0)
 
 
-@kernel
+@internal
 def watch_ends(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
@@ -163,7 +164,7 @@ def unpack(y, m, blocked, blocks):
             blocked[row * blocks + i // LANES, i % LANES] = y[row * m + i]
 
 
-@kernel
+@internal
 def pack(blocked, blocks, y, m):
     """Two rows of blocks back into two rows of m bodies."""
     for row in range(2):

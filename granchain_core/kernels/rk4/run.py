@@ -11,7 +11,7 @@ from ..effects.preload import overlap
 from ..equations.motion import contact_force, copy, motion
 from ..forces.largest import SAMPLE, watch_state
 from ..forces.peaks import INPUT, MEMORY, OUTPUT, OUTPUT_ELASTIC, ROWS, next_period, watch
-from ..jit import by_slot_inlined, kernel
+from ..jit import by_slot_inlined, internal, kernel
 from ..samples import Samples, first_not_finite, keep, keep_strobe
 from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS, STEPS_BETWEEN_STOP_CHECKS
 from .long_chain import LongChain, steps_without_events
@@ -21,45 +21,47 @@ from .step import drive_displacement, drive_velocity, step
 
 
 @by_slot_inlined
-def advance(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+def advance(simd, method, trajectory, j, count, out):
     """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
 
     The stop flag is read often enough to end within milliseconds; the steps are then incomplete.
     """
+    slots, _, y, stages = trajectory
     for i in range(j, j + count):
-        left = step(method, slots, drive, i, i * dtheta, dtheta, h, y, stages, log, counts)
-        watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
-        if i % STEPS_BETWEEN_STOP_CHECKS == 0 and stop[0] != 0:
+        left = step(method, trajectory, i, out)
+        watch_state(slots, y, stages.k[0], stages.forces.e, left, out.log)
+        if i % STEPS_BETWEEN_STOP_CHECKS == 0 and out.stop[0] != 0:
             break
 
 
 @advance.of(ShortChain)
-def _(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
-    run_short_chain(simd, slots, drive, j, count, dtheta, h, y, stages.k[0], stages.forces.e, log, counts, stop)
+def _(simd, method, trajectory, j, count, out):
+    run_short_chain(simd, trajectory, j, count, out)
 
 
 @advance.of(LongChain)
-def _(simd, method, slots, drive, j, count, dtheta, h, y, stages, log, counts, stop):
+def _(simd, method, trajectory, j, count, out):
+    slots, drive, y, stages = trajectory
     done = 0
-    while done < count and stop[0] == 0:
+    while done < count and out.stop[0] == 0:
         most = min(count - done, STEPS_BETWEEN_STOP_CHECKS)
-        smooth = steps_without_events(simd, slots, drive, j + done, most, dtheta, h, y, log.peaks)
+        smooth = steps_without_events(simd, trajectory, j + done, most, out.log.peaks)
         if smooth > 0:
             done += smooth
-            counts[STEPS] += smooth
-            counts[EVALUATIONS] += 4 * smooth
+            out.counts[STEPS] += smooth
+            out.counts[EVALUATIONS] += 4 * smooth
             i = 2 * (j + done)
-            u0, v0 = drive_displacement(slots, drive, i, dtheta), drive_velocity(slots, drive, i, dtheta)
-            motion(slots, u0, v0, y, stages.k[0], stages.forces)
+            motion(slots, drive_displacement(slots, drive, i), drive_velocity(slots, drive, i), y, stages.k[0],
+                   stages.forces)
         if done < count:
-            watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
-            left = step(method, slots, drive, j + done, (j + done) * dtheta, dtheta, h, y, stages, log, counts)
-            watch_state(slots, y, stages.k[0], stages.forces.e, left, log)
-            watch_equal(slots, y, stages.k[0], stages.forces.e, log.peaks)
+            watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, out.log)
+            left = step(method, trajectory, j + done, out)
+            watch_state(slots, y, stages.k[0], stages.forces.e, left, out.log)
+            watch_equal(slots, y, stages.k[0], stages.forces.e, out.log.peaks)
             done += 1
 
 
-@kernel
+@internal
 def watch_equal(slots, y, dy, e, peaks):
     """Follow the three forces at one of equal steps (forces/peaks.py)."""
     last = e.size - 1
@@ -82,17 +84,15 @@ class Kept(NamedTuple):
 
 
 @kernel
-def run_steps(method, slots, drive, h, y, stages, first_step, stride, kept, log, counts, stop):
+def run_steps(method, trajectory, first_step, stride, kept, out):
     """Run with a fixed-step method from step index `first_step` of the period, keeping every stride-th state.
 
     One kernel for samples and for whole periods, because the steps are most of its code. Closings are recorded in
-    `log`.
+    the log.
     Returns (status, samples filled or periods done).
     """
-    n = method.steps_per_period
-    dtheta = 2.0 * np.pi / n
-    m = slots.chain.inverse_mass.size
-    j = first_step
+    slots, _, y, stages = trajectory
+    m, log, j = slots.chain.inverse_mass.size, out.log, first_step
     sampled = kept.samples.displacement.shape[0] > 0
     watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
     if sampled:
@@ -106,10 +106,10 @@ def run_steps(method, slots, drive, h, y, stages, first_step, stride, kept, log,
             log.met[SAMPLE] = i
         else:
             next_period(log.peaks)
-        advance(stages.simd, method, slots, drive, j, stride, dtheta, h, y, stages, log, counts, stop)
-        j = 0 if j + stride == n else j + stride
+        advance(stages.simd, method, trajectory, j, stride, out)
+        j = 0 if j + stride == method.steps_per_period else j + stride
         done = i + 1 if sampled else i
-        if stop[0] != 0:
+        if out.stop[0] != 0:
             return CANCELLED, done
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, done

@@ -9,7 +9,7 @@ from ..effects.dissipation import damping
 from ..effects.driver import driver_displacement, driver_velocity
 from ..forces.largest import watch_ends
 from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..jit import inline_llvm, inline_numba, kernel
+from ..jit import inline_llvm, inline_numba, internal
 from ..simd.functions import larger
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import at, blank, positive_mask, store
@@ -45,8 +45,13 @@ from .step import drive_displacement, drive_velocity
 
 
 @inline_numba
-def split_row(wide, slots, theta, dtheta, u_end, v_end, h, log, counts):
-    """Repeat the step in the workspace from contact event to contact event; its end is written there anew."""
+def split_row(wide, trajectory, j, u_end, v_end, out):
+    """Repeat step j in the workspace from contact event to contact event; its end is written there anew.
+
+    The driver is at u_end, moving at v_end, at the end.
+    """
+    slots, drive, _, _ = trajectory
+    h, dtheta, theta = drive.h, drive.dtheta, j * drive.dtheta
     ends, row, driver, done = wide.ends, row_of(wide, slots), slots.driver, 0.0
     reset_corrections(ends)
     for _ in range(MOST_SPLITS):
@@ -61,14 +66,14 @@ def split_row(wide, slots, theta, dtheta, u_end, v_end, h, log, counts):
         store_state(wide, BEGIN, event)
         done += part
         add_quadrature_errors(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
-        watch_ends(slots, ends, contact, there, log)
+        watch_ends(slots, ends, contact, there, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
                        row_correction(row, load_row(wide.width, ends, DISPLACEMENT_ERROR)),
                        row_correction(row, load_row(wide.width, ends, MOMENTUM_ERROR)))
         store_state(wide, END, end)
-        counts[EVALUATIONS] += 8
-        counts[EVENTS] += 1
+        out.counts[EVALUATIONS] += 8
+        out.counts[EVENTS] += 1
 
 
 @inline_llvm
@@ -84,7 +89,7 @@ def keep_forces(wide, row, last, k, x):
     return pushed, passed, elastic
 
 
-@kernel
+@internal
 def watch_block(values, count, largest, peaks, first):
     """Follow one force through the steps of a block; step by step only where a largest value may be among them."""
     skipped = 0 if HIGHEST * largest > peaks[first] else max(0, count - 4)
@@ -93,17 +98,48 @@ def watch_block(values, count, largest, peaks, first):
 
 
 @inline_numba
-def run_short_chain(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, counts, stop):
-    """Take `count` steps from step index j of the period, slope dy and forces e at the end included.
+def follow_block(wide, count, tops, peaks):
+    """Follow the three forces through the last `count` steps, whose largest values are `tops`."""
+    watch_block(wide.forces[0], count, tops[0], peaks, INPUT)
+    watch_block(wide.forces[1], count, tops[1], peaks, OUTPUT)
+    watch_block(wide.forces[2], count, tops[2], peaks, OUTPUT_ELASTIC)
+
+
+@inline_llvm
+def start_row(wide, row, trajectory, j):
+    """The chain in the trajectory's state at step j."""
+    slots, drive, y, _ = trajectory
+    rows, m = wide.rows, slots.chain.inverse_mass.size
+    for i in range(m):
+        rows[U, i], rows[W, i] = y[i], y[m + i]
+    return row_at(row, drive_displacement(slots, drive, 2 * j), drive_velocity(slots, drive, 2 * j),
+                  load_row(wide.width, rows, U), load_row(wide.width, rows, W))
+
+
+@inline_numba
+def end_row(wide, x, trajectory, j):
+    """Write the chain at step j into the trajectory: state, slope and elastic forces."""
+    slots, drive, y, stages = trajectory
+    rows, dy, e, m = wide.rows, stages.k[0], stages.forces.e, slots.chain.inverse_mass.size
+    store_state(wide, BEGIN, x)
+    for i in range(1, m - 1):
+        y[i], y[m + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
+        dy[m + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
+        e[i] = rows[ELASTIC, i]
+    e[0] = rows[ELASTIC, 0]
+    y[0] = drive_displacement(slots, drive, 2 * j)
+    dy[0] = drive_velocity(slots, drive, 2 * j)
+
+
+@inline_numba
+def run_short_chain(wide, trajectory, j, count, out):
+    """Take `count` steps from step index j of the period, slope and forces at the end included.
 
     The stop flag leaves them incomplete.
     """
-    rows, row, before = wide.rows, row_of(wide, slots), flush_subnormals()
-    m = slots.chain.inverse_mass.size
-    for i in range(m):
-        rows[U, i], rows[W, i] = y[i], y[m + i]
-    x = row_at(row, drive_displacement(slots, drive, 2 * j, dtheta), drive_velocity(slots, drive, 2 * j, dtheta),
-               load_row(wide.width, rows, U), load_row(wide.width, rows, W))
+    slots, drive, _, _ = trajectory
+    row, before, last = row_of(wide, slots), flush_subnormals(), slots.chain.stiffness.size - 1
+    x = start_row(wide, row, trajectory, j)
     closed, rising, nothing = positive_mask(x.gap), positive_mask(x.rate), blank(x.w)
     taken = count
     for first in range(j, j + count, BLOCK):
@@ -111,35 +147,26 @@ def run_short_chain(wide, slots, drive, j, count, dtheta, h, y, dy, e, log, coun
         top_in, top_out, top_elastic = -np.inf, -np.inf, -np.inf
         for k in range(block):
             i = 2 * (first + k)
-            ua, ub = drive_displacement(slots, drive, i + 1, dtheta), drive_displacement(slots, drive, i + 2, dtheta)
-            vb = drive_velocity(slots, drive, i + 2, dtheta)
-            end = row_step(row, ua, ub, vb, h, x, nothing, nothing)
+            ua, ub = drive_displacement(slots, drive, i + 1), drive_displacement(slots, drive, i + 2)
+            vb = drive_velocity(slots, drive, i + 2)
+            end = row_step(row, ua, ub, vb, drive.h, x, nothing, nothing)
             closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
             # another sign, or moving towards zero at the start and away from it at the end
             if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
                 store_state(wide, BEGIN, x)
                 store_state(wide, END, end)
-                split_row(wide, slots, (first + k) * dtheta, dtheta, ub, vb, h, log, counts)
+                split_row(wide, trajectory, first + k, ub, vb, out)
                 end = load_state(wide, END)
                 closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
             x, closed, rising = end, closed_after, rising_after
-            pushed, passed, elastic = keep_forces(wide, row, m - 2, k, x)
+            pushed, passed, elastic = keep_forces(wide, row, last, k, x)
             top_in, top_out = larger(top_in, pushed), larger(top_out, passed)
             top_elastic = larger(top_elastic, elastic)
-        watch_block(wide.forces[0], block, top_in, log.peaks, INPUT)
-        watch_block(wide.forces[1], block, top_out, log.peaks, OUTPUT)
-        watch_block(wide.forces[2], block, top_elastic, log.peaks, OUTPUT_ELASTIC)
-        if stop[0] != 0:
+        follow_block(wide, block, (top_in, top_out, top_elastic), out.log.peaks)
+        if out.stop[0] != 0:
             taken = first + block - j
             break
     restore_subnormals(before)
-    counts[STEPS] += taken
-    counts[EVALUATIONS] += 4 * taken
-    store_state(wide, BEGIN, x)
-    for i in range(1, m - 1):
-        y[i], y[m + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
-        dy[m + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
-        e[i] = rows[ELASTIC, i]
-    e[0] = rows[ELASTIC, 0]
-    y[0] = drive_displacement(slots, drive, 2 * (j + taken), dtheta)
-    dy[0] = drive_velocity(slots, drive, 2 * (j + taken), dtheta)
+    out.counts[STEPS] += taken
+    out.counts[EVALUATIONS] += 4 * taken
+    end_row(wide, x, trajectory, j + taken)

@@ -1,7 +1,6 @@
 """Fixed-step methods: classical Runge–Kutta of order 4 in w, plain or with its step split at contact events.
 
-The drive phase comes from an integer step count: `drive` holds (u_0, v_0) at every half step of one period, or is
-empty if a period has too many steps for it, and the driver is evaluated instead.
+The drive phase comes from an integer step count.
 """
 
 from __future__ import annotations
@@ -14,8 +13,9 @@ from ..effects.balance import Balance
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import copy, motion
-from ..forces.largest import end_overlaps, watch_crossings, watch_event
-from ..jit import by_slot, by_slot_inlined, inline_numba, kernel
+from ..forces.crossings import end_overlaps, watch_crossings
+from ..forces.largest import Instant, Span, watch_event
+from ..jit import by_slot, by_slot_inlined, inline_numba, internal
 from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
     DISPLACEMENT_ERROR,
@@ -58,20 +58,32 @@ class Stages(NamedTuple):
     simd: Any
 
 
+class DriveTable(NamedTuple):
+    """The driver in equal steps: (u_0, v_0) at every half step of a period, a step's share of the phase, and its size.
 
-@kernel
-def drive_displacement(slots, drive, i, dtheta):
+    `values` has no rows if a period has too many steps for it; the driver is evaluated then.
+    """
+
+    values: np.ndarray
+    dtheta: float
+    h: float
+
+
+@internal
+def drive_displacement(slots, drive, i):
     """u_0 at half-step index i of the period."""
-    return drive[i, 0] if drive.shape[0] > 0 else driver_displacement(slots.driver, 0.5 * dtheta * i)
+    values, dtheta, _ = drive
+    return values[i, 0] if values.shape[0] > 0 else driver_displacement(slots.driver, 0.5 * dtheta * i)
 
 
-@kernel
-def drive_velocity(slots, drive, i, dtheta):
+@internal
+def drive_velocity(slots, drive, i):
     """v_0 at half-step index i of the period."""
-    return drive[i, 1] if drive.shape[0] > 0 else driver_velocity(slots.driver, 0.5 * dtheta * i)
+    values, dtheta, _ = drive
+    return values[i, 1] if values.shape[0] > 0 else driver_velocity(slots.driver, 0.5 * dtheta * i)
 
 
-@kernel
+@internal
 def rk4(slots, ua, va, ub, vb, h, y, stages):
     """One RK4 step from y, whose slope is stages.k[0], to stages.end; (u, v)_a at mid-step, _b at its end."""
     k, stage, end, forces = stages.k, stages.stage, stages.end, stages.forces
@@ -102,7 +114,7 @@ def may_change(slots, y, slope, end, end_slope):
     return changed > 0
 
 
-@kernel
+@internal
 def keep_overlaps(slots, y, slope, ends, overlaps, rates):
     """Overlaps and their rates at one end of a step."""
     for c in range(slots.chain.stiffness.size):
@@ -110,7 +122,7 @@ def keep_overlaps(slots, y, slope, ends, overlaps, rates):
         ends[rates, c] = slope[c] - slope[c + 1]
 
 
-@kernel
+@internal
 def correct_state(slots, ends, v0, y):
     """Subtract the quadrature errors beside contact events from y; the driver moves at v0."""
     inverse_mass = slots.chain.inverse_mass
@@ -132,60 +144,71 @@ def _(balance, excess, y):
 
 
 @by_slot_inlined
-def step(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
-    """Advance y by one step from half-step index 2j of the drive table; slope in stages.k[0] before and after.
+def step(method, trajectory, j, out):
+    """Advance y by one step from half-step index 2j of the drive; slope in stages.k[0] before and after.
 
-    Largest forces and jumps inside the step go into `log`. Returns the time from the last state at which they were
+    Largest forces and jumps inside the step go into the log. Returns the time from the last state at which they were
     followed to the step's end.
     """
     raise NotImplementedError
 
 
-@kernel
-def whole_step(slots, drive, j, dtheta, h, y, stages):
+@internal
+def whole_step(trajectory, j):
     """One RK4 step from half-step index 2j to stages.end; returns the driver's displacement and velocity there."""
-    ua, va = drive_displacement(slots, drive, 2 * j + 1, dtheta), drive_velocity(slots, drive, 2 * j + 1, dtheta)
-    ub, vb = drive_displacement(slots, drive, 2 * j + 2, dtheta), drive_velocity(slots, drive, 2 * j + 2, dtheta)
-    rk4(slots, ua, va, ub, vb, h, y, stages)
+    slots, drive, y, stages = trajectory
+    ua, va = drive_displacement(slots, drive, 2 * j + 1), drive_velocity(slots, drive, 2 * j + 1)
+    ub, vb = drive_displacement(slots, drive, 2 * j + 2), drive_velocity(slots, drive, 2 * j + 2)
+    rk4(slots, ua, va, ub, vb, drive.h, y, stages)
     return ub, vb
 
 
+@internal
+def span_of(drive, j):
+    """Step j of the period."""
+    return Span(drive.h, j * drive.dtheta, drive.dtheta)
+
+
 @step.of(Rk4)
-def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
-    before = end_overlaps(slots.dissipation, slots, y, stages.k[0])
-    ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
+def _(method, trajectory, j, out):
+    slots, drive, y, stages = trajectory
+    now = Instant(y, stages.k[0])
+    before = end_overlaps(slots.dissipation, slots, now)
+    ub, vb = whole_step(trajectory, j)
     copy(stages.end, y)
     motion(slots, ub, vb, y, stages.k[0], stages.forces)
-    watch_crossings(slots.dissipation, slots, before, y, stages.k[0], h, theta, dtheta, log)
-    counts[STEPS] += 1
-    counts[EVALUATIONS] += 4
-    return h
+    watch_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
+    out.counts[STEPS] += 1
+    out.counts[EVALUATIONS] += 4
+    return drive.h
 
 
 @step.of(Rk4Split)
-def _(method, slots, drive, j, theta, dtheta, h, y, stages, log, counts):
-    ub, vb = whole_step(slots, drive, j, dtheta, h, y, stages)
-    k, end, left = stages.k, stages.end, h
+def _(method, trajectory, j, out):
+    slots, drive, y, stages = trajectory
+    ub, vb = whole_step(trajectory, j)
+    k, end, left = stages.k, stages.end, drive.h
     motion(slots, ub, vb, end, k[3], stages.forces)
-    counts[STEPS] += 1
-    counts[EVALUATIONS] += 4
+    out.counts[STEPS] += 1
+    out.counts[EVALUATIONS] += 4
     if may_change(slots, y, k[0], end, k[3]):
-        left = split(slots, theta, dtheta, ub, vb, h, y, stages, log, counts)
+        left = split(trajectory, j, ub, vb, out)
     for i in range(y.size):
         y[i], k[0, i] = end[i], k[3, i]
     return left
 
 
-@kernel
-def split(slots, theta, dtheta, u_end, v_end, h, y, stages, log, counts):
-    """Repeat a step in which contacts change from event to event; leaves its end in stages.end.
+@internal
+def split(trajectory, j, u_end, v_end, out):
+    """Repeat step j of the period, in which contacts change, from event to event; leaves its end in stages.end.
 
-    Returns the time from the last event to the step's end.
+    The driver is at u_end, moving at v_end, at the end. Returns the time from the last event to the step's end.
     """
-    ends, end, k = stages.ends, stages.end, stages.k
+    slots, drive, y, stages = trajectory
+    ends, end, k, h, dtheta = stages.ends, stages.end, stages.k, drive.h, drive.dtheta
+    theta, done = j * dtheta, 0.0
     reset_corrections(ends)
     keep_overlaps(slots, y, k[0], ends, GAP, RATE)
-    done = 0.0
     for _ in range(MOST_SPLITS):
         keep_overlaps(slots, end, k[3], ends, GAP_END, RATE_END)
         first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
@@ -200,13 +223,13 @@ def split(slots, theta, dtheta, u_end, v_end, h, y, stages, log, counts):
         motion(slots, u, v, y, k[0], stages.forces)
         done += part
         keep_overlaps(slots, y, k[0], ends, GAP, RATE)
-        watch_event(slots, y, k[0], stages.forces.e, h * part, contact, there, log)
+        watch_event(slots, y, k[0], stages.forces.e, h * part, contact, there, out.log)
         add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
             u_end, v_end, h * (1.0 - done), y, stages)
         correct_state(slots, ends, v_end, end)
         motion(slots, u_end, v_end, end, k[3], stages.forces)
-        counts[EVALUATIONS] += 8
-        counts[EVENTS] += 1
+        out.counts[EVALUATIONS] += 8
+        out.counts[EVENTS] += 1
     return h * (1.0 - done)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..jit import kernel
+from ..jit import internal, kernel
 
 #: Differences used; k differences remove k − 1 slow modes.
 ORBITS = 8
@@ -18,7 +18,7 @@ ORBITS = 8
 _DEPENDENT = 1e-9
 
 
-@kernel
+@internal
 def dot(a, b):
     """Scalar product."""
     total = 0.0
@@ -27,7 +27,7 @@ def dot(a, b):
     return total
 
 
-@kernel
+@internal
 def subtract(a, factor, b):
     """a −= factor·b."""
     for i in range(a.size):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..jit import kernel
+from ..jit import internal, kernel
 
 #: Longest period that is tested, in drive periods.
 LONGEST_PERIOD = 16
@@ -30,7 +30,7 @@ _APPROACHING = 0.97
 _WORTH_A_JUMP = 1e-2
 
 
-@kernel
+@internal
 def largest_of(strobes, scale):
     """Largest displacement and velocity of a record into `scale` (2,); 1 where there is none."""
     for q in range(2):
@@ -42,7 +42,7 @@ def largest_of(strobes, scale):
             scale[q] = 1.0
 
 
-@kernel
+@internal
 def change_between(strobes, scale, now, then):
     """Largest relative change from state `then` to state `now`."""
     change = 0.0
@@ -54,7 +54,7 @@ def change_between(strobes, scale, now, then):
     return change
 
 
-@kernel
+@internal
 def changes_before(strobes, scale, n, end, out):
     """The last out.size changes over n periods up to state `end`, oldest first."""
     for k in range(out.size):
@@ -62,7 +62,7 @@ def changes_before(strobes, scale, n, end, out):
         out[k] = change_between(strobes, scale, now, now - n)
 
 
-@kernel
+@internal
 def largest_change(change, first, count):
     """Largest of `count` changes from `first` on."""
     largest = 0.0
@@ -71,7 +71,7 @@ def largest_change(change, first, count):
     return largest
 
 
-@kernel
+@internal
 def decay_rate(change, count, n):
     """Rate of decay per n drive periods in `count` changes, and whether both halves of them show the same.
 
@@ -89,13 +89,13 @@ def decay_rate(change, count, n):
     return rate, abs(early - late) < 0.2 * rate
 
 
-@kernel
+@internal
 def window_of(n):
     """Number of changes that give the rate."""
     return max(LEAST_WINDOW, 3 * n)
 
 
-@kernel
+@internal
 def shortest(strobes, scale, n, nothing):
     """The shortest period that divides n and over which these states change by no more than `nothing`."""
     run = strobes.shape[0] - 1
@@ -108,7 +108,7 @@ def shortest(strobes, scale, n, nothing):
     return n
 
 
-@kernel
+@internal
 def earlier_rate(strobes, scale, n, rounding, change):
     """The decay rate over n periods from the last part of the record that is well above rounding; −1 if none is."""
     end, count = strobes.shape[0] - 1, window_of(n)

@@ -101,12 +101,12 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
 def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:
     """Largest forces and turning points of all overlaps along the way from the scaled state x."""
     engine = Engine(equations.axis.scene_at(value), certified(_TOLERANCE), 1, stop=equations.stop)
-    lo, stepper, room = engine.lowered, engine.stepper, _ROOM * (equations.size // 2 + 1) * equations.period
+    stepper, room = engine.stepper, _ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)
         record = OrbitRecord(np.zeros((room, 4)), np.zeros(PEAKS))
-        status, done, found = record_orbit(stepper.method, lo.slots, lo.beta, lo.period, equations.period, engine.y,
-                                           stepper.work, stepper.clock, record, engine.counts.array, engine.stop.flag)
+        status, done, found = record_orbit(stepper.method, stepper.trajectory(engine.y), equations.period, record,
+                                           engine.counts.array, engine.stop.flag)
         if status != FULL:
             engine.raise_for(status, done)
             return engine, record._replace(turns=record.turns[:found].copy())

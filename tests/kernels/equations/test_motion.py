@@ -11,6 +11,7 @@ from chains import LAWS
 
 from granchain_core import scene
 from granchain_core.kernels.equations.motion import contact_force, motion, place
+from granchain_core.kernels.jit import kernel
 from granchain_core.lower import lower
 
 #: law, tension, kappa, preload, wall: all structures, each wall often enough
@@ -20,24 +21,34 @@ CASES = [(law, tension, kappa, preload, wall)
              itertools.cycle(("rigid", "bead", "same-material", 0.3)), strict=False)]
 
 
-def code(kernel, compiled: bool):
-    """The compiled kernel, or the same source run by Python: dozens of structures would take a minute to compile."""
-    return kernel if compiled else kernel.py_func
+@kernel
+def compiled_motion(slots, u0, v0, y, dy, forces):
+    """The motion as kernels see it."""
+    motion(slots, u0, v0, y, dy, forces)
+
+
+@kernel
+def compiled_force(slots, y, dy, e, c):
+    """A contact's force as kernels see it."""
+    return contact_force(slots, y, dy, e, c)
 
 
 def evaluated(chosen, u, v, time, compiled=True):
-    """(lowered, θ, state, slope, total forces) of the kernel in scaled units for SI displacements and velocities (N,)."""
+    """(lowered, θ, state, slope, total forces) of the kernel in scaled units for SI displacements and velocities (N,).
+
+    Not compiled, it is the same source run by Python: dozens of structures would take a minute to compile.
+    """
+    slope_of, force = (compiled_motion, compiled_force) if compiled else (motion, contact_force)
     lowered = lower(chosen)
     row, scales, slots = lowered.row, lowered.scales, lowered.slots
     y, dy, space = np.zeros(2 * row), np.zeros(2 * row), lowered.forces()
     y[1 : row - 1], y[row + 1 : -1] = u / scales.length, v / scales.velocity
     theta = 2 * np.pi * chosen.f * time
     drive = np.sin(theta), lowered.beta * np.cos(theta)
-    code(motion, compiled)(slots, *drive, y, dy, space)
+    slope_of(slots, *drive, y, dy, space)
     if space.G is not None:  # w = v − (G_left − G_right)/m
         y[row + 1 : -1] -= slots.chain.inverse_mass[1:-1] * (space.G[:-1] - space.G[1:])
-    code(motion, compiled)(slots, *drive, y, dy, space)
-    force = code(contact_force, compiled)
+    slope_of(slots, *drive, y, dy, space)
     return lowered, theta, y, dy, np.array([force(slots, y, dy, space.e, c) for c in range(row - 1)])
 
 
@@ -80,7 +91,7 @@ def acceleration_from_w(lowered, theta, y, compiled, step=1e-6):
     """
     row, space = lowered.row, lowered.forces()
     slope = np.zeros_like(y)
-    slope_of = code(motion, compiled)
+    slope_of = compiled_motion if compiled else motion
     slope_of(lowered.slots, y[0], lowered.slots.driver.beta * np.cos(theta), y.copy(), slope, space)
     velocities = []
     for sign in (1.0, -1.0):

@@ -11,7 +11,8 @@ from granchain_core import Run, resonance_curve, run, scene, settled
 from granchain_core.diagram import diagram
 from granchain_core.integrate import METHODS, Engine, Setting, State
 from granchain_core.kernels.dop853.force_search import is_monotone
-from granchain_core.kernels.forces.largest import brief_touch, closing_rate, cubic_top
+from granchain_core.kernels.forces.crossings import brief_touch, closing_rate
+from granchain_core.kernels.forces.largest import cubic_top
 
 OWN, PULL = 1.3, -0.7
 

@@ -1,0 +1,105 @@
+"""Closings of contacts for methods that do not locate events: the jumps of the force between two states a step apart.
+
+Method     A closing is the zero of a smooth quantity: without the contact's own damping the rate of an overlap is
+           smooth, and its parabola gives the rate at the instant at which the overlap is zero. A touch within a step
+           shows as a maximum of the overlap between two negative values
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS
+from ..effects.preload import overlap
+from ..jit import by_slot, inline_llvm, internal
+from ..simd.functions import clip, root
+from .largest import UNRESOLVED, note_closing
+
+
+class Approach(NamedTuple):
+    """Overlap of a contact and its rate, numbers or vectors."""
+
+    gap: Any
+    rate: Any
+
+
+@inline_llvm
+def closing_rate(before, after, rate, open_rate, own, h):
+    """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
+
+    `rate` is δ̇ before. `open_rate` is δ̇ after plus own·δ, by which the contact's own damping has reduced it since then.
+    Between the two the rate is a parabola, whose integral is the overlap's own change. For numbers and vectors.
+    """
+    s = before / (before - after)
+    closed = 0.5 * (1.0 - s) * after
+    for _ in range(2):
+        bend = 6.0 * ((after + own * h * closed - before) / h - 0.5 * (rate + open_rate))
+        for _ in range(2):
+            gap = before + h * s * (rate + s * (0.5 * (open_rate - rate + bend) - s * (bend * (1.0 / 3.0))))
+            s = s - gap / (h * (rate + s * (open_rate - rate + bend - s * bend)))
+        there = rate + s * (open_rate - rate + bend - s * bend)
+        left = 1.0 - s
+        # ∫δ over the closed part, over h: the trapezium with its slopes at both ends
+        closed = left * (0.5 * after - left * h * (open_rate - own * after - there) * (1.0 / 12.0))
+    return s, there
+
+
+@inline_llvm
+def brief_touch(before, after, rate, rate_after, h):
+    """Rate at which a touch within a step closes: √(2 a δ_max) for an overlap with constant acceleration −a.
+
+    The overlap is negative at both ends of the step and turns in between; 0 or a NaN where it does not touch. For
+    numbers and vectors.
+    """
+    fall = (rate - rate_after) / h
+    top = 0.5 * (before + after) + 0.25 * (rate * rate + rate_after * rate_after) / fall
+    return root(clip(2.0 * fall * top))
+
+
+@internal
+def approach_of(slots, instant, c):
+    """Overlap and rate of contact c."""
+    return Approach(overlap(slots.preload, instant.y, c), instant.dy[c] - instant.dy[c + 1])
+
+
+@by_slot
+def end_overlaps(law, slots, instant):
+    """First and last contact at the start of a step. Absent: no force jumps there."""
+    return 0.0
+
+
+@end_overlaps.of(*JUMP_LAWS)
+def _(law, slots, instant):
+    return approach_of(slots, instant, 0), approach_of(slots, instant, slots.chain.stiffness.size - 1)
+
+
+@by_slot
+def watch_crossings(law, slots, before, end, span, log):
+    """Record which end contacts closed between two instants a step apart; `before` are their `end_overlaps`."""
+
+
+@watch_crossings.of(*JUMP_LAWS)
+def _(law, slots, before, end, span, log):
+    first, last = before
+    if first.gap <= 0.0:
+        watch_crossing(law, slots, 0, first, end, span, log)
+    if last.gap <= 0.0:
+        watch_crossing(law, slots, slots.chain.stiffness.size - 1, last, end, span, log)
+
+
+@inline_llvm
+def watch_crossing(law, slots, c, before, end, span, log):
+    """Record whether contact c, open at the start of the step, closed in it or touched."""
+    after, h, last = approach_of(slots, end, c), span.h, slots.chain.stiffness.size - 1
+    if after.gap > 0.0:
+        own = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])
+        s, jump = closing_rate(before.gap, after.gap, before.rate, after.rate + own * after.gap, own, h)
+        note_closing(law, jump, c, last, span.theta + s * span.dtheta, log)
+    elif before.rate > 0.0 and after.rate < 0.0:
+        jump = brief_touch(before.gap, after.gap, before.rate, after.rate, h)
+        note_closing(law, jump, c, last, span.theta + 0.5 * span.dtheta, log)
+        log.met[UNRESOLVED] += jump > 0.0
+
+
+end_overlaps.absent_for(*SMOOTH_LAWS)
+watch_crossings.absent_for(*SMOOTH_LAWS)
