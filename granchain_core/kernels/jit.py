@@ -89,8 +89,8 @@ CACHE_FOLDER = cache_folder()
 class Internal:
     """A compiled function that only kernels call; called from Python it runs uncompiled.
 
-    Numba finds the compiled code by the attribute `_numba_type_`, by which it knows its own dispatchers too. One without
-    an entry for Python must not be called from there: this object stands between the two.
+    Numba finds the compiled code by the attribute `_numba_type_`, by which it knows its own dispatchers too. A dispatcher
+    without an entry must not be called from Python: this object stands between the two.
     """
 
     def __init__(self, dispatcher: Any) -> None:
