@@ -89,7 +89,7 @@ CACHE_FOLDER = cache_folder()
 class Internal:
     """A compiled function that only kernels call; called from Python it runs uncompiled.
 
-    Numba finds the compiled code by the attribute `_numba_type_`, by which it knows its own dispatchers too. A dispatcher
+    Numba finds the compiled code by the attribute `_numba_type_`, by which it knows its own dispatchers too. One
     without an entry must not be called from Python: this object stands between the two.
     """
 
