@@ -47,6 +47,7 @@ class Controller:
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ping": lambda _: views.chain.tell(type="pong"),
             "ready": self._ready, "visible": lambda _: self.pictures.restart(),
+            "room": lambda m: views.fit(bool(m.get("narrow"))),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood,
@@ -156,7 +157,7 @@ class Controller:
 
     def _ready(self, message: dict[str, Any]) -> None:
         send_at_once(self._document)
-        self.views.trains.fit(bool(message.get("narrow")))
+        self.views.fit(bool(message.get("narrow")))
         self.looks.choose({"value": message.get("look")})
         self._new_scene()
 

@@ -28,10 +28,14 @@ export function render({ model }) {
     model.send_msg({ do: "lock", value: locked });
   });
 
+  let narrow = null; // as the server was last told; null before it was
   const measure = () => {
     drawing.measure(cursor.map.getBoundingClientRect(), cursor.gap);
     cursor.measure();
     dirty = true;
+    if (narrow === null || narrow === cursor.narrow(model.state.titles)) return;
+    narrow = !narrow;
+    model.send_msg({ do: "room", narrow });
   };
   new ResizeObserver(measure).observe(document.getElementById("map"));
   new ResizeObserver(measure).observe(document.getElementById("chain"));
@@ -68,8 +72,7 @@ export function render({ model }) {
     dirty = true;
   });
   page.on("look", () => {
-    drawing.look();
-    dirty = true;
+    measure();
   });
   document.addEventListener("visibilitychange", () => {
     if (!document.hidden) model.send_msg({ do: "visible" });
@@ -89,7 +92,8 @@ export function render({ model }) {
   };
   requestAnimationFrame(loop);
   setTimeout(() => {
-    model.send_msg({ do: "ready", look: page.look(), narrow: matchMedia("(max-width: 820px)").matches });
+    narrow = cursor.narrow(model.state.titles);
+    model.send_msg({ do: "ready", look: page.look(), narrow });
     page.connect(() => model.send_msg({ do: "ping" }));
   }, 0);
   return canvas;

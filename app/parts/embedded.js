@@ -15,9 +15,10 @@ export class Embedded {
     this.host.setAttribute("aria-label", words);
     this.ready = this.ready.then(async () => {
       this.clear();
-      this.views = await Bokeh.embed.embed_item(item, this.host);
-      this.document = this.views.roots[0].model.document;
+      // Filled before it is drawn: axes of nothing have no range.
+      this.document = Bokeh.require("document").Document.from_json(item.doc);
       this.filled(this);
+      this.views = await Bokeh.embed.add_document_standalone(this.document, this.host);
     });
   }
 

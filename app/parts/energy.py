@@ -19,10 +19,12 @@ class EnergyMap:
         self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
         self._scale = 0.0
         self.locked = False
+        self._beads, self._narrow = 1, False
         self.figure = self._build(time)
 
     def _build(self, time: Range1d) -> figure:
-        plot = quiet_figure(GAP, GAP, y_range=time, x_range=Range1d(0.5, 11.5), x_axis_location="above")
+        plot = quiet_figure(GAP, GAP, name="kinetic energy", y_range=time, x_range=Range1d(0.5, 11.5),
+                            x_axis_location="above")
         plot.yaxis.visible = False
         plot.grid.visible = False
         quiet_axis(plot.xaxis[0])
@@ -32,6 +34,11 @@ class EnergyMap:
         self._hover = HoverTool(renderers=[image], tooltips=[("bead", "$x{0}"), ("energy", "@image")])
         plot.add_tools(self._hover)
         return plot
+
+    def fit(self, narrow: bool) -> None:
+        """Number fewer beads where there is little room."""
+        self._narrow = narrow
+        self.figure.xaxis[0].ticker.interval = max(1, round(self._beads / (6 if narrow else 12)))
 
     def _choose_scale(self, frames: Frames, live: bool) -> None:
         """The top of the colour scale in joules: the picture's own, steadier when live, kept when locked."""
@@ -54,7 +61,8 @@ class EnergyMap:
         }
         self._mapper.high = self._scale / factor
         self.figure.x_range.end = frames.beads + 0.5
-        self.figure.xaxis[0].ticker.interval = max(1, round(frames.beads / 12))
+        self._beads = frames.beads
+        self.fit(self._narrow)
         self._hover.tooltips = [
             ("bead", "$x{0}"), ("time", f"$y{{0.000}} {unit}"),
             ("kinetic energy", f"@image{{0.000}} {letter}J"),
