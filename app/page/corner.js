@@ -60,8 +60,7 @@ const TABS = {
     const figure = new Embedded(host, (one) => fillAccuracy(one, page.accuracy));
     const said = paragraph("");
     const show = () => {
-      const { drawn = {}, small, told, status, done = 0 } = page.accuracy ?? {};
-      const running = ["waiting", "compiling", "measuring"].includes(status);
+      const { drawn = {}, small, told, running, done = 0 } = page.accuracy ?? {};
       said.textContent = running
         ? `measuring, ${Math.round(100 * done)} % …`
         : told?.stale

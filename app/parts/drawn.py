@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import param
 
@@ -20,15 +20,14 @@ class Drawn(Component):
 
     figures = param.Dict(default={})
 
+    empty_figures: ClassVar[staticmethod[[Theme], dict[str, Any]]]
+    """Makes the figures without their points; every part of this kind has its own."""
+
     __abstract = True
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, **params)
         self.theme = THEMES["light"]
-
-    def empty_figures(self, theme: Theme) -> dict[str, Any]:
-        """The figures without their points."""
-        raise NotImplementedError
 
     def dress(self, theme: Theme) -> None:
         """Another look."""

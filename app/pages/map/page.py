@@ -18,6 +18,7 @@ from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 from ...page.borders import listed
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.progress import progress
 from ...page.session import slider_range
 from ...page.task import Job, Task
 from ...parts.component import Component
@@ -161,7 +162,7 @@ class MapTab(Page):
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status
-        self._tell(type="map-status", status=status, sentence=sentence)
+        self._tell(type="map-status", **progress("map", status), sentence=sentence)
 
     def _send_all(self) -> None:
         assert self._grid is not None
@@ -209,7 +210,7 @@ class MapTab(Page):
 
     def _show_attractors(self, status: str, sentence: str = "") -> None:
         shown = self._shown if self._found else []
-        self._tell(type="map-attractors", status=status, sentence=sentence, attractors=shown)
+        self._tell(type="map-attractors", **progress("attractors", status), sentence=sentence, attractors=shown)
 
     def _forget_attractors(self) -> None:
         self._search.cancel()

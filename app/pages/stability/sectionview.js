@@ -5,10 +5,11 @@ import { Embedded } from "../../parts/embedded.js";
 
 // Which bead, at which phase of the drive.
 export class SectionView {
-  constructor(send) {
+  constructor(send, phases) {
+    this.phases = phases;
     this.beads = part("select", { title: "the bead whose section is shown" });
     this.beads.setAttribute("aria-label", "bead of the section");
-    this.phase = part("input", { type: "range", min: 0, max: 47, value: 0, step: 1 });
+    this.phase = part("input", { type: "range", min: 0, max: phases - 1, value: 0, step: 1 });
     this.phase.setAttribute("aria-label", "drive phase of the section");
     this.said = part("output");
     this.close = part("input", { type: "checkbox" });
@@ -47,7 +48,7 @@ export class SectionView {
   }
 
   say() {
-    this.said.textContent = `${(Number(this.phase.value) / 48).toFixed(2)} T`;
+    this.said.textContent = `${(Number(this.phase.value) / this.phases).toFixed(2)} T`;
   }
 
   load(message) {

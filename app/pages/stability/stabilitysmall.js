@@ -14,10 +14,7 @@ export function stabilityTab() {
   const show = () => {
     const { state = {}, small } = page.stability ?? {};
     said.textContent = state.sentence || "Follows the settled picture.";
-    more.textContent =
-      state.failure ||
-      { compiling: "compiling …", computing: "computing …", searching: "searching …" }[state.status] ||
-      "";
+    more.textContent = state.failure || state.progress || "";
     host.classList.toggle("stale", Boolean(state.stale));
     if (!host.isConnected) return;
     if (figure.item !== small) figure.load(small, "multipliers and the unit circle");
