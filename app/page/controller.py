@@ -43,7 +43,7 @@ class Controller:
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
         self.looks = Looks(session, views, self.curves)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
-        self.pages = tuple(row.page(self, views.covers.get(row.name, views.corner)) for row in PAGES)
+        self.pages = tuple(row.page(self, views.covers.get(row.name, views.tabs)) for row in PAGES)
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ping": lambda _: views.chain.tell(type="pong"),
             "ready": self._ready, "visible": lambda _: self.pictures.restart(),
@@ -164,7 +164,7 @@ class Controller:
     def _new_scene(self) -> None:
         scene = self.session.scene
         self.views.knobs.state = knob_state(scene)
-        self.views.corner.display(look_at=scene.look_at, paper=scene.paper)
+        self.views.tabs.display(look_at=scene.look_at, paper=scene.paper)
         self._header()
         self._describe()
         self.curves.open(scene)
@@ -188,7 +188,7 @@ class Controller:
         for page in self.pages:
             page.changed()
         self.views.equation.display(latex=scene.equation_latex())
-        self.views.corner.display(validity=list(scene.validity()))
+        self.views.tabs.display(validity=list(scene.validity()))
 
     def _set(self, message: dict[str, Any]) -> None:
         name = str(message.get("name"))

@@ -26,7 +26,7 @@ from ..parts.status_line import StatusLine
 from ..parts.trains import WIDEST_TITLES, Trains
 from ..pictures.regimes import REGIMES
 from ..pictures.theme import Theme
-from .corner import Corner
+from .tabs import Tabs
 from .table import PAGES, described_pages
 
 _HERE = Path(__file__).resolve().parent
@@ -45,7 +45,7 @@ class Views:
         self.energy = EnergyMap(self.time)
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
-        self.corner = Corner(received, sizing_mode="stretch_both", state={
+        self.tabs = Tabs(received, sizing_mode="stretch_both", state={
             "largest_file": MOST_BYTES, "pages": described_pages(), "regimes": [
                 {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
         self.covers = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
@@ -60,7 +60,7 @@ class Views:
 
     def dress(self, theme: Theme) -> None:
         """Another look for every picture that is drawn here."""
-        for part in (*self.covers.values(), self.corner):
+        for part in (*self.covers.values(), self.tabs):
             part.dress(theme)
 
     def template(self) -> pn.Template:
@@ -73,7 +73,7 @@ class Views:
         page.add_variable("frame_left", LEFT)
         page.add_variable("gap", GAP)
         page.add_variable("covers", [(row.name, row.tab.capitalize()) for row in PAGES if row.view])
-        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "status_line"):
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "tabs", "status_line"):
             page.add_panel(name, getattr(self, name))
         for name, cover in self.covers.items():
             page.add_panel(name, cover)

@@ -143,7 +143,7 @@ export function fillModels(figure, models) {
   for (const [name, properties] of Object.entries(models ?? {})) figure.set(name, properties);
 }
 
-// What the page and the corner show of the observer.
+// What the observer's page and its tab show.
 export function fillDistance(figure, { history, prediction }) {
   for (const [name, points] of [
     ["distance", history],

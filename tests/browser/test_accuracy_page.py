@@ -145,11 +145,11 @@ def test_steps_that_blow_up_are_told(visit: Visit) -> None:
     sheet.get_by_role("button", name="cancel").click()
 
 
-def test_the_corner_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
+def test_its_tab_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=2000")
     page.get_by_role("tab", name="accuracy").click()
-    expect(page.locator("#corner .small canvas").first).to_be_visible(timeout=COMPILED)
-    expect(page.locator("#corner")).to_contain_text("The cheapest way to", timeout=COMPILED)
+    expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
+    expect(page.locator("#tabs")).to_contain_text("The cheapest way to", timeout=COMPILED)
     page.get_by_role("button", name="open the page").click()
     expect(page.locator("#cover .work canvas").first).to_be_visible()
     assert page.evaluate(POINTS)

@@ -243,7 +243,7 @@ def test_measured_data_is_read_strictly(visit: Visit) -> None:
     chosen = page.locator('input[type="file"]')
     good = b"frequency_Hz,force_N,error_N\n40,5.5,0.4\n60,12.1,0.6\n"
     chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": good})
-    expect(page.locator("#corner")).to_contain_text("2 points")
+    expect(page.locator("#tabs")).to_contain_text("2 points")
     bad = b"frequency_Hz,force_N\n40,5.5\n60,twelve\n"
     chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": bad})
     expect(page.get_by_role("alert")).to_contain_text("Line 3")
@@ -270,7 +270,7 @@ def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit
     }""")
     content = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
     page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": content})
-    expect(page.locator("#corner")).to_contain_text("2 points")
+    expect(page.locator("#tabs")).to_contain_text("2 points")
     assert page.evaluate("drawn") == 1
 
 

@@ -78,10 +78,10 @@ def test_a_measurement_is_read_in_the_background(text: str, sentence: str, under
                         lambda text: (threads.append(threading.current_thread().name), read(text))[1])
     dashboard = Dashboard()
     dashboard.received({"do": "csv", "name": "mine.csv", "text": text})
-    assert not dashboard.views.corner.state.get("understood")
-    dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.corner.state.get("understood")))
+    assert not dashboard.views.tabs.state.get("understood")
+    dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
     assert sentence in dashboard.session.sentence
-    assert dashboard.views.corner.state.get("understood", "").startswith(understood)
+    assert dashboard.views.tabs.state.get("understood", "").startswith(understood)
     assert threads[0].startswith("files")
 
 

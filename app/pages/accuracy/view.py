@@ -26,7 +26,7 @@ _LOST = 1e-4
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """Error against time without points, for the page and, small, for the corner."""
+    """Error against time without points, for the page and, small, for its tab."""
     return {name: json_item(accuracy([], Asked(1e-6), theme, compact))
             for name, compact in (("page", False), ("small", True))}
 

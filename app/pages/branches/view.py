@@ -20,7 +20,7 @@ LONGEST_PERIOD = 8
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The figure without branches, for the page and, small, for the corner."""
+    """The figure without branches, for the page and, small, for its tab."""
     return {name: json_item(branches([], theme, compact=compact)) for name, compact in (("page", False),
                                                                                         ("small", True))}
 

@@ -26,7 +26,7 @@ _TRANSIENT = 2
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The distance over time without its points, for the page and, small, for the corner."""
+    """The distance over time without its points, for the page and, small, for its tab."""
     return {name: json_item(observer([], [], [], theme, compact))
             for name, compact in (("page", False), ("small", True))}
 

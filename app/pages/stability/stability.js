@@ -197,7 +197,7 @@ export function render({ model }) {
   new IntersectionObserver(([entry]) => {
     seen = entry.isIntersecting;
     looking();
-  }).observe(document.getElementById("corner"));
+  }).observe(document.getElementById("tabs"));
   const sized = new ResizeObserver(() => {
     if (page.covered === "stability") redraw();
   });

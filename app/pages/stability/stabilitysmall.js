@@ -1,4 +1,4 @@
-// The Stability tab of the corner: the unit circle and the sentence; it draws what the Stability page holds.
+// The Stability tab: the unit circle and the sentence; it draws what the Stability page holds.
 
 import { part } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";

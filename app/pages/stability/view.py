@@ -29,7 +29,7 @@ from .work import PHASES, Analysis
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The plane, also small for the corner, and the section, all without points."""
+    """The plane, also small for the tab, and the section, all without points."""
     empty = plane_state(None)
     nothing = SectionPoints(np.zeros((1, 2)), np.zeros((0, 2)), 1, 0, False, 1, ("m", "m/s"))
     return {"section": json_item(section(nothing, theme)), "plane": json_item(plane(empty, theme)),
@@ -37,7 +37,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
 
 
 class Stability(Drawn):
-    """The page over the pictures and, through what it shares in the browser, the small version in the corner."""
+    """The page over the pictures and, through what it shares in the browser, the small version in its tab."""
 
     _esm = module("stability.js")
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "stability")]  # noqa: RUF012

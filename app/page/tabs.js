@@ -1,4 +1,4 @@
-// The corner below the curve: what to look at, what the marks mean, which effects are on, the visitor's own data.
+// The tabs below the curve: what to look at, what the marks mean, a tab for every page, the visitor's own data.
 
 import { branchesTab } from "../pages/branches/branchessmall.js";
 import { effectsTab } from "../pages/effects/effects.js";
