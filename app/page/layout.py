@@ -26,8 +26,8 @@ from ..parts.status_line import StatusLine
 from ..parts.trains import WIDEST_TITLES, Trains
 from ..pictures.regimes import REGIMES
 from ..pictures.theme import Theme
-from .tabs import Tabs
 from .table import PAGES, described_pages
+from .tabs import Tabs
 
 _HERE = Path(__file__).resolve().parent
 
@@ -47,7 +47,7 @@ class Views:
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
             "largest_file": MOST_BYTES, "pages": described_pages(), "regimes": [
-                {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
+                {"name": name, "marker": style[0], "colour": style[1]} for name, style in REGIMES.items()]})
         self.covers = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
         self.shown: Settled | None = None
@@ -59,7 +59,7 @@ class Views:
             self.energy.fit(narrow)
 
     def dress(self, theme: Theme) -> None:
-        """Another look for every picture that is drawn here."""
+        """Another theme for every picture that is drawn here."""
         for part in (*self.covers.values(), self.tabs):
             part.dress(theme)
 

@@ -41,7 +41,7 @@ export function render({ model }) {
   new ResizeObserver(measure).observe(document.getElementById("chain"));
 
   model.on("msg:custom", (message) => {
-    page.heard();
+    page.answerReceived();
     if (message.type === "frames") {
       unpack(message);
       document.getElementById("scale-high").textContent = message.energy_label;
@@ -71,7 +71,7 @@ export function render({ model }) {
   page.on("cover", () => {
     dirty = true;
   });
-  page.on("look", () => {
+  page.on("theme", () => {
     measure();
   });
   document.addEventListener("visibilitychange", () => {
@@ -93,7 +93,7 @@ export function render({ model }) {
   requestAnimationFrame(loop);
   setTimeout(() => {
     narrow = cursor.narrow(model.state.titles);
-    model.send_msg({ do: "ready", look: page.look(), narrow });
+    model.send_msg({ do: "ready", theme: page.theme(), narrow });
     page.connect(() => model.send_msg({ do: "ping" }));
   }, 0);
   return canvas;

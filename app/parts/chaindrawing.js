@@ -25,7 +25,7 @@ export class ChainDrawing {
     this.palette = palette;
   }
 
-  look() {
+  readTheme() {
     const style = getComputedStyle(this.canvas);
     const read = (name) => style.getPropertyValue(name).trim();
     this.ink = {
@@ -42,7 +42,7 @@ export class ChainDrawing {
 
   // Where bead 1 and bead N stand: above the middle of their columns.
   measure(mapBox, gap) {
-    this.look();
+    this.readTheme();
     const box = this.canvas.getBoundingClientRect();
     const ratio = window.devicePixelRatio || 1;
     this.width = box.width;

@@ -12,7 +12,7 @@ from .component import Component
 
 
 class Drawn(Component):
-    """A part with figures: without points at first, sent when they are first needed and again for another look.
+    """A part with figures: without points at first, sent when they are first needed and again for another theme.
 
     `figures` are Bokeh's JSON by name. They are no part of `state`, which is sent as a whole with each of its changes.
     The browser fills in what comes as messages.
@@ -30,7 +30,7 @@ class Drawn(Component):
         self.theme = THEMES["light"]
 
     def dress(self, theme: Theme) -> None:
-        """Another look."""
+        """Draw the figures anew in another theme."""
         if theme != self.theme:
             self.theme = theme
             if self.figures:

@@ -8,7 +8,7 @@ export class Embedded {
     this.ready = Promise.resolve();
   }
 
-  // Another figure in place of the present one, as when the look changes; `filled` gives it its data again.
+  // Another figure in place of the present one, as when the theme changes; `filled` gives it its data again.
   load(item, words) {
     if (!item || item === this.item) return;
     this.item = item;

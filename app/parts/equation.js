@@ -38,7 +38,7 @@ export function render({ model }) {
     width = root.clientWidth;
     fit();
   }).observe(root);
-  window.granchain.on("look", fit); // the projector's words are larger
+  window.granchain.on("theme", fit); // the projector's words are larger
   show();
   return root;
 }

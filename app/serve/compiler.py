@@ -16,7 +16,7 @@ from pathlib import Path
 from granchain_core import Scene
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, structure
 
-from .delays import STOP_LOOK
+from .delays import STOP_POLL
 from .queues import COMPILATIONS, CURVES, Stop
 
 #: What is compiled for a page, and how long that takes on two cores [s].
@@ -74,7 +74,7 @@ class Compiler:
         if self.has(scene, piece):
             return True
         compilation = self.ask(scene, piece)
-        while not wait([compilation], timeout=STOP_LOOK).done:
+        while not wait([compilation], timeout=STOP_POLL).done:
             if stop:
                 return False
         compilation.result()

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from knobs import type_into
 from playwright.sync_api import Locator, Page, expect
 
 Visit = Callable[..., Page]
@@ -31,13 +32,6 @@ def naive_line(page: Page) -> dict[str, Any]:
       return { certified: certified.data_source.data.force.length, naive: naive.data_source.data.force.length,
                dash: String(naive.glyph.line_dash.value ?? naive.glyph.line_dash) };
     }"""))
-
-
-def type_into(page: Page, name: str, text: str) -> None:
-    """Type a value and press Enter."""
-    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
-    field.fill(text)
-    field.press("Enter")
 
 
 def opened(page: Page) -> Locator:

@@ -68,7 +68,7 @@ def test_a_figure_grows_without_being_made_anew(visit: Visit) -> None:
     before = len(source(page, "branches", "orbits")["x"])
     until(page, lambda: len(source(page, "branches", "orbits")["x"]) > before + 5)
     assert page.evaluate("kept === granchain.branches.figures[0].document")
-    page.evaluate("granchain.nextLook()")  # another look is another figure, with the same points
+    page.evaluate("granchain.nextTheme()")  # another theme is another figure, with the same points
     page.wait_for_function("granchain.branches.figures[0].document && kept !== granchain.branches.figures[0].document")
     until(page, lambda: len(source(page, "branches", "orbits")["x"]) > before + 5)
 

@@ -7,19 +7,13 @@ from typing import Any
 
 import pytest
 from drawn import place, source, tooltips
+from knobs import type_into
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile the tangent flow, on a machine that runs tests.
 COMPILED = 120_000
-
-
-def type_into(page: Page, name: str, text: str) -> None:
-    """Type a value and press Enter."""
-    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
-    field.fill(text)
-    field.press("Enter")
 
 
 def opened(page: Page, words: str = "Stable") -> Locator:

@@ -43,7 +43,7 @@ class Accuracy(Drawn):
         self._lesson: Lesson | None = None
 
     def dress(self, theme: Theme) -> None:
-        """Another look, for the forces too."""
+        """Another theme, for the forces too."""
         super().dress(theme)
         if self._lesson is not None:
             self.teach(self._lesson)

@@ -220,13 +220,13 @@ class Curve:
 
     def _columns(self, points: list[CurvePoint]) -> dict[str, Any]:
         points = sorted(points, key=lambda point: point.frequency)
-        looks = [REGIMES[regime_key(point)] for point in points]
+        styles = [REGIMES[regime_key(point)] for point in points]
         return {
             "frequency": [point.frequency for point in points],
             "force": [point.max_output_force / self._scale[0] for point in points],
-            "marker": [look[0] for look in looks],
-            "colour": [look[1] for look in looks],
-            "size": [look[2] for look in looks],
+            "marker": [style[0] for style in styles],
+            "colour": [style[1] for style in styles],
+            "size": [style[2] for style in styles],
             "regime": [point.regime.sentence for point in points],
             "error": ["not estimated" if point.error_estimate is None else short_error(point.error_estimate)
                       for point in points],

@@ -10,12 +10,12 @@ const swatch = (colour) => {
   return square;
 };
 
-// Sends the look of the page, whose colours the figure has; set while the tab is open.
-let look = () => {};
-window.granchain.on("look", () => look());
+// Sends the theme of the page, whose colours the figure has; set while the tab is open.
+let sendTheme = () => {};
+window.granchain.on("theme", () => sendTheme());
 
 export function mapTab(model) {
-  look = () => model.send_msg({ do: "map-look", value: window.granchain.look() });
+  sendTheme = () => model.send_msg({ do: "map-theme", value: window.granchain.theme() });
   const button = (text, action, properties = {}) => {
     const element = part("button", { type: "button", textContent: text, ...properties });
     element.addEventListener("click", action);
@@ -135,7 +135,7 @@ export function mapTab(model) {
   MAP.redraw = (what) => {
     if (host.isConnected) redraw(what);
   };
-  look();
+  sendTheme();
   requestAnimationFrame(() => redraw());
   const segments = part("span", { className: "segments" }, ...choices);
   return [

@@ -238,7 +238,7 @@ export function render({ model }) {
     for (const one of drawings) one.measure();
   };
   new ResizeObserver(measure).observe(stage);
-  page.on("look", measure);
+  page.on("theme", measure);
   page.on("play", (value) => {
     playing = value;
   });

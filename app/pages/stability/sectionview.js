@@ -13,7 +13,7 @@ export class SectionView {
     this.phase.setAttribute("aria-label", "drive phase of the section");
     this.said = part("output");
     this.close = part("input", { type: "checkbox" });
-    this.close.addEventListener("change", () => this.look());
+    this.close.addEventListener("change", () => this.showRanges());
     this.told = part("span", { className: "soft" });
     this.host = part("div", { className: "picture" });
     this.figure = new Embedded(this.host, () => this.fill());
@@ -58,14 +58,14 @@ export class SectionView {
   }
 
   // Which part of the plane: all of it, or that of the second half of the points.
-  look() {
+  showRanges() {
     const ranges = this.close.checked ? this.data?.near : this.data?.drawn;
     if (ranges) for (const name of ["displacements", "velocities"]) this.figure.set(name, ranges[name]);
   }
 
   fill() {
     for (const [name, properties] of Object.entries(this.data?.drawn ?? {})) this.figure.set(name, properties);
-    this.look();
+    this.showRanges();
   }
 
   draw(state, item) {

@@ -189,8 +189,8 @@ export function render({ model }) {
       });
   });
   model.on("figures", show);
-  page.on("look", () => {
-    mode.drawing.look();
+  page.on("theme", () => {
+    mode.drawing.readTheme();
     redraw();
   });
   document.addEventListener("visibilitychange", looking);
