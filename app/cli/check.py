@@ -11,13 +11,16 @@ import time
 from typing import Any
 
 from app.cli.commands import say
+from app.cli.options import add_json
+from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
 
 
-def add_parser(parser: argparse.ArgumentParser) -> None:
-    """The command's own words."""
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What `check` takes."""
     parser.add_argument("--quick", action="store_true", help="smaller counts: seconds instead of a minute")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    add_json(parser)
+    add_picture(parser)
 
 
 def check(arguments: argparse.Namespace) -> int:
