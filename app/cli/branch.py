@@ -14,6 +14,8 @@ from granchain_core.orbits.branch.branch import MOST_POINTS
 
 from .commands import chosen_scene, in_background, say, say_if
 from .foundation import kept_along
+from .options import add_result
+from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
 #: Points between two words on progress.
@@ -21,7 +23,8 @@ _EVERY = 25
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """The options of the command besides SCENE, --set, --out and --json."""
+    """What `branch` takes."""
+    add_result(parser)
     parser.add_argument("--knob", metavar="NAME", help="knob that is moved: f, A0, D, k, kappa or F0")
     parser.add_argument("--from", dest="start", metavar="a", help="its value where the branch begins")
     parser.add_argument("--to", dest="end", metavar="b", help="its value where it ends")
@@ -30,6 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="begin at the scene's own value of the knob and go both ways, to a and to b")
     parser.add_argument("--points", type=int, default=MOST_POINTS, metavar="m", help="orbits each way at most")
     parser.add_argument("--resume", metavar="FILE", help="go on with a branch that --out has written")
+    add_picture(parser)
 
 
 def branch(arguments: argparse.Namespace) -> None:

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import argparse
+import html
 import json
 import math
+import re
 import time
 from typing import Any
 
 from app.cli.commands import say
+from app.cli.options import add_json
+from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
 
 
-def add_parser(parser: argparse.ArgumentParser) -> None:
-    """The command's own words."""
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What `check` takes."""
     parser.add_argument("--quick", action="store_true", help="smaller counts: seconds instead of a minute")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    add_json(parser)
+    add_picture(parser)
 
 
 def check(arguments: argparse.Namespace) -> int:
@@ -61,5 +66,11 @@ def _drawn(theme: Any) -> Any:
     from granchain_core.hard.table import CASES
 
     shown = [(case.name, case.picture()) for case in CASES if case.picture is not None]
-    models = [model for name, picture in shown for model in (Div(text=f"<h3>{name}</h3>"), drawn(picture, theme))]
+    models = [model for name, picture in shown for model in (Div(text=heading(name)), drawn(picture, theme))]
     return column(*models, sizing_mode="stretch_width")
+
+
+def heading(name: str) -> str:
+    """The name of a case with a capital letter, and with its powers, "10^5" and "F^{1/6}", raised."""
+    raised = re.sub(r"\^\{([^}]+)\}|\^(-?\d+)", lambda found: f"<sup>{found[1] or found[2]}</sup>", html.escape(name))
+    return f"<h3>{raised[0].upper()}{raised[1:]}</h3>"

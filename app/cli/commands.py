@@ -208,16 +208,26 @@ def curve(arguments: argparse.Namespace) -> None:
         save_curve(swept, arguments.out)
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", lambda theme: _drawn_curve(swept, theme))
     if arguments.json:
-        show_json({
-            "frequency": [p.frequency for p in swept.points],
-            **{name: [_null(getattr(p, name)) for p in swept.points]
-               for name in ("max_output_force", "max_output_force_elastic", "max_input_force")},
-            "regime": [p.regime.name for p in swept.points], "period": [p.regime.period for p in swept.points],
-            "error_estimate": [p.force_errors.output for p in swept.points],
-            "error_estimate_elastic": [p.force_errors.elastic for p in swept.points],
-            "error_estimate_input": [p.force_errors.input for p in swept.points], "wall_s": swept.wall_s,
-        })
-        return
+        show_json(_curve_json(swept))
+    else:
+        _show_curve(swept)
+
+
+def _curve_json(swept: Any) -> dict[str, Any]:
+    """A curve as one JSON object."""
+    return {
+        "frequency": [p.frequency for p in swept.points],
+        **{name: [_null(getattr(p, name)) for p in swept.points]
+           for name in ("max_output_force", "max_output_force_elastic", "max_input_force")},
+        "regime": [p.regime.name for p in swept.points], "period": [p.regime.period for p in swept.points],
+        "error_estimate": [p.force_errors.output for p in swept.points],
+        "error_estimate_elastic": [p.force_errors.elastic for p in swept.points],
+        "error_estimate_input": [p.force_errors.input for p in swept.points], "wall_s": swept.wall_s,
+    }
+
+
+def _show_curve(swept: Any) -> None:
+    """A curve as a table."""
     print("frequency_Hz  max_output_force_N    error  elastic_N    error  max_input_force_N    error  regime")
     for p in swept.points:
         regime = f"period {p.regime.period}" if p.regime.period else p.regime.name

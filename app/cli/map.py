@@ -15,6 +15,8 @@ import numpy as np
 
 from app.cli.commands import chosen_scene, in_background, say, say_if
 from app.cli.foundation import kept_along
+from app.cli.options import add_json, add_scene
+from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput, Cancelled
 from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
@@ -25,10 +27,9 @@ from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """The words of the command."""
-    parser.add_argument("scene", metavar="SCENE")
-    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What `map` takes."""
+    add_scene(parser)
     for name, example in (("--x", "f=30:3000:100"), ("--y", "A0=1e-7:1e-5:100:log")):
         parser.add_argument(name, required=True, metavar="KNOB=a:b:n",
                             help=f"n values of a knob from a to b, evenly or, with :log behind them, by their ratio; "
@@ -36,7 +37,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
     parser.add_argument("--out", required=True, metavar="FILE", help="write an HDF5 file")
     parser.add_argument("--resume", action="store_true", help="go on with a map that was cut off")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
+    add_json(parser)
+    add_picture(parser)
 
 
 def axis_from(option: str, text: str) -> Axis:

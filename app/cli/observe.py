@@ -9,12 +9,15 @@ from dataclasses import asdict
 from typing import Any
 
 from app.cli.commands import chosen_scene, in_background, say
+from app.cli.options import add_result
+from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """What `observe` takes besides the options of every command that computes a scene."""
+    """What `observe` takes."""
+    add_result(parser)
     parser.add_argument("--input", required=True, metavar="FILE",
                         help="CSV with time, force and, if measured, output force; or an HDF5 file of granchain run")
     parser.add_argument("--time-unit", metavar="UNIT", help="s, ms or us, where a CSV's header names none")
@@ -25,6 +28,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="what to do where samples are missing")
     parser.add_argument("--start", default="rest", metavar="rest|input",
                         help="start at rest, or in the state an HDF5 input begins with")
+    add_picture(parser)
 
 
 def observe(arguments: argparse.Namespace) -> None:

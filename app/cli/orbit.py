@@ -6,11 +6,25 @@ import argparse
 from typing import Any
 
 from app.cli.commands import chosen_scene, in_background, show_json
+from app.cli.options import add_json, add_scene
+from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput, Scene
 from granchain_core.integrate import State
 
 STARTS = ("settled", "rest", "random")
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What `orbit` takes."""
+    add_scene(parser)
+    parser.add_argument("--period", type=int, metavar="n", help="drive periods; else those of the settled motion")
+    parser.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
+                        help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
+    parser.add_argument("--seed", type=int, default=0, help="of the random start")
+    parser.add_argument("--observer", action="store_true", help="multipliers of the observer of model (4) too")
+    add_json(parser)
+    add_picture(parser)
 
 
 def orbit(arguments: argparse.Namespace) -> None:

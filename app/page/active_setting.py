@@ -11,7 +11,7 @@ from granchain_core import Scene, Settled
 from granchain_core.accuracy import Row
 from granchain_core.accuracy.ways import label
 from granchain_core.integrate import METHODS, Setting, live, method_for
-from granchain_core.steady.settle import certified_setting
+from granchain_core.steady.relax import certified_setting
 
 #: The live picture's steps (granchain_core.run.live).
 _LIVE = live(2)
@@ -28,7 +28,7 @@ class Now:
 
 
 def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
-    """The setting of the last computation behind the picture, by the rule of `granchain_core.steady.settle`."""
+    """The setting of the last computation behind the picture, by the rule of `granchain_core.steady.relax`."""
     if live:
         return _LIVE
     if picture is None:

@@ -24,7 +24,7 @@ from .playback import Transport
 from .session import SPEEDS, Session, presets, slider_range
 from .show import show_regime
 from .table import PAGES
-from .theme import Looks
+from .theme import Themes
 
 log = logging.getLogger("granchain")
 
@@ -41,17 +41,18 @@ class Controller:
         self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
         self.pictures = Pictures(document, self, views, self.note, self._arrived)
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
-        self.looks = Looks(session, views, self.curves)
+        self.themes = Themes(session, views, self.curves)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
-        self.pages = tuple(row.page(self, views.covers.get(row.name, views.corner)) for row in PAGES)
+        self.pages = tuple(row.page(self, views.covers.get(row.name, views.tabs)) for row in PAGES)
         self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "ping": lambda _: views.chain.tell(type="pong"),
             "ready": self._ready, "visible": lambda _: self.pictures.restart(),
+            "room": lambda m: views.fit(bool(m.get("narrow"))),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood,
             **Transport(session, self.pictures, self._compute, self._header, self.say).actions,
-            **self.files.actions, **self.looks.actions,
+            **self.files.actions, **self.themes.actions,
             **{name: action for page in self.pages for name, action in page.actions.items()},
         }
 
@@ -156,14 +157,14 @@ class Controller:
 
     def _ready(self, message: dict[str, Any]) -> None:
         send_at_once(self._document)
-        self.views.trains.fit(bool(message.get("narrow")))
-        self.looks.choose({"value": message.get("look")})
+        self.views.fit(bool(message.get("narrow")))
+        self.themes.choose({"value": message.get("theme")})
         self._new_scene()
 
     def _new_scene(self) -> None:
         scene = self.session.scene
         self.views.knobs.state = knob_state(scene)
-        self.views.corner.display(look_at=scene.look_at, paper=scene.paper)
+        self.views.tabs.display(look_at=scene.look_at, paper=scene.paper)
         self._header()
         self._describe()
         self.curves.open(scene)
@@ -179,7 +180,7 @@ class Controller:
     def _header(self) -> None:
         session = self.session
         self.views.header.display(
-            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, look=session.look,
+            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
             speeds=list(SPEEDS), speed=session.speed, playing=session.playing, query=session.link)
 
     def _describe(self) -> None:
@@ -187,7 +188,7 @@ class Controller:
         for page in self.pages:
             page.changed()
         self.views.equation.display(latex=scene.equation_latex())
-        self.views.corner.display(validity=list(scene.validity()))
+        self.views.tabs.display(validity=list(scene.validity()))
 
     def _set(self, message: dict[str, Any]) -> None:
         name = str(message.get("name"))

@@ -35,5 +35,5 @@ def session_from_address(query: str) -> tuple[Session, list[str]]:
     session.scene = scene
     session.mode = extras.get("mode", session.mode)
     session.start = extras.get("start", session.start)
-    session.look = extras.get("look", session.look)
+    session.theme = extras.get("look", session.theme)
     return session, sentences

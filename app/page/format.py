@@ -1,6 +1,17 @@
-"""Numbers as the page says them: one figure of an error, three of a duration."""
+"""Numbers as the page says them: with the prefix of their unit, one figure of an error, three of a duration."""
 
 from __future__ import annotations
+
+_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"),
+             (1e-12, "p"), (1e-15, "f"), (1e-18, "a"))
+
+
+def prefixed(largest: float) -> tuple[float, str]:
+    """The factor and letter of the SI prefix in which `largest` reads between 1 and 1000."""
+    for factor, letter in _PREFIXES:
+        if largest >= factor:
+            return factor, letter
+    return 1.0, ""
 
 
 def short_error(error: float) -> str:
@@ -10,7 +21,6 @@ def short_error(error: float) -> str:
 
 
 def duration(seconds: float) -> str:
-    """Seconds to three figures, in milliseconds or microseconds where that reads better."""
-    if seconds >= 1.0:
-        return f"{seconds:.3g} s"
-    return f"{1e3 * seconds:.3g} ms" if seconds >= 1e-3 else f"{1e6 * seconds:.3g} µs"
+    """Seconds to three figures, in milliseconds, microseconds … where that reads better."""
+    factor, letter = prefixed(min(seconds, 1.0))
+    return f"{seconds / factor:.3g} {letter}s"

@@ -17,18 +17,6 @@ _LARGEST = 60_000
 LIVE_PERIODS = 4
 SETTLED_PERIODS, _REPEATED = 4, 4
 
-_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"),
-             (1e-12, "p"), (1e-15, "f"), (1e-18, "a"))
-
-
-def prefixed(largest: float) -> tuple[float, str]:
-    """The factor and letter of the SI prefix in which `largest` reads between 1 and 1000."""
-    for factor, letter in _PREFIXES:
-        if largest >= factor:
-            return factor, letter
-    return 1.0, ""
-
-
 def round_up(value: float) -> float:
     """The next of a few steps in every decade: a scale that keeps still while a knob moves."""
     if not value > 0.0 or not np.isfinite(value):

@@ -8,6 +8,7 @@ from typing import Any
 
 import panel as pn
 from bokeh.models import Range1d
+from panel.io import unlocked
 
 from granchain_core import Settled
 from granchain_core.experiment.measured import MOST_BYTES
@@ -18,15 +19,15 @@ from ..parts.chain import PALETTE, Chain
 from ..parts.component import text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
-from ..parts.figure_style import BOTTOM, GAP, TOP, pane
+from ..parts.figure_style import BOTTOM, GAP, LEFT, TOP, pane
 from ..parts.header import Header
 from ..parts.knobs import Knobs
 from ..parts.status_line import StatusLine
-from ..parts.trains import Trains
+from ..parts.trains import WIDEST_TITLES, Trains
 from ..pictures.regimes import REGIMES
 from ..pictures.theme import Theme
-from .corner import Corner
 from .table import PAGES, described_pages
+from .tabs import Tabs
 
 _HERE = Path(__file__).resolve().parent
 
@@ -39,21 +40,27 @@ class Views:
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
         self.equation = Equation(received)
-        self.chain = Chain(received, state={"palette": PALETTE}, sizing_mode="stretch_both")
+        self.chain = Chain(received, state={"palette": PALETTE, "titles": WIDEST_TITLES}, sizing_mode="stretch_both")
         self.trains = Trains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
-        self.corner = Corner(received, sizing_mode="stretch_both", state={
+        self.tabs = Tabs(received, sizing_mode="stretch_both", state={
             "largest_file": MOST_BYTES, "pages": described_pages(), "regimes": [
-                {"name": name, "marker": look[0], "colour": look[1]} for name, look in REGIMES.items()]})
+                {"name": name, "marker": style[0], "colour": style[1]} for name, style in REGIMES.items()]})
         self.covers = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
         self.shown: Settled | None = None
 
+    def fit(self, narrow: bool) -> None:
+        """Shorter titles and fewer numbers on the axes over time, where there is little room for them."""
+        with unlocked():  # the same way as the pictures, which write the same titles: none overtakes the other
+            self.trains.fit(narrow)
+            self.energy.fit(narrow)
+
     def dress(self, theme: Theme) -> None:
-        """Another look for every picture that is drawn here."""
-        for part in (*self.covers.values(), self.corner):
+        """Another theme for every picture that is drawn here."""
+        for part in (*self.covers.values(), self.tabs):
             part.dress(theme)
 
     def template(self) -> pn.Template:
@@ -63,9 +70,10 @@ class Views:
         page.add_variable("page_js", text("page.js") + text("connection.js"))
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)
+        page.add_variable("frame_left", LEFT)
         page.add_variable("gap", GAP)
         page.add_variable("covers", [(row.name, row.tab.capitalize()) for row in PAGES if row.view])
-        for name in ("header", "knobs", "equation", "chain", "curvebar", "corner", "status_line"):
+        for name in ("header", "knobs", "equation", "chain", "curvebar", "tabs", "status_line"):
             page.add_panel(name, getattr(self, name))
         for name, cover in self.covers.items():
             page.add_panel(name, cover)

@@ -71,7 +71,7 @@ class LinksAndFiles:
 
     def _show(self, name: str, measured: Measured) -> None:
         self._curves.measured(measured)
-        self._views.corner.display(understood=f"{name}: {measured.understood}")
+        self._views.tabs.display(understood=f"{name}: {measured.understood}")
 
     def _too_large(self, _: dict[str, Any]) -> None:
         raise BadInput(f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve of frequency and force needs "
@@ -80,7 +80,7 @@ class LinksAndFiles:
     def _remove(self, _: dict[str, Any]) -> None:
         self._reading.cancel()
         self._curves.measured(None)
-        self._views.corner.display(understood="")
+        self._views.tabs.display(understood="")
 
 
 def _say_nothing(status: str, sentence: str) -> None:

@@ -10,7 +10,7 @@ from bokeh.document import Document
 from granchain_core import Run, Scene, Settled, State, settling
 from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
-from ..serve.compiler import COMPILER, SENTENCE
+from ..serve.compiler import COMPILER, compiling_words
 from ..serve.pacing import Painter
 from ..serve.queues import LatestWins, Stop
 from ..serve.websocket import in_one_go
@@ -91,7 +91,7 @@ class Pictures:
 
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
         if not COMPILER.has(scene, LIVE):
-            self._host.later(self._note, SENTENCE)
+            self._host.later(self._note, f"{compiling_words('picture').capitalize()}; the picture follows by itself.")
             for piece in (LIVE, CERTIFIED, CURVE):
                 COMPILER.ask(scene, piece)
             COMPILER.await_piece(scene, LIVE, stop)

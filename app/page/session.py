@@ -15,8 +15,7 @@ from granchain_core.scene import Bead
 from .share import EXTRAS, encode
 from .switches import ACCOUNT, changes
 
-#: What a link may say, without "auto", by which the browser chooses.
-MODES, STARTS, LOOKS = EXTRAS["mode"], EXTRAS["start"], EXTRAS["look"][1:]
+MODES, STARTS = EXTRAS["mode"], EXTRAS["start"]
 SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0)
 
 
@@ -27,7 +26,7 @@ class Session:
     scene: Scene = field(default_factory=lambda: scene("sec2"))
     mode: str = "settled"
     start: str = "rest"
-    look: str = "auto"
+    theme: str = "auto"
     speed: float = 1.0
     playing: bool = True
     picture: Settled | None = None

@@ -14,7 +14,8 @@ from granchain_core import BadInput, Scene, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 
 VERSION = "1"
-#: View settings a link may carry, and their values; the first holds where the link has none.
+#: View settings a link may carry, and their values; the first holds where the link has none. "look" is the theme, which
+#: with "auto" the browser chooses.
 EXTRAS: dict[str, tuple[str, ...]] = {
     "mode": ("settled", "live"),
     "start": ("rest", "previous"),

@@ -9,7 +9,8 @@ from granchain_core import Scene, Settled
 
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
-from .frames import Frames, prefixed, settled_frames
+from .format import prefixed
+from .frames import Frames, settled_frames
 from .layout import Views
 from .live import LivePicture
 

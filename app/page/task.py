@@ -9,7 +9,7 @@ from typing import Any
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
 
 from ..serve.compiler import COMPILER
-from ..serve.delays import PICTURE_LOOK
+from ..serve.delays import PICTURE_POLL
 from ..serve.queues import Queue, Stop
 from .host import Host
 
@@ -51,7 +51,7 @@ class Job:
         """Wait as long as a knob's picture is not there yet, or as long as `to` says."""
         waits = to or (lambda: self._host.unsettled)
         while waits() and not self.stop:
-            time.sleep(PICTURE_LOOK)
+            time.sleep(PICTURE_POLL)
 
 
 class Task:

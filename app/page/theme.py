@@ -1,4 +1,4 @@
-"""How the pictures look: light, dark or projector, a kept colour scale, which curves are drawn."""
+"""What of the pictures the visitor chooses: their theme, a kept colour scale, which curves are drawn."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 from ..pages.curve.page import Curves
 from ..pictures.theme import THEMES
 from .layout import Views
-from .session import LOOKS, Session
+from .session import Session
 
 
-class Looks:
+class Themes:
     """The visitor's choices that compute nothing but, perhaps, another curve."""
 
     def __init__(self, session: Session, views: Views, curves: Curves) -> None:
@@ -19,15 +19,14 @@ class Looks:
         self._views = views
         self._curves = curves
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "look": self.choose, "lock": self._lock, "curve": self._curve, "curve-stop": lambda _: curves.stop(),
+            "theme": self.choose, "lock": self._lock, "curve": self._curve, "curve-stop": lambda _: curves.stop(),
             "curve-visible": lambda m: curves.visible(bool(m.get("value")), session.scene),
         }
 
     def choose(self, message: dict[str, Any]) -> None:
-        """Ink and line width of a look."""
-        look = message.get("value")
-        if look in LOOKS:
-            theme = THEMES[str(look)]
+        """Colours and line widths of a theme; a name that is none of them changes nothing."""
+        theme = THEMES.get(str(message.get("value")))
+        if theme is not None:
             self._views.curve.ink(theme.ink, theme.line)
             self._views.trains.thicken(theme.line)
             self._views.dress(theme)

@@ -28,16 +28,20 @@ export function render({ model }) {
     model.send_msg({ do: "lock", value: locked });
   });
 
+  let narrow = null; // as the server was last told; null before it was
   const measure = () => {
     drawing.measure(cursor.map.getBoundingClientRect(), cursor.gap);
     cursor.measure();
     dirty = true;
+    if (narrow === null || narrow === cursor.narrow(model.state.titles)) return;
+    narrow = !narrow;
+    model.send_msg({ do: "room", narrow });
   };
   new ResizeObserver(measure).observe(document.getElementById("map"));
   new ResizeObserver(measure).observe(document.getElementById("chain"));
 
   model.on("msg:custom", (message) => {
-    page.heard();
+    page.answerReceived();
     if (message.type === "frames") {
       unpack(message);
       document.getElementById("scale-high").textContent = message.energy_label;
@@ -67,9 +71,8 @@ export function render({ model }) {
   page.on("cover", () => {
     dirty = true;
   });
-  page.on("look", () => {
-    drawing.look();
-    dirty = true;
+  page.on("theme", () => {
+    measure();
   });
   document.addEventListener("visibilitychange", () => {
     if (!document.hidden) model.send_msg({ do: "visible" });
@@ -89,7 +92,8 @@ export function render({ model }) {
   };
   requestAnimationFrame(loop);
   setTimeout(() => {
-    model.send_msg({ do: "ready", look: page.look(), narrow: matchMedia("(max-width: 820px)").matches });
+    narrow = cursor.narrow(model.state.titles);
+    model.send_msg({ do: "ready", theme: page.theme(), narrow });
     page.connect(() => model.send_msg({ do: "ping" }));
   }, 0);
   return canvas;

@@ -10,7 +10,8 @@ from bokeh.palettes import Inferno256
 
 from granchain_core import Scene
 
-from ..page.frames import Frames, prefixed
+from ..page.format import prefixed
+from ..page.frames import Frames
 from ..scripts import module
 from .component import Component, text
 

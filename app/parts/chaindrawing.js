@@ -1,10 +1,6 @@
 // A chain drawn on a canvas, for every part of the page that shows one.
 
-const nice = (value) => {
-  const power = 10 ** Math.floor(Math.log10(value));
-  const digit = value / power;
-  return (digit >= 5 ? 5 : digit >= 2 ? 2 : 1) * power;
-};
+import { stepBelow } from "./plot.js";
 
 // The four series of a picture from their one array.
 export function unpack(frames) {
@@ -29,7 +25,7 @@ export class ChainDrawing {
     this.palette = palette;
   }
 
-  look() {
+  readTheme() {
     const style = getComputedStyle(this.canvas);
     const read = (name) => style.getPropertyValue(name).trim();
     this.ink = {
@@ -46,7 +42,7 @@ export class ChainDrawing {
 
   // Where bead 1 and bead N stand: above the middle of their columns.
   measure(mapBox, gap) {
-    this.look();
+    this.readTheme();
     const box = this.canvas.getBoundingClientRect();
     const ratio = window.devicePixelRatio || 1;
     this.width = box.width;
@@ -80,7 +76,7 @@ export class ChainDrawing {
     const running = frames.live && rows === 1;
     const keep =
       this.factor && this.beads === beads && this.factor <= 1.25 * factor && (running || this.factor > 0.3 * factor);
-    if (!keep) this.factor = nice(factor);
+    if (!keep) this.factor = stepBelow(factor);
     this.exaggeration = this.factor / diameter;
     this.beads = beads;
     this.force = Math.max(force, running ? 0.99 * (this.force ?? 0) : 0, 1e-30);

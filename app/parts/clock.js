@@ -51,6 +51,7 @@ export class Cursor {
     this.line = document.getElementById("cursor");
     const style = getComputedStyle(this.stage);
     this.top = parseFloat(style.getPropertyValue("--frame-top"));
+    this.left = parseFloat(style.getPropertyValue("--frame-left"));
     this.bottom = parseFloat(style.getPropertyValue("--frame-bottom"));
     this.gap = parseFloat(style.getPropertyValue("--gap"));
     for (const element of [this.line, ...this.stage.querySelectorAll(".picture")])
@@ -76,6 +77,15 @@ export class Cursor {
     const key = document.getElementById("key");
     key.style.left = `${right.left - stage.left + this.gap}px`;
     key.style.top = `${right.top - stage.top + this.top - 44}px`;
+  }
+
+  // Whether the titles of the axes under the force trains, each centred under its frame, have too little room.
+  narrow({ left, right }) {
+    const pen = document.createElement("canvas").getContext("2d");
+    pen.font = `bold ${getComputedStyle(document.documentElement).getPropertyValue("--small").trim()} helvetica`;
+    const room = (id) => document.getElementById(id).clientWidth;
+    const width = (title) => pen.measureText(title).width;
+    return width(left) > room("left") - this.left + this.gap || width(right) > room("right") - 2 * this.gap;
   }
 
   grab(event, element) {

@@ -40,7 +40,7 @@ class Component(PromptEvents, JSComponent):
         self._send_msg(message)
 
     def dress(self, theme: Theme) -> None:
-        """Another look; a part that has no figures follows it by its style alone."""
+        """Another theme; a part that has no figures follows it by its style sheet alone."""
 
     def display(self, **changes: Any) -> None:
         """Change some entries of `state`."""

@@ -16,28 +16,28 @@
 
   // What the server last called its share link, and what was asked for since without an answer.
   let link = "v=1";
-  const asked = new Map();
-  const told = (query, answered) => {
+  const unanswered = new Map();
+  const linkReceived = (query, answered) => {
     link = query;
-    for (const name of answered) asked.delete(name);
+    for (const name of answered) unanswered.delete(name);
   };
-  const asks = (name, value) => {
-    if (name === "scene") asked.clear();
-    asked.delete(name);
-    asked.set(name, value);
+  const requested = (name, value) => {
+    if (name === "scene") unanswered.clear();
+    unanswered.delete(name);
+    unanswered.set(name, value);
   };
   const address = () => {
     const url = new URL(location.href);
     const query = new URLSearchParams(link);
     // Another scene has knobs of its own.
-    if (asked.has("scene"))
+    if (unanswered.has("scene"))
       for (const name of [...query.keys()]) if (!["v", "mode", "start"].includes(name)) query.delete(name);
-    for (const [name, value] of asked) {
+    for (const [name, value] of unanswered) {
       query.set(name, value);
       if (name === "k") query.delete("kappa");
       if (name === "kappa") query.delete("k");
     }
-    if (url.searchParams.has("look")) query.set("look", page.look()); // else the browser remembers it
+    if (url.searchParams.has("look")) query.set("look", page.theme()); // else the browser remembers it
     url.search = query;
     return url;
   };
@@ -58,10 +58,12 @@
   let ping = null,
     closed = false,
     leaving = false;
-  let waited = null,
-    rested = 0,
-    tried = TRY,
-    reached = 0;
+  // Milliseconds since the last ping without an answer (null where there is none), the last answer, the last try to
+  // reach a lost server, and since that can be reached (0 where it cannot).
+  let sincePing = null,
+    sinceAnswer = 0,
+    sinceTry = TRY,
+    sinceReached = 0;
 
   // The last pictures as one image: they stay, grey, until the page built again has its own.
   const canvases = (node) =>
@@ -100,12 +102,12 @@
     }
   };
   const tryAgain = async () => {
-    tried = -Infinity; // not while one is under way
+    sinceTry = -Infinity; // not while one is under way
     const alive = await reach();
-    tried = 0;
-    if (!alive) reached = 0;
-    else if (closed || reached > GRACE) rebuild();
-    else reached += 1;
+    sinceTry = 0;
+    if (!alive) sinceReached = 0;
+    else if (closed || sinceReached > GRACE) rebuild();
+    else sinceReached += 1;
   };
 
   // Time is counted in ticks, none for more than four, so that a computer that slept or a page that was busy is no silent server.
@@ -115,24 +117,24 @@
       passed = Math.min(now - last, 4 * TICK);
     last = now;
     if (leaving || !ping || (document.hidden && !closed)) return;
-    const resting = !closed && waited === null;
-    if (resting) rested += passed;
-    if (resting && rested >= REST) {
-      waited = 0;
+    const resting = !closed && sincePing === null;
+    if (resting) sinceAnswer += passed;
+    if (resting && sinceAnswer >= REST) {
+      sincePing = 0;
       ping();
-    } else if (waited !== null) waited += passed;
-    if (!page.lost && (closed || waited > PATIENCE)) show(true);
+    } else if (sincePing !== null) sincePing += passed;
+    if (!page.lost && (closed || sincePing > PATIENCE)) show(true);
     if (!page.lost) return;
-    if (reached) reached += passed;
-    tried += passed;
-    if (tried >= TRY) tryAgain();
+    if (sinceReached) sinceReached += passed;
+    sinceTry += passed;
+    if (sinceTry >= TRY) tryAgain();
   };
   setInterval(tick, TICK);
 
   // The server has answered: a socket that was only silent goes on, and what was sent meanwhile has been read.
-  const heard = () => {
-    waited = null;
-    rested = reached = 0;
+  const answerReceived = () => {
+    sincePing = null;
+    sinceAnswer = sinceReached = 0;
     if (page.lost && !closed) show(false);
   };
   const connect = (send) => {
@@ -162,5 +164,5 @@
       if (!page.lost) say("");
     });
   }
-  Object.assign(page, { lost: false, kept: {}, again, asks, told, heard, connect, address });
+  Object.assign(page, { lost: false, kept: {}, again, requested, linkReceived, answerReceived, connect, address });
 })();

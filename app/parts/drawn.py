@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import param
 
@@ -12,7 +12,7 @@ from .component import Component
 
 
 class Drawn(Component):
-    """A part with figures: without points at first, sent when they are first needed and again for another look.
+    """A part with figures: without points at first, sent when they are first needed and again for another theme.
 
     `figures` are Bokeh's JSON by name. They are no part of `state`, which is sent as a whole with each of its changes.
     The browser fills in what comes as messages.
@@ -20,18 +20,17 @@ class Drawn(Component):
 
     figures = param.Dict(default={})
 
+    empty_figures: ClassVar[staticmethod[[Theme], dict[str, Any]]]
+    """Makes the figures without their points; every part of this kind has its own."""
+
     __abstract = True
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, **params)
         self.theme = THEMES["light"]
 
-    def empty_figures(self, theme: Theme) -> dict[str, Any]:
-        """The figures without their points."""
-        raise NotImplementedError
-
     def dress(self, theme: Theme) -> None:
-        """Another look."""
+        """Draw the figures anew in another theme."""
         if theme != self.theme:
             self.theme = theme
             if self.figures:

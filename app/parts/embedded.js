@@ -8,16 +8,17 @@ export class Embedded {
     this.ready = Promise.resolve();
   }
 
-  // Another figure in place of the present one, as when the look changes; `filled` gives it its data again.
+  // Another figure in place of the present one, as when the theme changes; `filled` gives it its data again.
   load(item, words) {
     if (!item || item === this.item) return;
     this.item = item;
     this.host.setAttribute("aria-label", words);
     this.ready = this.ready.then(async () => {
       this.clear();
-      this.views = await Bokeh.embed.embed_item(item, this.host);
-      this.document = this.views.roots[0].model.document;
+      // Filled before it is drawn: axes of nothing have no range.
+      this.document = Bokeh.require("document").Document.from_json(item.doc);
       this.filled(this);
+      this.views = await Bokeh.embed.add_document_standalone(this.document, this.host);
     });
   }
 
@@ -142,7 +143,7 @@ export function fillModels(figure, models) {
   for (const [name, properties] of Object.entries(models ?? {})) figure.set(name, properties);
 }
 
-// What the page and the corner show of the observer.
+// What the observer's page and its tab show.
 export function fillDistance(figure, { history, prediction }) {
   for (const [name, points] of [
     ["distance", history],

@@ -6,7 +6,8 @@ import numpy as np
 from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper, Range1d, SingleIntervalTicker
 from bokeh.plotting import figure
 
-from ..page.frames import Frames, prefixed, round_up
+from ..page.format import prefixed
+from ..page.frames import Frames, round_up
 from .chain import PALETTE
 from .figure_style import GAP, quiet_axis, quiet_figure
 
@@ -19,10 +20,12 @@ class EnergyMap:
         self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
         self._scale = 0.0
         self.locked = False
+        self._beads, self._narrow = 1, False
         self.figure = self._build(time)
 
     def _build(self, time: Range1d) -> figure:
-        plot = quiet_figure(GAP, GAP, y_range=time, x_range=Range1d(0.5, 11.5), x_axis_location="above")
+        plot = quiet_figure(GAP, GAP, name="kinetic energy", y_range=time, x_range=Range1d(0.5, 11.5),
+                            x_axis_location="above")
         plot.yaxis.visible = False
         plot.grid.visible = False
         quiet_axis(plot.xaxis[0])
@@ -32,6 +35,11 @@ class EnergyMap:
         self._hover = HoverTool(renderers=[image], tooltips=[("bead", "$x{0}"), ("energy", "@image")])
         plot.add_tools(self._hover)
         return plot
+
+    def fit(self, narrow: bool) -> None:
+        """Number fewer beads where there is little room."""
+        self._narrow = narrow
+        self.figure.xaxis[0].ticker.interval = max(1, round(self._beads / (6 if narrow else 12)))
 
     def _choose_scale(self, frames: Frames, live: bool) -> None:
         """The top of the colour scale in joules: the picture's own, steadier when live, kept when locked."""
@@ -54,7 +62,8 @@ class EnergyMap:
         }
         self._mapper.high = self._scale / factor
         self.figure.x_range.end = frames.beads + 0.5
-        self.figure.xaxis[0].ticker.interval = max(1, round(frames.beads / 12))
+        self._beads = frames.beads
+        self.fit(self._narrow)
         self._hover.tooltips = [
             ("bead", "$x{0}"), ("time", f"$y{{0.000}} {unit}"),
             ("kinetic energy", f"@image{{0.000}} {letter}J"),

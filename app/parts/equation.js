@@ -1,19 +1,44 @@
 // The equation of motion as MathML, which the browser typesets without fonts from anywhere.
 
+import { part } from "./dom.js";
+
+// A line that is longer than the column is set smaller, down to this part of the size of the others.
+const SMALLEST = 0.55;
+
 export function render({ model }) {
-  const root = document.createElement("div");
-  root.className = "formula";
+  const root = part("div", { className: "formula" });
+  root.title = "The equation that is computed: only the active terms are there.";
+  const fit = () => {
+    for (const line of root.children) {
+      line.style.fontSize = "";
+      const widest = Math.max(...[...line.children].map((equation) => equation.getBoundingClientRect().width));
+      const ratio = Math.floor((100 * root.clientWidth) / widest) / 100;
+      if (ratio < 1) line.style.fontSize = `${Math.max(SMALLEST, ratio)}em`;
+    }
+  };
   const show = () => {
     const { latex } = model.state;
     root.replaceChildren();
-    for (const line of latex ? latex.split(/,?\\qquad/) : []) {
-      const row = document.createElement("div");
-      window.katex.render(line.trim(), row, { output: "mathml", throwOnError: false });
-      root.append(row);
+    for (const text of latex ? latex.split(/,?\\qquad/) : []) {
+      const line = part("div");
+      // Two short equations share a line where there is room.
+      for (const equation of text.split(/,\s*\\quad/)) {
+        const place = part("span");
+        window.katex.render(equation.trim(), place, { output: "mathml", throwOnError: false });
+        line.append(place);
+      }
+      root.append(line);
     }
-    root.title = "The equation that is computed: only the active terms are there.";
+    fit();
   };
   model.on("state", show);
+  let width = 0;
+  new ResizeObserver(() => {
+    if (root.clientWidth === width) return;
+    width = root.clientWidth;
+    fit();
+  }).observe(root);
+  window.granchain.on("theme", fit); // the projector's words are larger
   show();
   return root;
 }

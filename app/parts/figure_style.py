@@ -14,7 +14,7 @@ TOP, BOTTOM, LEFT, GAP = 50, 52, 56, 6
 """Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly."""
 
 DRIVE, INPUT, OUTPUT = THEMES["light"].drive, THEMES["light"].input, THEMES["light"].output
-"""The colours that mean one thing everywhere, in every look."""
+"""The colours that mean one thing everywhere, in every theme."""
 
 
 def quiet_figure(left: int, right: int, **options: Any) -> figure:

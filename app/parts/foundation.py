@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from granchain_core import Scene, scene
+from granchain_core.scene.foundation import moved_kappa
 
 
 def foundation_words(current: Scene) -> str:
@@ -14,8 +15,5 @@ def foundation_words(current: Scene) -> str:
 
 
 def beside_kappa(current: Scene) -> str:
-    """What κ was before A₀ moved, where k is still the preset's; else nothing."""
-    preset = scene(current.name)
-    if current.A0 == preset.A0 or current.k != preset.k or current.k == 0.0:
-        return ""
-    return f"κ was {preset.kappa:.4g}; A₀ moved, not k"
+    """What κ was in the preset, where A₀ has moved since and k has not; else nothing."""
+    return moved_kappa(scene(current.name), current)

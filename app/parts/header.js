@@ -22,7 +22,7 @@ const ICONS = {
   share: "M9 15l6-6M8 11l-3 3a3.5 3.5 0 0 0 5 5l3-3M16 13l3-3a3.5 3.5 0 0 0-5-5l-3 3",
   save: "M12 4v11m-5-4l5 5 5-5M5 20h14",
   help: "M9 9a3 3 0 1 1 4.2 2.7c-.9.4-1.2 1-1.2 2.3M12 18v.5",
-  look: "M12 3a9 9 0 1 0 0 18zM12 3a9 9 0 0 1 0 18",
+  theme: "M12 3a9 9 0 1 0 0 18zM12 3a9 9 0 0 1 0 18",
 };
 const icon = (name, words = "") =>
   `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>${
@@ -48,7 +48,7 @@ export function render({ model }) {
 
   const drawer = button(icon("knobs", "knobs"), "Show the knobs", () => page.drawer(true), "knobs-button");
   const scene = chooser("scene", "scene", (name) => {
-    page.asks("scene", name);
+    page.requested("scene", name);
     send({ do: "scene", name });
   });
   const reset = button(icon("reset", "reset"), "Back to rest", () => send({ do: "reset" }));
@@ -68,14 +68,14 @@ export function render({ model }) {
       mode,
       mode === "settled" ? "The steady state for these knobs, replayed" : "The run goes on while you move the knobs",
       () => {
-        page.asks("mode", mode);
+        page.requested("mode", mode);
         send({ do: "mode", value: mode });
       },
     ),
   );
   segments.append(...modes);
   const start = chooser("where the steady state starts", "start", (value) => {
-    page.asks("start", value);
+    page.requested("start", value);
     send({ do: "start", value });
   });
   start.add(new Option("from rest", "rest"));
@@ -83,7 +83,7 @@ export function render({ model }) {
   const share = button(icon("share", "share"), "Link to this picture", () => send({ do: "share" }));
   const save = button(icon("save", "save"), "Save this picture as HDF5", () => send({ do: "save" }), "save");
   const help = button(icon("help"), "Help", () => toggle(helpBox), "icon");
-  const look = button(icon("look"), "Light, dark, projector", () => page.nextLook(), "icon");
+  const theme = button(icon("theme"), "Light, dark, projector", () => page.nextTheme(), "icon");
 
   const list = part("dl");
   for (const [term, meaning] of HELP)
@@ -110,7 +110,7 @@ export function render({ model }) {
     send({ do: "playing", value: playing });
   };
   page.on("pause", () => setPlaying(false));
-  page.on("look", (value) => send({ do: "look", value }));
+  page.on("theme", (value) => send({ do: "theme", value }));
   document.addEventListener("keydown", (event) => {
     const inField = event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
     if (event.key === " " && !inField && !page.lost) {
@@ -126,13 +126,13 @@ export function render({ model }) {
     if (!event.composedPath().includes(root)) toggle(helpBox, false);
   });
 
-  // The look of the link comes with the first state; from then on the button alone says it.
+  // The theme of the link comes with the first state; from then on the button alone says it.
   let linked = false;
   const show = () => {
     const { state } = model;
-    if (!linked && state.look) {
+    if (!linked && state.theme) {
       linked = true;
-      page.setLook(state.look, false); // "auto" is none of the looks and changes nothing
+      page.setTheme(state.theme, false); // "auto" is none of the themes and changes nothing
     }
     scene.replaceChildren(...(state.scenes ?? []).map(({ name, title }) => new Option(`${name} — ${title}`, name)));
     scene.value = state.scene ?? "";
@@ -153,7 +153,7 @@ export function render({ model }) {
     drawPlay();
     page.kept = { ...page.kept, speed: state.speed, playing };
     if (!state.query) return;
-    page.told(state.query, ["scene", "mode", "start"]);
+    page.linkReceived(state.query, ["scene", "mode", "start"]);
     if (page.again) {
       const { speed: value = 1, playing: goesOn = true, uploaded = false } = page.again;
       page.again = null;
@@ -193,7 +193,7 @@ export function render({ model }) {
     share,
     save,
     help,
-    look,
+    theme,
     helpBox,
     linkBox,
   );

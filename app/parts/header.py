@@ -1,4 +1,4 @@
-"""The bar on top: scene, transport, mode, share, save, help and look."""
+"""The bar on top: scene, transport, mode, share, save, help and theme."""
 
 from __future__ import annotations
 

@@ -149,7 +149,7 @@ export function render({ model }) {
   };
   const send = (message, now) => {
     waiting.set(message.name, message);
-    page.asks(message.name, message.do === "set" ? message.value : model.state.preset[message.name]);
+    page.requested(message.name, message.do === "set" ? message.value : model.state.preset[message.name]);
     if (resting || now) flush();
   };
 
@@ -186,7 +186,7 @@ export function render({ model }) {
   model.on("msg:custom", (message) => {
     if (message.type !== "values") return;
     const newest = (message.seq ?? -1) >= sent && !waiting.size;
-    page.told(message.query, newest ? [...knobs.keys()] : []);
+    page.linkReceived(message.query, newest ? [...knobs.keys()] : []);
     // An answer to an older movement must not pull the knob from under the hand.
     if ((message.seq ?? sent) >= sent && !waiting.size) show(message);
   });

@@ -1,4 +1,4 @@
-// What the parts of the page share in the browser: a small bus, the look and the drawer.
+// What the parts of the page share in the browser: events, the theme and the drawer.
 window.granchain = (() => {
   const listeners = new Map();
   const on = (name, listener) => {
@@ -9,30 +9,31 @@ window.granchain = (() => {
     for (const listener of listeners.get(name) ?? []) listener(detail);
   };
 
-  const LOOKS = ["light", "dark", "projector"];
+  const KEPT_AS = "granchain-look"; // in the browser, from visit to visit
+  const THEMES = ["light", "dark", "projector"];
   const remembered = () => {
     try {
-      return localStorage.getItem("granchain-look");
+      return localStorage.getItem(KEPT_AS);
     } catch {
       return null;
     }
   };
   const system = () => (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
-  const setLook = (look, keep) => {
-    if (!LOOKS.includes(look)) return;
-    document.documentElement.dataset.look = look;
+  const setTheme = (theme, keep) => {
+    if (!THEMES.includes(theme)) return;
+    document.documentElement.dataset.theme = theme;
     if (keep)
       try {
-        localStorage.setItem("granchain-look", look);
+        localStorage.setItem(KEPT_AS, theme);
       } catch {
         /* private browsing keeps nothing */
       }
-    emit("look", look);
+    emit("theme", theme);
   };
-  const look = () => document.documentElement.dataset.look;
-  setLook(LOOKS.includes(remembered()) ? remembered() : system(), false);
+  const theme = () => document.documentElement.dataset.theme;
+  setTheme(THEMES.includes(remembered()) ? remembered() : system(), false);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-    if (!remembered()) setLook(system(), false);
+    if (!remembered()) setTheme(system(), false);
   });
 
   const drawer = (open) => {
@@ -62,9 +63,9 @@ window.granchain = (() => {
     get covered() {
       return covered;
     },
-    look,
-    setLook,
-    nextLook: () => setLook(LOOKS[(LOOKS.indexOf(look()) + 1) % 3], true),
+    theme,
+    setTheme,
+    nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % 3], true),
     drawer,
   };
 })();

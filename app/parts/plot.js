@@ -9,11 +9,18 @@ export const draw = (tag, attributes = {}, ...children) => {
 
 export const round3 = (value) => Number(value.toPrecision(3));
 
+// The steps that read well, in every decade; the nearest of them to a value from below or from above.
+const STEPS = [1, 2, 5, 10];
+const inDecade = (value, pick) => {
+  const power = 10 ** Math.floor(Math.log10(value));
+  return pick((step) => step * power) * power;
+};
+export const stepBelow = (value) => inDecade(value, (of) => STEPS.findLast((step) => of(step) <= value) ?? 1);
+const stepAbove = (value) => inDecade(value, (of) => STEPS.find((step) => of(step) >= value) ?? 10);
+
 // Round values between low and high, about `count` of them.
 export function ticks(low, high, count) {
-  const raw = (high - low) / count,
-    power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].find((m) => m * power >= raw) * power;
+  const step = stepAbove((high - low) / count);
   const found = [];
   for (let v = Math.ceil(low / step) * step; v <= high + 1e-9 * step; v += step) found.push(Number(v.toPrecision(6)));
   return found;

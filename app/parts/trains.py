@@ -6,11 +6,14 @@ import numpy as np
 from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
 from bokeh.plotting import figure
 
-from ..page.frames import Frames, prefixed, round_up, with_jumps
+from ..page.format import prefixed
+from ..page.frames import Frames, round_up, with_jumps
 from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
 
-_WORDS = ("drive u₀", "input force", "output force")
+_TITLES = ("drive u₀", "input force", "output force")
 _SHORT = ("drive", "in", "out")
+WIDEST_TITLES = {"left": f"{_TITLES[1]} (mN)", "right": f"{_TITLES[2]} (mN)"}
+"""By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`)."""
 
 
 class Trains:
@@ -23,11 +26,12 @@ class Trains:
         self._output = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
         self._lines: list[GlyphRenderer] = []
         self._narrow = False
+        self._units = ("m", "N", "N")
         self.left = self._left_figure(time)
         self.right = self._right_figure(time)
 
     def _left_figure(self, time: Range1d) -> figure:
-        plot = quiet_figure(LEFT, GAP, y_range=time, x_range=Range1d(-1, 1))
+        plot = quiet_figure(LEFT, GAP, name="input force", y_range=time, x_range=Range1d(-1, 1))
         plot.extra_x_ranges = {"drive": Range1d(-1, 1)}
         axis = LinearAxis(x_range_name="drive")
         quiet_axis(axis, DRIVE)
@@ -44,7 +48,7 @@ class Trains:
         return plot
 
     def _right_figure(self, time: Range1d) -> figure:
-        plot = quiet_figure(GAP, 14, y_range=time, x_range=Range1d(0, 1))
+        plot = quiet_figure(GAP, 14, name="output force", y_range=time, x_range=Range1d(0, 1))
         plot.yaxis.visible = False
         plot.xgrid.grid_line_color = None
         quiet_axis(plot.xaxis[0], OUTPUT)
@@ -81,16 +85,20 @@ class Trains:
         self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
         self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)
         self.right.x_range.update(start=output_range[0] / out, end=output_range[1] / out)
-        words = _SHORT if self._narrow else _WORDS
-        self.left.xaxis[0].axis_label = f"{words[0]} ({drive_letter}m)"
-        self.left.xaxis[1].axis_label = f"{words[1]} ({push_letter}N)"
-        self.right.xaxis[0].axis_label = f"{words[2]} ({out_letter}N)"
+        self._units = (f"{drive_letter}m", f"{push_letter}N", f"{out_letter}N")
+        self._write_titles()
 
     def fit(self, narrow: bool) -> None:
-        """Fewer ticks and shorter words where there is little room."""
+        """Fewer ticks and shorter titles where there is little room."""
         self._narrow = narrow
         for axis in (*self.left.xaxis, *self.right.xaxis):
             axis.ticker.desired_num_ticks = 2 if narrow else 3
+        self._write_titles()
+
+    def _write_titles(self) -> None:
+        axes = (*self.left.xaxis, *self.right.xaxis)
+        for axis, title, unit in zip(axes, _SHORT if self._narrow else _TITLES, self._units, strict=True):
+            axis.axis_label = f"{title} ({unit})"
 
     def thicken(self, factor: float) -> None:
         """Wider lines for the projector."""

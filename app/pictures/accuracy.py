@@ -38,7 +38,7 @@ class Asked:
     now: tuple[float, float] | None = None
 
 
-def looks() -> dict[str, dict[str, Any]]:
+def styles() -> dict[str, dict[str, Any]]:
     """Marker, colour, dash and fill of every way: by shape and fill told apart without colour, too."""
     found: dict[str, dict[str, Any]] = {}
     used = {"naive": 0, "other": 0}
@@ -112,15 +112,15 @@ def accuracy(rows: Sequence[Row], asked: Asked, theme: Theme, compact: bool = Fa
 def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: bool) -> list[Any]:
     """A line and marks for every way."""
     shown, items = [], []
-    for name, look in looks().items():
+    for name, style in styles().items():
         source = ColumnDataSource(columns[name], name=name)
-        line = plot.line("ms", "error", source=source, line_color=look["colour"], line_dash=look["dash"],
+        line = plot.line("ms", "error", source=source, line_color=style["colour"], line_dash=style["dash"],
                          line_alpha=0.75)
-        dots = plot.scatter("ms", "error", source=source, marker=look["marker"], size=8 if compact else 12,
-                            line_color=look["colour"], line_width=2.0, fill_color=look["colour"],
+        dots = plot.scatter("ms", "error", source=source, marker=style["marker"], size=8 if compact else 12,
+                            line_color=style["colour"], line_width=2.0, fill_color=style["colour"],
                             name=f"{name}, order {ways()[name].order:g}")
         in_theme(line, line_width=1.8)
-        if not look["filled"]:
+        if not style["filled"]:
             in_theme(dots, fill_color="card")
         shown.append(dots)
         items.append(LegendItem(label=name.replace("scipy ", "SciPy "), renderers=[line, dots]))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from granchain_core.quantities import QUANTITIES
 
-from ..page.frames import prefixed
+from ..page.format import prefixed
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from .theme import Theme, dress, frame, in_theme
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
            "grazing": "grazing"}
-_LOOKS: dict[str, dict[str, Any]] = {
+_STYLES: dict[str, dict[str, Any]] = {
     "fold": {"marker": "triangle", "size": 14, "colour": "#e0900a", "filled": True},
     "period_doubling": {"marker": "diamond", "size": 16, "colour": "#9b6bf2", "filled": True},
     "neimark_sacker": {"marker": "circle", "size": 12, "colour": "#0fa3b8", "filled": False},
@@ -170,12 +170,12 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
 def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) -> dict[str, Any]:
     """Special points; grazings are too many for a small figure."""
     made = {}
-    for kind, look in _LOOKS.items():
-        one = plot.scatter("x", "y", source=sources[kind], marker=look["marker"], line_color=look["colour"],
-                           fill_color=look["colour"], size=0.75 * look["size"] if compact else look["size"],
+    for kind, style in _STYLES.items():
+        one = plot.scatter("x", "y", source=sources[kind], marker=style["marker"], line_color=style["colour"],
+                           fill_color=style["colour"], size=0.75 * style["size"] if compact else style["size"],
                            visible=not (compact and kind == "grazing"))
         one.nonselection_glyph = None
-        in_theme(one, line_width=2.2) if look["filled"] else in_theme(one, line_width=2.2, fill_color="card")
+        in_theme(one, line_width=2.2) if style["filled"] else in_theme(one, line_width=2.2, fill_color="card")
         made[kind] = one
     return made
 

@@ -18,7 +18,7 @@ _DOTTED = 70
 """Pictures with at most so many points have a dot at each."""
 _HEIGHT, _LINE = 250, 24
 """Height of the drawing and of a line of the legend in pixels."""
-_LOOKS: dict[str, list[dict[str, Any]]] = {
+_STYLES: dict[str, list[dict[str, Any]]] = {
     "ours": [{"colour": "ink", "width": 2.6, "dash": []}, {"colour": "ink", "width": 2.6, "dash": [14, 5]}],
     "naive": [{"colour": "naive", "width": 2.2, "dash": [7, 4]}, {"colour": "second", "width": 2.2, "dash": [2, 4]}],
 }
@@ -40,14 +40,14 @@ def check(picture: Picture, theme: Theme) -> figure:
     plot.x_range.range_padding = 0.02
     source = ColumnDataSource({"x": x, **{str(i): y for i, (_, _, y) in enumerate(drawn)}})
     items = []
-    for i, (label, look) in enumerate(zip(labels, _looks(labels), strict=True)):
-        line = plot.line("x", str(i), source=source, line_dash=look["dash"], line_cap="round", name=label)
-        items.append(LegendItem(label=label, renderers=[in_theme(line, line_color=look["colour"],
-                                                                 line_width=look["width"])]))
+    for i, (label, style) in enumerate(zip(labels, _styles(labels), strict=True)):
+        line = plot.line("x", str(i), source=source, line_dash=style["dash"], line_cap="round", name=label)
+        items.append(LegendItem(label=label, renderers=[in_theme(line, line_color=style["colour"],
+                                                                 line_width=style["width"])]))
         plot.add_tools(HoverTool(renderers=[line], tooltips=[
             ("", label), (x_label, "@x{0.[0000]}" if not x_log else "@x{0.0e}"),
             (y_label, f"@{{{i}}}{{0.000e}}")]))
-        _points(plot, source, i, look)
+        _points(plot, source, i, style)
     plot.add_layout(Legend(items=items, click_policy="hide", padding=0, margin=4, glyph_width=44), "below")
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker.desired_num_ticks = 5
@@ -61,27 +61,27 @@ def _axis(label: str, values: np.ndarray) -> tuple[str, bool, np.ndarray]:
     return label, False, np.asarray(values, dtype=np.float32)
 
 
-def _looks(labels: Sequence[str]) -> list[dict[str, Any]]:
-    """A line's look by whose it is. Pictures in which nobody is named show our runs only."""
+def _styles(labels: Sequence[str]) -> list[dict[str, Any]]:
+    """A line's style by whose it is. Pictures in which nobody is named show our runs only."""
     named = any(label.startswith("granchain") for label in labels)
     used = {"ours": 0, "naive": 0}
-    looks = []
+    styles = []
     for label in labels:
         if label == "true":
-            looks.append(_TRUTH)
+            styles.append(_TRUTH)
             continue
         group = "ours" if not named or label.startswith("granchain") else "naive"
-        looks.append(_LOOKS[group][used[group] % len(_LOOKS[group])])
+        styles.append(_STYLES[group][used[group] % len(_STYLES[group])])
         used[group] += 1
-    return looks
+    return styles
 
 
-def _points(plot: figure, source: ColumnDataSource, number: int, look: dict[str, Any]) -> None:
+def _points(plot: figure, source: ColumnDataSource, number: int, style: dict[str, Any]) -> None:
     """Dots where there are few points, and the cross at the last point of a trace that breaks off."""
     x, y = (np.asarray(source.data[name]) for name in ("x", str(number)))
     if len(x) <= _DOTTED:
-        in_theme(plot.scatter("x", str(number), source=source, size=5, line_color=None), fill_color=look["colour"])
+        in_theme(plot.scatter("x", str(number), source=source, size=5, line_color=None), fill_color=style["colour"])
     known = np.flatnonzero(np.isfinite(y))
     if len(known) and known[-1] < len(y) - 1:
         in_theme(plot.scatter([float(x[known[-1]])], [float(y[known[-1]])], marker="x", size=12),
-                 line_color=look["colour"], line_width=look["width"])
+                 line_color=style["colour"], line_width=style["width"])

@@ -27,11 +27,11 @@ def curve(found: Sequence[Curve], theme: Theme) -> figure:
     plot = frame(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
     for one in found:
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
-        looks = [REGIMES[regime_key(p)] for p in points]
+        styles = [REGIMES[regime_key(p)] for p in points]
         source = ColumnDataSource(name=one.start, data={
             "frequency": [p.frequency for p in points], "force": [p.max_output_force / scale.factor for p in points],
-            "marker": [look[0] for look in looks], "colour": [look[1] for look in looks],
-            "size": [look[2] + 3 for look in looks], "regime": [regime_key(p) for p in points],
+            "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
+            "size": [style[2] + 3 for style in styles], "regime": [regime_key(p) for p in points],
             "sentence": [p.regime.sentence for p in points],
             "total": [in_words(p.max_output_force, "N") + _error(p.force_errors.output) for p in points],
             "elastic": [in_words(p.max_output_force_elastic, "N") + _error(p.force_errors.elastic) for p in points],

@@ -17,11 +17,13 @@ def lesson(time: np.ndarray, certified: np.ndarray, naive: np.ndarray | None, ti
 
     The sources are named "certified" and "naive", so that a page can show the force of other steps.
     """
-    sure = ColumnDataSource({"time": time, "force": certified}, name="certified")
+    sure = ColumnDataSource({"time": time, "force": certified, "nothing": np.zeros_like(time)}, name="certified")
     drawn = ColumnDataSource(naive_columns(time, certified, naive), name="naive")
     above = frame(name="lesson", min_border=2, toolbar_location="right")
     below = frame(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=130,
                   sizing_mode="stretch_width")
+    # without it the axis would have no range where the naive force could not be computed
+    in_theme(below.line("time", "nothing", source=sure), line_color="faint", line_width=1.0)
     lines: list[tuple[Any, str, Any, str, float, dict[str, Any]]] = [
         (above, "force", sure, "output", 4.0, {"legend_label": "certified"}),
         (above, "force", drawn, "naive", 2.4, {"legend_label": "naive", "line_dash": [7, 4]}),

@@ -1,4 +1,4 @@
-"""Colours and widths of the looks, and how they are put on a figure that is already drawn."""
+"""Colours and widths of the themes, and how they are put on a figure that is already drawn."""
 
 from __future__ import annotations
 

@@ -16,13 +16,22 @@ from pathlib import Path
 from granchain_core import Scene
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, structure
 
-from .delays import STOP_LOOK
+from .delays import STOP_POLL
 from .queues import COMPILATIONS, CURVES, Stop
 
-SENTENCE = ("Compiling the kernels for this set of effects: about 10 s, only the first time on this computer; "
-            "the picture follows by itself.")
+#: What is compiled for a page, and how long that takes on two cores [s].
+_COMPILED = {"picture": ("the kernels for this set of effects", 10), "map": ("the kernels", 10),
+             "attractors": ("the kernels", 10), "observer": ("the observer's kernels", 10),
+             "accuracy": ("the kernels of all methods", 20), "stability": ("the tangent flow", 20),
+             "branches": ("the kernels of branches", 40)}
 
 _ROOT = Path(__file__).resolve().parents[2]
+
+
+def compiling_words(page: str) -> str:
+    """What is being compiled for a page, or for the "picture" in front, and how long one has to wait for it."""
+    what, seconds = _COMPILED[page]
+    return f"compiling {what}: some {seconds} s, only the first time on this computer"
 
 
 def _compile(scene: Scene, piece: str) -> None:
@@ -65,7 +74,7 @@ class Compiler:
         if self.has(scene, piece):
             return True
         compilation = self.ask(scene, piece)
-        while not wait([compilation], timeout=STOP_LOOK).done:
+        while not wait([compilation], timeout=STOP_POLL).done:
             if stop:
                 return False
         compilation.result()

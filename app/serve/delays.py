@@ -1,9 +1,9 @@
-"""How long the server waits, all in seconds: between two looks at something, and until a visitor's hand rests."""
+"""How long the server waits, all in seconds: between two checks of something, and until a visitor's hand rests."""
 
-#: Between looks whether the picture in front is done; what lasts longer never competes with a moving knob.
-PICTURE_LOOK = 0.01
-#: Between looks at a stop flag while another process works.
-STOP_LOOK = 0.05
+#: Between checks whether the picture in front is done; what lasts longer never competes with a moving knob.
+PICTURE_POLL = 0.01
+#: Between checks of a stop flag while another process works.
+STOP_POLL = 0.05
 
 #: Between a settled picture and its analysis: nothing is analysed while a knob moves.
 ANALYSIS_QUIET = 0.12
@@ -14,7 +14,7 @@ MAP_QUIET = 0.7
 #: Without a movement before the cost of an effect is measured.
 COST_QUIET = 0.7
 
-#: Between looks at what is being computed, while the Effects panel is on the screen.
+#: Between two lists of what is being computed, while the Effects panel is on the screen.
 ACTIVITIES_EVERY = 0.4
 #: Between two messages to a page on which a branch grows.
 BRANCH_EVERY = 0.08

@@ -10,9 +10,9 @@ import numpy as np
 
 from ..integrate.batch import can_share_batch
 from ..scene import Scene
+from ..steady.alone import safe_state, second_look
 from ..steady.batch_job import Start
 from ..steady.batch_settle import batch_states
-from ..steady.curve import safe_state, second_look
 from ..steady.steady_state import SteadyState
 from ..steady.threads import on_all_cores
 from ..stop import Stop

@@ -6,27 +6,23 @@ import itertools
 import os
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
-from ..integrate import Engine, State
+from ..errors import BadInput, Cancelled, unknown_name
+from ..integrate import State
 from ..integrate.batch import can_share_batch
-from ..integrate.methods import jump_errors, typical_error
-from ..result import ForceErrors, relative_changes
+from ..result import ForceErrors
 from ..scene import Scene
 from ..stop import Stop
+from .alone import safe_state, second_look
 from .batch_settle import batch_results
-from .orbit_errors import force_distances, orbit_force_errors
 from .regime import Regime
-from .settle import Settling, relax, run_until_settled
 from .steady_state import SteadyState
 from .threads import on_all_cores
 
 STARTS = ("rest", "up", "down")
-#: Forces on a curve are not computed to less relative error than this, whatever the scene asks of its picture.
-CURVE_ACCURACY = 1e-5
 #: Most points of one curve.
 MOST_POINTS = 100_000
 
@@ -128,48 +124,6 @@ def coarse_first(count: int) -> list[int]:
                 order.append(i)
         step //= 2
     return order
-
-
-def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
-    """The steady state of `scene` from rest or from `start`, certified where it is periodic."""
-    way = run_until_settled(scene, start, stop)
-    if way.regime.name == "periodic":
-        return _certified(way)
-    tops = way.tops[-min(len(way.tops), 100) :].max(axis=0) * way.engine.lowered.scales.force
-    return SteadyState(scene, tops, way.regime, None, way.engine.state)
-
-
-def _certified(way: Settling) -> SteadyState:
-    """Largest forces on the certified orbit, and their errors from a finer computation of it."""
-    engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
-    n = way.regime.period
-    assert n is not None
-    before = engine.largest_forces(n)
-    finer = Engine(way.scene, engine.setting.finer(), 1, stop=way.stop)
-    finer.start(engine.state)
-    tops = finer.largest_forces(n)
-    jumps = jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
-    left = force_distances(distance, finer.lowered, finer.tops, finer.y)
-    errors = orbit_force_errors(relative_changes(tops, before), left, way.regime.slowness, jumps,
-                                typical_error(finer.setting))
-    return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
-
-
-def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
-    """A steady state, or one that says why there is none: one failed frequency does not lose a curve."""
-    try:
-        return steady_state(scene, start, stop)
-    except NumbersFailed as failed:
-        resting = State(np.zeros(scene.N), np.zeros(scene.N))
-        return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(0), None, start or resting, failed.sentence,
-                           failed.status)
-
-
-def second_look(doubtful: SteadyState, stop: Stop) -> SteadyState:
-    """The steady state of a chain that a batch left in doubt, settled alone from its last state."""
-    found = safe_state(doubtful.scene, doubtful.state, stop)
-    run = doubtful.regime.periods_run + found.regime.periods_run
-    return replace(found, regime=replace(found.regime, periods_run=run), number=doubtful.number)
 
 
 def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray) -> list[Scene]:

@@ -36,7 +36,8 @@ def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
         context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})
         contexts.append(context)
         page = context.new_page()
-        page.on("console", lambda message: message.type == "error" and complaints.append(message.text))
+        page.on("console", lambda message: (message.type == "error" or "initial ranges" in message.text)
+                and complaints.append(message.text))  # the latter: a figure that was drawn before it had points
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda request: request.url.startswith((url, "data:", "blob:"))
                 or complaints.append(f"asked another host: {request.url}"))

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from knobs import type_into
 from playwright.sync_api import Locator, Page, expect
 
 Visit = Callable[..., Page]
@@ -31,13 +32,6 @@ def naive_line(page: Page) -> dict[str, Any]:
       return { certified: certified.data_source.data.force.length, naive: naive.data_source.data.force.length,
                dash: String(naive.glyph.line_dash.value ?? naive.glyph.line_dash) };
     }"""))
-
-
-def type_into(page: Page, name: str, text: str) -> None:
-    """Type a value and press Enter."""
-    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
-    field.fill(text)
-    field.press("Enter")
 
 
 def opened(page: Page) -> Locator:
@@ -145,11 +139,11 @@ def test_steps_that_blow_up_are_told(visit: Visit) -> None:
     sheet.get_by_role("button", name="cancel").click()
 
 
-def test_the_corner_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
+def test_its_tab_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=2000")
     page.get_by_role("tab", name="accuracy").click()
-    expect(page.locator("#corner .small canvas").first).to_be_visible(timeout=COMPILED)
-    expect(page.locator("#corner")).to_contain_text("The cheapest way to", timeout=COMPILED)
+    expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
+    expect(page.locator("#tabs")).to_contain_text("The cheapest way to", timeout=COMPILED)
     page.get_by_role("button", name="open the page").click()
     expect(page.locator("#cover .work canvas").first).to_be_visible()
     assert page.evaluate(POINTS)

@@ -22,9 +22,9 @@ ORBITS = "granchain.branches.grown.rows.orbits"
 
 
 def opened(page: Page) -> Locator:
-    """The Branches page, opened from its tab in the corner."""
+    """The Branches page, opened from its tab."""
     page.get_by_role("tab", name="branches").click()
-    page.locator("#corner").get_by_role("button", name="open the page").click()
+    page.locator("#tabs").get_by_role("button", name="open the page").click()
     sheet = page.locator('[data-cover="branches"]')
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
     return sheet
@@ -54,7 +54,7 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     sheet.get_by_role("button", name="continue").click()
     page.wait_for_function(f"{ORBITS}?.arm.filter((arm) => arm === 0).length > {arms.count(0) + 5}", timeout=20_000)
     sheet.get_by_role("button", name="stop").click()
-    # the figure holds what the page has been sent piece by piece, and so does the small one in the corner
+    # the figure holds what the page has been sent piece by piece, and so does the small one in its tab
     for kind in ("stable", "unstable"):
         assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.branches.grown.lines.{kind}.x.length") > 0
     page.keyboard.press("Escape")
@@ -68,7 +68,7 @@ def test_a_figure_grows_without_being_made_anew(visit: Visit) -> None:
     before = len(source(page, "branches", "orbits")["x"])
     until(page, lambda: len(source(page, "branches", "orbits")["x"]) > before + 5)
     assert page.evaluate("kept === granchain.branches.figures[0].document")
-    page.evaluate("granchain.nextLook()")  # another look is another figure, with the same points
+    page.evaluate("granchain.nextTheme()")  # another theme is another figure, with the same points
     page.wait_for_function("granchain.branches.figures[0].document && kept !== granchain.branches.figures[0].document")
     until(page, lambda: len(source(page, "branches", "orbits")["x"]) > before + 5)
 

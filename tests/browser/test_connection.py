@@ -140,7 +140,7 @@ def test_a_silent_server_is_seen_and_the_same_page_goes_on(server: Server, page:
 def test_a_socket_that_stays_silent_while_the_server_answers_is_given_up(page: Page) -> None:
     """As behind a proxy that forgot it: neither side learns that it is closed."""
     page.evaluate("window.before = true")
-    page.evaluate("granchain.heard = () => {}")
+    page.evaluate("granchain.answerReceived = () => {}")
     looks_lost(page, SILENT)
     page.wait_for_function("window.granchain && !window.before", timeout=30_000)
     page.wait_for_function(BELONGS, arg=1130, timeout=60_000)

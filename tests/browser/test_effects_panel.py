@@ -15,49 +15,49 @@ def panel(page: Page) -> Locator:
     """The effects tab, enlarged."""
     page.get_by_role("tab", name="effects").click()
     page.get_by_title("Larger, over the curve").click()
-    return page.locator("#corner")
+    return page.locator("#tabs")
 
 
-def effect(corner: Locator, name: str) -> Locator:
+def effect(tab: Locator, name: str) -> Locator:
     """One effect's row."""
-    return corner.locator(f'[data-effect="{name}"]')
+    return tab.locator(f'[data-effect="{name}"]')
 
 
-def activity(corner: Locator, name: str) -> Locator:
+def activity(tab: Locator, name: str) -> Locator:
     """One line of what is computed now."""
-    return corner.locator(f'[data-activity="{name}"]')
+    return tab.locator(f'[data-activity="{name}"]')
 
 
 def test_switching_the_dashpot_changes_equation_slots_and_cost(visit: Visit) -> None:
     page = visit()
-    corner = panel(page)
+    tab = panel(page)
     expect(page.locator("#equation")).to_contain_text("D")
-    expect(effect(corner, "dashpot")).to_contain_text("LinearDashpot")
-    expect(effect(corner, "dashpot").locator(".cost").nth(1)).to_contain_text("ns", timeout=COMPILED)
+    expect(effect(tab, "dashpot")).to_contain_text("LinearDashpot")
+    expect(effect(tab, "dashpot").locator(".cost").nth(1)).to_contain_text("ns", timeout=COMPILED)
     page.get_by_role("switch", name="contact damping").click()
-    expect(effect(corner, "dashpot")).to_contain_text("absent")
+    expect(effect(tab, "dashpot")).to_contain_text("absent")
     expect(page.locator("#equation")).not_to_contain_text("D")
-    expect(effect(corner, "tension")).to_contain_text("no contact can pull")
+    expect(effect(tab, "tension")).to_contain_text("no contact can pull")
     expect(page.get_by_role("switch", name="tension cut")).to_be_disabled()
-    expect(effect(corner, "dashpot").locator(".cost").nth(1)).to_contain_text("%", timeout=COMPILED)
+    expect(effect(tab, "dashpot").locator(".cost").nth(1)).to_contain_text("%", timeout=COMPILED)
     page.get_by_role("switch", name="contact damping").click()
-    expect(effect(corner, "dashpot")).to_contain_text("LinearDashpot")
+    expect(effect(tab, "dashpot")).to_contain_text("LinearDashpot")
     expect(page.locator("#equation")).to_contain_text("D")
 
 
 def test_a_cost_is_not_there_before_it_was_measured(visit: Visit) -> None:
     page = visit()
-    corner = panel(page)
-    words = effect(corner, "account").inner_text()
+    tab = panel(page)
+    words = effect(tab, "account").inner_text()
     assert "not measured yet" in words or "being timed" in words or "compiling" in words
-    expect(effect(corner, "account").locator(".cost").first).to_contain_text("ns", timeout=COMPILED)
+    expect(effect(tab, "account").locator(".cost").first).to_contain_text("ns", timeout=COMPILED)
 
 
 def test_the_foundation_comes_with_its_knob(visit: Visit) -> None:
     page = visit()
-    corner = panel(page)
+    tab = panel(page)
     page.get_by_role("switch", name="foundation").click()
-    expect(effect(corner, "foundation")).to_contain_text("Foundation")
+    expect(effect(tab, "foundation")).to_contain_text("Foundation")
     expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("0.001")
     page.get_by_role("switch", name="foundation").click()
     expect(page.locator('[data-knob="k"] input[type="text"]')).to_have_value("0")
@@ -65,28 +65,28 @@ def test_the_foundation_comes_with_its_knob(visit: Visit) -> None:
 
 def test_the_energy_account_is_told_in_the_status_line(visit: Visit) -> None:
     page = visit()
-    corner = panel(page)
-    expect(activity(corner, "energy account")).to_contain_text("switched off")
+    tab = panel(page)
+    expect(activity(tab, "energy account")).to_contain_text("switched off")
     page.get_by_role("switch", name="energy account").click()
-    expect(effect(corner, "account")).to_contain_text("Balance")
+    expect(effect(tab, "account")).to_contain_text("Balance")
     expect(page.locator("#foot")).to_contain_text("energy balance ", timeout=COMPILED)
-    expect(activity(corner, "energy account")).to_contain_text("closes to")
+    expect(activity(tab, "energy account")).to_contain_text("closes to")
 
 
 def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
     page = visit()
     page.get_by_role("tab", name="effects").click()
-    corner = page.locator("#corner")
-    expect(activity(corner, "resonance curve from rest")).to_contain_text("complete", timeout=120_000)
-    expect(activity(corner, "resonance curve sweeping up")).to_contain_text("not asked for")
-    expect(activity(corner, "Lyapunov exponent")).to_contain_text("off")
-    expect(activity(corner, "live run")).to_contain_text("off")
+    tab = page.locator("#tabs")
+    expect(activity(tab, "resonance curve from rest")).to_contain_text("complete", timeout=120_000)
+    expect(activity(tab, "resonance curve sweeping up")).to_contain_text("not asked for")
+    expect(activity(tab, "Lyapunov exponent")).to_contain_text("off")
+    expect(activity(tab, "live run")).to_contain_text("off")
     page.get_by_label("╌ up").check()
-    expect(activity(corner, "resonance curve sweeping up")).to_contain_text("complete", timeout=120_000)
+    expect(activity(tab, "resonance curve sweeping up")).to_contain_text("complete", timeout=120_000)
     page.get_by_role("button", name="The run goes on").click()
-    expect(activity(corner, "live run")).to_contain_text("computing")
+    expect(activity(tab, "live run")).to_contain_text("computing")
     page.get_by_role("button", name="Play or pause").click()
-    expect(activity(corner, "live run")).to_contain_text("paused")
+    expect(activity(tab, "live run")).to_contain_text("paused")
     page.get_by_title("Larger, over the curve").click()
     page.locator('[data-knob="D"] input[type="range"]').press("ArrowRight")
-    expect(activity(corner, "resonance curve from rest")).to_contain_text("not on the screen", timeout=5000)
+    expect(activity(tab, "resonance curve from rest")).to_contain_text("not on the screen", timeout=5000)

@@ -1,4 +1,4 @@
-"""The page "Hard cases" as a visitor meets it: found from the corner, still until asked, run, drawn, cancelled."""
+"""The page "Hard cases" as a visitor meets it: found from its tab, still until asked, run, drawn, cancelled."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ DRAWN = """() => {
 
 
 def opened(page: Page) -> Locator:
-    """The page, opened from its tab in the corner."""
+    """The page, opened from its tab."""
     page.get_by_role("tab", name="hard cases").click()
-    page.locator("#corner").get_by_role("button", name="open the page").click()
+    page.locator("#tabs").get_by_role("button", name="open the page").click()
     sheet = page.locator('[data-cover="hard"]')
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
     return sheet
@@ -62,9 +62,9 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     assert box is not None and box["width"] > 300 and box["height"] > 250
     expect(one.get_by_role("button", name="run")).to_have_text("run again", timeout=20_000)
     expect(sheet).to_contain_text("1 of 16 cases run")
-    # what was found is told in the corner and stays
+    # what was found is told in its tab and stays
     page.keyboard.press("Escape")
-    expect(page.locator("#corner")).to_contain_text("1 of 16 cases run")
+    expect(page.locator("#tabs")).to_contain_text("1 of 16 cases run")
 
 
 def test_run_all_is_cancelled_at_once(visit: Visit) -> None:

@@ -20,7 +20,7 @@ def opened(page: Page, large: bool = True) -> Locator:
     page.get_by_role("tab", name="map", exact=True).click()
     if large:
         page.get_by_title("Larger, over the curve").click()
-    picture = page.locator("#corner .maphost")
+    picture = page.locator("#tabs .maphost")
     expect(picture).to_be_visible()
     until(page, lambda: len(source(page, "map", "cells").get("number", [])) > 0, seconds=COMPILED / 1000)
     return picture
@@ -39,13 +39,13 @@ def knob(page: Page, name: str) -> Locator:
 
 def overflow(page: Page) -> int:
     """Pixels by which the tab is wider than its place."""
-    return int(page.locator("#corner .body").evaluate("body => body.scrollWidth - body.clientWidth"))
+    return int(page.locator("#tabs .body").evaluate("body => body.scrollWidth - body.clientWidth"))
 
 
 def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     page = visit(SMALL)
     picture = opened(page)
-    expect(page.locator('#corner .maphost[data-done="1"]')).to_be_visible(timeout=COMPILED)  # complete
+    expect(page.locator('#tabs .maphost[data-done="1"]')).to_be_visible(timeout=COMPILED)  # complete
     cells = source(page, "map", "cells")
     assert len(set(cells["number"])) == len(cells["number"]) == 60 * 40
     assert visible(page, "force") and not visible(page, "regime")
@@ -72,7 +72,7 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     assert abs(float(knob(page, "f").input_value()) - cells["x"][row]) < 1.0
     until(page, lambda: abs(source(page, "map", "now")["x"][0] - cells["x"][row]) < 1e-3)
 
-    tip = page.locator("#corner .told")
+    tip = page.locator("#tabs .told")
     picture.focus()
     picture.press("ArrowRight")
     first = tip.inner_text()
@@ -87,8 +87,8 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
 
     knob(page, "D").fill("60")  # another chain has another diagram
     knob(page, "D").press("Enter")
-    expect(page.locator("#corner .maphost.stale")).to_be_visible(timeout=5000)
-    expect(page.locator("#corner .maphost.stale")).to_have_count(0, timeout=20_000)
+    expect(page.locator("#tabs .maphost.stale")).to_be_visible(timeout=5000)
+    expect(page.locator("#tabs .maphost.stale")).to_have_count(0, timeout=20_000)
 
 
 def test_attractors_are_listed_and_one_is_loaded(visit: Visit) -> None:
@@ -96,7 +96,7 @@ def test_attractors_are_listed_and_one_is_loaded(visit: Visit) -> None:
     opened(page, large=False)
     assert overflow(page) <= 0
     page.get_by_role("button", name="all attractors at this setting").click()
-    rows = page.locator("#corner .attractors tbody tr")
+    rows = page.locator("#tabs .attractors tbody tr")
     expect(rows.first).to_be_visible(timeout=COMPILED)
     assert rows.count() == 3  # tests/diagram/test_attractors.py: rest, up and down end differently there
     irregular = rows.filter(has_text="quasi-periodic")

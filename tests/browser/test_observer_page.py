@@ -20,7 +20,7 @@ def drawn(source: str, points: int) -> str:
 
 
 def opened(page: Page) -> Locator:
-    """The page with its first periods, opened from the corner, for the scene of figure 11."""
+    """The page with its first periods, opened from its tab, for the scene of figure 11."""
     page.get_by_label("scene").first.select_option("fig11-free")
     page.get_by_role("tab", name="observer").click()
     page.get_by_role("button", name="open the page").click()
@@ -55,7 +55,7 @@ def test_a_new_start_is_seen_and_nobody_looking_stops_it(visit: Visit) -> None:
     page.wait_for_function(f"{LAST}[1] > 0.05", timeout=20_000)
     page.keyboard.press("Escape")
     expect(sheet).to_be_hidden()
-    # in the corner it goes on, in small
+    # in its tab it goes on, in small
     before = page.evaluate(f"{LAST}[0]")
     page.wait_for_function(f"{LAST}[0] > {before} + 2", timeout=20_000)
     # on another tab nothing is computed

@@ -7,19 +7,13 @@ from typing import Any
 
 import pytest
 from drawn import place, source, tooltips
+from knobs import type_into
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile the tangent flow, on a machine that runs tests.
 COMPILED = 120_000
-
-
-def type_into(page: Page, name: str, text: str) -> None:
-    """Type a value and press Enter."""
-    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
-    field.fill(text)
-    field.press("Enter")
 
 
 def opened(page: Page, words: str = "Stable") -> Locator:
@@ -52,20 +46,20 @@ def axis_title(page: Page, axis: str) -> str:
 
 def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) -> None:
     page = visit()
-    corner = page.locator("#corner")
+    tab = page.locator("#tabs")
     page.wait_for_timeout(600)
     assert page.evaluate("granchain.stability.state.sentence") is None
     page.get_by_role("tab", name="stability").click()
-    expect(corner).to_contain_text("Stable: a disturbance shrinks to 0.36", timeout=COMPILED)
+    expect(tab).to_contain_text("Stable: a disturbance shrinks to 0.36", timeout=COMPILED)
     until(page, lambda: marks(page, "within", large=False) == 22)
     type_into(page, "f", "1130")
-    expect(corner).to_contain_text("3 drive periods, 2.65 ms", timeout=20_000)
+    expect(tab).to_contain_text("3 drive periods, 2.65 ms", timeout=20_000)
     page.get_by_role("tab", name="regimes").click()
     type_into(page, "f", "615")
     page.wait_for_timeout(600)
     assert "3 drive periods" in page.evaluate("granchain.stability.state.sentence")
     page.get_by_role("tab", name="stability").click()
-    expect(corner).to_contain_text("2 drive periods", timeout=20_000)
+    expect(tab).to_contain_text("2 drive periods", timeout=20_000)
 
 
 def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Visit) -> None:
@@ -180,11 +174,11 @@ def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
 @pytest.mark.parametrize("width", [1280, 390])
 def test_nine_tabs_fit_and_arrows_reach_them(visit: Visit, width: int) -> None:
     page = visit(viewport={"width": width, "height": 844})
-    tabs = page.locator("#corner [role=tablist]")
+    tabs = page.locator("#tabs [role=tablist]")
     tabs.evaluate("""tabs => { for (let missing = 9 - tabs.querySelectorAll("[role=tab]").length; missing > 0; missing--) {
       const tab = Object.assign(document.createElement("button"), { textContent: "observer" });
       tabs.insertBefore(tab, tabs.lastChild); } }""")
-    edge = page.locator("#corner").bounding_box()
+    edge = page.locator("#tabs").bounding_box()
     assert edge is not None
     for button in tabs.locator("button").all():
         box = button.bounding_box()

@@ -11,7 +11,12 @@ from pathlib import Path
 
 import pytest
 
+import granchain_core.accuracy
 from app.cli import main
+from app.cli.check import heading
+from granchain_core import Scene, WorkPrecision, scene
+from granchain_core.accuracy import Row
+from granchain_core.hard import CASES, Case, Check, runner, table
 
 ROOT = Path(__file__).parents[2]
 SHORT = ["sec2", "--set", "N=2"]
@@ -61,3 +66,32 @@ def test_an_observers_forces_are_drawn(tmp_path: Path, capsys: pytest.CaptureFix
     force.write_text("time (ms),force (N)\n" + "".join(f"{0.01 * i:.2f},{min(i, 40 - i) / 20:.2f}\n" for i in range(41)))
     assert main(["observe", *SHORT, "--input", str(force), "--json", "--picture", str(tmp_path / "a.html")]) == 0
     assert '"output force, computed"' in json.dumps(document((tmp_path / "a.html").read_text(encoding="utf-8")))
+
+
+def test_accuracy_is_drawn_for_the_accuracy_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def measured(chosen: Scene, *_: object) -> WorkPrecision:
+        return WorkPrecision(chosen, "dop853", "SciPy's DOP853", 1e-11, [Row("rk4", "2 × the live steps", 1e-5, 0.001, 7, 2.0)])
+
+    monkeypatch.setattr(granchain_core.accuracy, "work_precision", measured)
+    assert main(["accuracy", *SHORT, "--set", "accuracy=1e-4", "--picture", str(tmp_path / "a.html")]) == 0
+    drawn = json.dumps(document((tmp_path / "a.html").read_text(encoding="utf-8")))
+    assert '"asked 1e-4"' in drawn and '"error 1e-05, 1 ms, 7 evaluations"' in drawn
+    assert scene("sec2").accuracy != 1e-4
+
+
+def test_the_pictures_of_the_hard_cases_are_drawn_under_their_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def rows(quick: bool, workers: int | None = None):  # type: ignore[no-untyped-def]
+        for case in CASES:
+            yield case.name, [Check(f"{case.name}: one", 0.5, 1.0, True, 0.1, case.hard, case.naive, case.oracle)]
+
+    (quickest,) = (case for case in CASES if case.name == "touch and graze")
+    without = [case if case is quickest else Case(**{**vars(case), "picture": None}) for case in CASES]
+    monkeypatch.setattr(runner, "run_cases", rows)
+    monkeypatch.setattr(table, "CASES", tuple(without))
+    assert main(["check", "--quick", "--json", "--picture", str(tmp_path / "a.html")]) == 0
+    drawn = json.dumps(document((tmp_path / "a.html").read_text(encoding="utf-8")))
+    assert drawn.count('"name": "Div"') == 1 and "Touch and graze" in drawn
+
+
+def test_a_heading_raises_powers() -> None:
+    assert heading("10^5 periods & F^{1/6}") == "<h3>10<sup>5</sup> periods &amp; F<sup>1/6</sup></h3>"

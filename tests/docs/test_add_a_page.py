@@ -49,7 +49,7 @@ dashboard.received({"do": "transmission-say"})
 print(dashboard.views.covers["transmission"].state["sentence"])
 template = dashboard.views.template()
 print(dict(template._render_variables["covers"])["transmission"], "transmission.js" in FILES)
-print([one["words"] for one in dashboard.views.corner.state["pages"] if one["tab"] == "transmission"])
+print([one["words"] for one in dashboard.views.tabs.state["pages"] if one["tab"] == "transmission"])
 """)
     first, second, cover, words = told.splitlines()
     assert first == second == "25.0 % of the largest input force arrives at the wall."

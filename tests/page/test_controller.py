@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 import threading
-import time
 from collections.abc import Callable
 from typing import Any
 
 import pytest
 from bokeh.document import Document
 from bokeh.events import Tap
+from turns import Turns
 
 from app.page import links_and_files
 from app.page.borders import listed, whole
@@ -21,27 +21,18 @@ from granchain_core import BadInput, run, scene
 from granchain_core.experiment.measured import MOST_BYTES
 
 
-class Dashboard(Controller):
+class Dashboard(Turns, Controller):
     """A dashboard whose next turn comes when the test says so, and whose messages to the browser are kept."""
 
     def __init__(self) -> None:
-        self.turns: list[Callable[[], None]] = []
+        Turns.__init__(self)
         self.told: list[dict[str, Any]] = []
-        super().__init__(Document(), Session())
+        Controller.__init__(self, Document(), Session())
         self.views.header.tell = lambda **message: self.told.append(message)  # type: ignore[method-assign]
 
     def later(self, action: Callable[..., None], *arguments: Any) -> None:
         """From any thread."""
         self.turns.append(lambda: self._guarded(action, *arguments))
-
-    def work_off(self, until: Callable[[], bool]) -> None:
-        """Take turns until something holds."""
-        end = time.monotonic() + 20
-        while not until():
-            assert time.monotonic() < end, "did not come"
-            while self.turns:
-                self.turns.pop(0)()
-            time.sleep(0.002)
 
 
 @pytest.mark.parametrize("wrong", [True, False, None, "3", 2.5, 0, 9, float("nan"), [1]])
@@ -87,10 +78,10 @@ def test_a_measurement_is_read_in_the_background(text: str, sentence: str, under
                         lambda text: (threads.append(threading.current_thread().name), read(text))[1])
     dashboard = Dashboard()
     dashboard.received({"do": "csv", "name": "mine.csv", "text": text})
-    assert not dashboard.views.corner.state.get("understood")
-    dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.corner.state.get("understood")))
+    assert not dashboard.views.tabs.state.get("understood")
+    dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
     assert sentence in dashboard.session.sentence
-    assert dashboard.views.corner.state.get("understood", "").startswith(understood)
+    assert dashboard.views.tabs.state.get("understood", "").startswith(understood)
     assert threads[0].startswith("files")
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from app.page.session import LOOKS
+from app.page.share import EXTRAS
 from app.parts import figure_style
 from app.pictures.theme import THEMES, Theme
 
@@ -23,9 +23,9 @@ def properties(selector: str) -> dict[str, str]:
     return {name: value.strip() for name, value in re.findall(r"--([\w-]+):([^;]+);", rule)}
 
 
-@pytest.mark.parametrize("look", THEMES)
-def test_the_page_has_the_colours_of_its_pictures(look: str) -> None:
-    style, theme = {**properties(":root"), **properties(f':root[data-look="{look}"]')}, THEMES[look]
+@pytest.mark.parametrize("name", THEMES)
+def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
+    style, theme = {**properties(":root"), **properties(f':root[data-theme="{name}"]')}, THEMES[name]
     assert style["small"] == f"{theme.small}px" and float(style["line"]) == theme.line
     both = [field.name for field in fields(Theme) if field.name in style and field.name not in ("small", "line")]
     assert {"ink", "soft", "faint", "card", "accent", "steel", "drive", "input", "output"} == set(both)
@@ -33,7 +33,7 @@ def test_the_page_has_the_colours_of_its_pictures(look: str) -> None:
     assert (theme.drive, theme.input, theme.output) == (figure_style.DRIVE, figure_style.INPUT, figure_style.OUTPUT)
 
 
-def test_a_look_is_known_everywhere() -> None:
+def test_a_theme_is_known_everywhere() -> None:
     script = (PAGE.parents[1] / "parts" / "page.js").read_text(encoding="utf-8")
-    (names,) = re.findall(r"const LOOKS = \[([^\]]+)\]", script)
-    assert tuple(THEMES) == LOOKS == tuple(name.strip('" ') for name in names.split(","))
+    (names,) = re.findall(r"const THEMES = \[([^\]]+)\]", script)
+    assert tuple(THEMES) == EXTRAS["look"][1:] == tuple(name.strip('" ') for name in names.split(","))

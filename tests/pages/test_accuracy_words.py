@@ -17,21 +17,22 @@ from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, ways
 from granchain_core.accuracy.naive import lesson
 from granchain_core.integrate import METHODS, Setting
-from granchain_core.steady import settle as settle_module
+from granchain_core.steady import pictures, relax, settle
 from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rule in app/page/active_setting.py is the one of steady/settle: the finest engine of a certified picture."""
+    """The rule in app/page/active_setting.py is the one of steady/relax.py: the finest engine of a certified picture."""
     used: list[Setting] = []
-    engine = settle_module.Engine
+    engine = pictures.Engine
 
     def noting(shown: Any, setting: Setting, *rest: Any, **options: Any) -> Any:
         used.append(setting)
         return engine(shown, setting, *rest, **options)
 
-    monkeypatch.setattr(settle_module, "Engine", noting)
+    for module in (settle, relax, pictures):
+        monkeypatch.setattr(module, "Engine", noting)
     shown = scene("sec2").evolve(accuracy=accuracy)
     picture = settled(shown)
     told = page_setting(shown, picture, live=False)

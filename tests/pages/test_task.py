@@ -8,19 +8,20 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from turns import Turns
 
 from app.page.task import Job, Task
 from app.serve.queues import Queue
 from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 
 
-class Dashboard:
+class Dashboard(Turns):
     """A host whose turn comes when the test says so."""
 
     unsettled = False
 
     def __init__(self) -> None:
-        self.turns: list[Callable[[], None]] = []
+        super().__init__()
         self.failures: list[Exception] = []
         self.said: list[tuple[str, str]] = []
 
@@ -35,15 +36,6 @@ class Dashboard:
     def say(self, status: str, sentence: str) -> None:
         """What the page of the task says."""
         self.said.append((status, sentence))
-
-    def work_off(self, until: Callable[[], bool]) -> None:
-        """Take turns until something holds."""
-        end = time.monotonic() + 20
-        while not until():
-            assert time.monotonic() < end, "did not come"
-            while self.turns:
-                self.turns.pop(0)()
-            time.sleep(0.002)
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bokeh.models import ColumnDataSource
 
-from app.pictures.accuracy import Asked, accuracy, looks, marks, points
+from app.pictures.accuracy import Asked, accuracy, marks, points, styles
 from app.pictures.lesson import lesson, naive_columns
 from app.pictures.theme import THEMES
 from granchain_core.accuracy import Row, ways
@@ -17,7 +17,7 @@ ROWS = [Row("rk4", "1 × the live steps", float("inf"), 0.0, 0, 1.0, "It was not
 
 
 def test_every_way_has_a_mark_of_its_own_without_colour() -> None:
-    shown = looks()
+    shown = styles()
     assert list(shown) == list(ways())
     assert len({(one["marker"], str(one["dash"]), one["filled"]) for one in shown.values()}) == len(shown)
 

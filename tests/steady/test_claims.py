@@ -10,7 +10,7 @@ import pytest
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting, certified
 from granchain_core.kernels.strobes import periodicity as section
-from granchain_core.steady import curve, regime, settle
+from granchain_core.steady import alone, pictures, regime, relax, settle
 
 
 def turning(rate: float, count: int = 420) -> np.ndarray:
@@ -81,35 +81,35 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     way = settle.run_until_settled(scene("sec2"), None, None)
     engine = Engine(way.scene, Setting("rk4-split"), 16)
     engine.start(way.engine.state)
-    monkeypatch.setattr(settle, "relax", lambda *words: (engine, 0.0))
+    monkeypatch.setattr(pictures, "relax", lambda *words: (engine, 0.0))
     stated = []
     for decay in (0.1, 0.9):
         monkeypatch.setattr(regime.Regime, "slowness", decay)
-        stated.append(settle.certified_picture(way, 16, 0.0, "rest").run.error_estimate)
+        stated.append(pictures.certified_picture(way, 16, 0.0, "rest").run.error_estimate)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
 def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same factor 1/(1 − |μ|) for a point of a curve that was settled by itself."""
     way = settle.run_until_settled(scene("sec2"), None, None)
-    monkeypatch.setattr(curve, "run_until_settled", lambda *words: way)
+    monkeypatch.setattr(alone, "run_until_settled", lambda *words: way)
     stated = []
     for modulus in (0.1, 0.9):
         engine = Engine(way.scene, certified(1e-6), 1)
         engine.start(way.engine.state)
-        monkeypatch.setattr(curve, "relax", lambda *words, engine=engine: (engine, 0.0))
+        monkeypatch.setattr(alone, "relax", lambda *words, engine=engine: (engine, 0.0))
         way.regime = replace(way.regime, multiplier=modulus)
-        stated.append(curve.steady_state(way.scene, None, way.stop).errors)
+        stated.append(alone.steady_state(way.scene, None, way.stop).errors)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
 def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
     way, seen = settle.run_until_settled(scene("sec2"), None, None), []
-    real = settle.changes
+    real = relax.changes
     monkeypatch.setattr(regime.Regime, "slowness", 0.99)
-    monkeypatch.setattr(settle, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
-    _, bound = settle.relax(way, 1e-6)
+    monkeypatch.setattr(relax, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
+    _, bound = relax.relax(way, 1e-6)
     assert bound <= 0.3e-6
     assert bound == pytest.approx(99.0 * float(seen[-1][0]), rel=1e-12)
 

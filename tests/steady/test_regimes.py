@@ -161,7 +161,7 @@ def test_up_and_down_sweeps_differ_where_there_is_hysteresis():
 
 def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
     """Its point carries the sentence and NaN; the others are there, in every start."""
-    from granchain_core.steady import curve as module
+    from granchain_core.steady import alone as module
 
     true = module.steady_state
 

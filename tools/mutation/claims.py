@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_SECTION, _REGIME, _SETTLE = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settle.py"
+_SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/pictures.py"
 _RUN, _STATED, _METHODS = "run/run.py", "run/stated.py", "integrate/methods.py"
 
 STEADY = (
@@ -24,11 +24,11 @@ STEADY = (
            "a slow approach with an exponent near zero is called quasi-periodic", k.CLAIMS),
     Mutant("drift-is-quasi-periodic", _REGIME, "and returns_near(strobes)", "",
            "a section that never comes back is called a closed curve", k.CLAIMS),
-    Mutant("settled-error-without-distance", _SETTLE, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",
+    Mutant("settled-error-without-distance", _PICTURES, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",
            "a settled picture states no error of its integration", k.SETTLED),
-    Mutant("settled-error-not-amplified", _SETTLE, "    integration *= still\n", "",
+    Mutant("settled-error-not-amplified", _PICTURES, "    integration *= still\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
-    Mutant("relaxed-by-change", _SETTLE, "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
+    Mutant("relaxed-by-change", "steady/relax.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
            "the certified orbit is left too early", k.CLAIMS_SETTLED),
     Mutant("shadow-not-pulled-back", "kernels/rk4/lyapunov.py", "* (start / now)", "* 1.0",
            "the exponent is that of a distance long since large", k.LYAPUNOV),

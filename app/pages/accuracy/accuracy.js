@@ -3,15 +3,6 @@
 import { part } from "../../parts/dom.js";
 import { Embedded, fillAccuracy, showAccuracy } from "../../parts/embedded.js";
 
-const STATUS = {
-  none: "",
-  waiting: "waiting for its turn …",
-  compiling: "compiling the kernels of all methods: some 20 s, only the first time on this computer …",
-  measuring: "measuring …",
-  done: "",
-  cancelled: "cancelled; what was measured stays",
-  failed: "",
-};
 const percent = (error) =>
   error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`;
 
@@ -157,7 +148,7 @@ export function render({ model }) {
     page.accuracy = {
       drawn: state.drawn ?? {},
       told,
-      status: state.status,
+      running: state.running,
       done: state.done,
       small: model.figures.small,
     };
@@ -174,8 +165,8 @@ export function render({ model }) {
   };
   const show = () => {
     const { state } = model;
-    const running = ["waiting", "compiling", "measuring"].includes(state.status);
-    status.textContent = STATUS[state.status] ?? "";
+    const { running } = state;
+    status.textContent = state.progress ?? "";
     meter.hidden = cancel.hidden = !running;
     again.hidden = running || !state.status || state.status === "none";
     meter.value = state.done ?? 0;

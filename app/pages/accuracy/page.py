@@ -18,6 +18,7 @@ from ...page.activities import IDLE, OFF, RUNNING, Activity
 from ...page.format import duration, short_error
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.progress import progress
 from ...page.task import Job, Task
 from ...pictures.accuracy import Asked
 from ...serve.queues import MEASUREMENTS
@@ -129,7 +130,7 @@ class AccuracyPage(Page):
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status
-        self._view.display(status=status, failure=sentence, done=self.done)
+        self._view.display(**progress("accuracy", status), failure=sentence, done=self.done)
 
     def _sentence(self, best: Row | None) -> str:
         asked = short_error(self._host.session.scene.accuracy)

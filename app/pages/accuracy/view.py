@@ -12,8 +12,7 @@ from bokeh.embed import json_item
 
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, ways
 
-from ...page.format import short_error
-from ...page.frames import prefixed
+from ...page.format import prefixed, short_error
 from ...parts.component import text
 from ...parts.drawn import Drawn
 from ...pictures.accuracy import Asked, accuracy, marks, points
@@ -25,22 +24,26 @@ _LOST = 1e-4
 """References that differ by more than this belong to a motion that nobody can follow for ten periods."""
 
 
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """Error against time without points, for the page and, small, for its tab."""
+    return {name: json_item(accuracy([], Asked(1e-6), theme, compact))
+            for name, compact in (("page", False), ("small", True))}
+
+
 class Accuracy(Drawn):
     """The page over the pictures. `state` has the text and the figures; what is drawn into them comes as messages."""
 
     _esm = module("accuracy.js")
     _stylesheets = [text("controls.css"), text("accuracy.css")]  # noqa: RUF012
+    empty_figures = staticmethod(empty_figures)
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, **params)
         self._lesson: Lesson | None = None
 
-    def empty_figures(self, theme: Theme) -> dict[str, Any]:
-        """Error against time without points, for the page and, small, for the corner."""
-        return empty_figures(theme)
-
     def dress(self, theme: Theme) -> None:
-        """Another look, for the forces too."""
+        """Another theme, for the forces too."""
         super().dress(theme)
         if self._lesson is not None:
             self.teach(self._lesson)
@@ -64,13 +67,6 @@ class Accuracy(Drawn):
         self._lesson = None
         self.display(rows=[], drawn={}, agreement_words="", reference="", second="")
         self.tell(type="no-lesson")
-
-
-@cache
-def empty_figures(theme: Theme) -> dict[str, Any]:
-    """Error against time without points, for the page and, small, for the corner."""
-    return {name: json_item(accuracy([], Asked(1e-6), theme, compact))
-            for name, compact in (("page", False), ("small", True))}
 
 
 def described_ways() -> list[dict[str, Any]]:

@@ -3,16 +3,6 @@
 import { part } from "../../parts/dom.js";
 import { Embedded, Grown } from "../../parts/embedded.js";
 
-const STATUS = {
-  none: "",
-  waiting: "waiting for its turn …",
-  compiling: "compiling the kernels of branches: some 40 s, only the first time on this computer …",
-  settling: "looking for the first orbit …",
-  following: "following …",
-  done: "",
-  cancelled: "stopped; what was found stays",
-  failed: "",
-};
 const SPECIAL = ["fold", "period_doubling", "neimark_sacker", "grazing"];
 const WORDS = "largest output force of periodic orbits over drive frequency";
 // Below this width in pixels the legend stands in two columns.
@@ -29,7 +19,7 @@ export function render({ model }) {
   period.setAttribute("aria-label", "period of the orbits");
   period.append(
     new Option("period as settled", ""),
-    ...[1, 2, 3, 4, 5, 6, 7, 8].map((n) => new Option(`period ${n}`, n)),
+    ...Array.from({ length: model.state.longest_period }, (_, i) => new Option(`period ${i + 1}`, i + 1)),
   );
   const start = button(
     "follow from here",
@@ -83,8 +73,8 @@ export function render({ model }) {
   };
   const show = () => {
     const { state } = model;
-    const running = ["waiting", "compiling", "settling", "following"].includes(state.status);
-    status.textContent = STATUS[state.status] ?? "";
+    const running = Boolean(state.running);
+    status.textContent = state.progress ?? "";
     start.hidden = running;
     cancel.hidden = !running;
     on.hidden = running || !state.unfinished || !grown.rows.orbits;

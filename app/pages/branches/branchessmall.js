@@ -1,4 +1,4 @@
-// The Branches tab of the corner: the small version of the picture and the way to the page.
+// The Branches tab: the small version of the picture and the way to the page.
 
 import { part } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";

@@ -16,15 +16,13 @@ from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 from ...page.borders import listed, whole
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.progress import progress
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task
 from ...pictures.branches import Growth
 from ...serve.delays import BRANCH_EVERY
 from ...serve.queues import LONG, Stop
-from .view import Branches
-
-#: Drive periods of an orbit that can be asked for here.
-_LONGEST_PERIOD = 8
+from .view import LONGEST_PERIOD, Branches
 
 
 @dataclass
@@ -77,7 +75,7 @@ class BranchesPage(Page):
     def _start(self, message: dict[str, Any]) -> None:
         period = message.get("period")
         if period is not None:
-            period = whole("period of a branch", period, 1, _LONGEST_PERIOD)
+            period = whole("period of a branch", period, 1, LONGEST_PERIOD)
         scene, picture = self._host.session.scene, self._host.session.picture
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)
@@ -168,6 +166,6 @@ class BranchesPage(Page):
         words = f"{orbits} orbits, {special} special points" if arms else ""
         if status == "following":
             words += "; now at " + " and ".join(f"{arm.points[-1].knob:.1f} Hz" for arm in arms if not arm.ended)
-        self._view.display(status=status, failure=sentence, words=words,
+        self._view.display(**progress("branches", status), failure=sentence, words=words,
                            ended=[arm.reason for arm in arms if arm.ended],
                            unfinished=any(not arm.ended for arm in arms))

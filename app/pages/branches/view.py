@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -13,20 +14,23 @@ from ...pictures.branches import branches
 from ...pictures.theme import Theme
 from ...scripts import module
 
+#: Drive periods of an orbit that can be asked for here.
+LONGEST_PERIOD = 8
+
+
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """The figure without branches, for the page and, small, for its tab."""
+    return {name: json_item(branches([], theme, compact=compact)) for name, compact in (("page", False),
+                                                                                        ("small", True))}
+
 
 class Branches(Drawn):
     """The page over the pictures; the growing branch comes in messages."""
 
     _esm = module("branches.js")
     _stylesheets = [text("controls.css"), text("branches.css")]  # noqa: RUF012
+    empty_figures = staticmethod(empty_figures)
 
-    def empty_figures(self, theme: Theme) -> dict[str, Any]:
-        """The figure without branches, for the page and, small, for the corner."""
-        return empty_figures(theme)
-
-
-@cache
-def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The figure without branches, for the page and, small, for the corner."""
-    return {name: json_item(branches([], theme, compact=compact)) for name, compact in (("page", False),
-                                                                                        ("small", True))}
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, state={"longest_period": LONGEST_PERIOD}, **params)

@@ -9,8 +9,6 @@ const raised = (text) =>
     .split(/(\^\{[^}]+\}|\^-?\d+)/)
     .map((piece) => (piece.startsWith("^") ? part("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
 const PATIENCE = 20; // seconds after which it is told why the first run on a computer lasts
-const STATUS = { waiting: "waiting for its turn …", drawing: "drawing …", cancelled: "cancelled" };
-const BUSY = ["waiting", "running", "drawing"];
 
 function rowTable(rows) {
   const body = part("tbody");
@@ -66,14 +64,13 @@ class Card {
   }
 
   show(result) {
-    const { status, rows, time, failure } = result ?? {};
+    const { status, progress, running: busy, rows, time, failure } = result ?? {};
     if (status === "running") this.began ??= performance.now();
     else this.began = null;
-    this.told = { status, time };
-    const busy = BUSY.includes(status);
-    this.run.disabled = busy;
+    this.told = { status, progress, time };
+    this.run.disabled = Boolean(busy);
     this.run.textContent = rows && !busy ? "run again" : "run";
-    this.root.classList.toggle("old", busy && status !== "drawing" && Boolean(rows));
+    this.root.classList.toggle("old", Boolean(busy) && status !== "drawing" && Boolean(rows));
     this.warning.textContent = failure ?? "";
     this.warning.hidden = !failure;
     if (rows !== this.shown) this.rows.replaceChildren(...(rows ? [rowTable(rows)] : []));
@@ -82,11 +79,11 @@ class Card {
   }
 
   tick() {
-    const { status, time } = this.told ?? {};
+    const { status, progress, time } = this.told ?? {};
     const seconds = this.began === null ? 0 : Math.round((performance.now() - this.began) / 1000);
     const first = seconds > PATIENCE ? "; the first run on a computer compiles kernels, which can take minutes" : "";
     this.status.textContent =
-      status === "running" ? `running, ${seconds} s${first} …` : (STATUS[status] ?? (time ? `took ${time}` : ""));
+      status === "running" ? `running, ${seconds} s${first} …` : progress || (time ? `took ${time}` : "");
   }
 
   load(message) {

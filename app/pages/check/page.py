@@ -12,6 +12,7 @@ from granchain_core.hard import CASES, Case, Check, Picture
 from ...page.activities import IDLE, OFF, RUNNING, Activity
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.progress import progress
 from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
 from .view import Hard, described, summary
@@ -47,7 +48,7 @@ class HardPage(Page):
         """Stop the case under way and forget those that wait; what was found stays."""
         self._give_up()
         for name in self.waiting:
-            self._put(name, status="cancelled")
+            self._put(name, **progress("hard", "cancelled"))
         self.waiting = []
         self._show()
 
@@ -76,7 +77,7 @@ class HardPage(Page):
             if case.name not in self.waiting:
                 self.waiting.append(case.name)
                 self._asked += 1
-                self._put(case.name, status="waiting", failure="")
+                self._put(case.name, **progress("hard", "waiting"), failure="")
         if idle:
             self._begin_next()
         self._show()
@@ -90,7 +91,7 @@ class HardPage(Page):
     # In the measuring thread
 
     def _work(self, case: Case, process: CaseProcess, job: Job) -> None:
-        job.later(self._change, case.name, status="running")
+        job.later(self._change, case.name, **progress("hard", "running"))
         try:
             answers = process.measure(case, job.stop)
             job.later(self._measured, case.name, next(answers))
@@ -102,7 +103,7 @@ class HardPage(Page):
 
     def _measured(self, name: str, rows: list[Check]) -> None:
         self.rows[name] = rows
-        self._change(name, status="drawing", **described(name, rows))
+        self._change(name, **progress("hard", "drawing"), **described(name, rows))
 
     def _draw(self, name: str, picture: Picture | None) -> None:
         if picture is not None:
@@ -116,7 +117,7 @@ class HardPage(Page):
         else:
             self._process.close()
             self._process = CaseProcess()
-        self._change(name, status=status, failure=sentence)
+        self._change(name, **progress("hard", status), failure=sentence)
 
     def _put(self, name: str, **changes: Any) -> None:
         self._shown = {**self._shown, name: {**self._shown.get(name, {}), **changes}}

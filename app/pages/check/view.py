@@ -34,7 +34,7 @@ class Hard(Component):
         self.tell(**picture_message(name, picture, self._theme))
 
     def dress(self, theme: Theme) -> None:
-        """All pictures in another look."""
+        """Draw all pictures anew in another theme."""
         if theme != self._theme:
             self._theme = theme
             for name, picture in self._drawn.items():

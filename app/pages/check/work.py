@@ -13,7 +13,7 @@ from multiprocessing.process import BaseProcess
 from granchain_core import Cancelled
 from granchain_core.hard import CASES, Case, Check, Picture, run_case
 
-from ...serve.delays import STOP_LOOK
+from ...serve.delays import STOP_POLL
 from ...serve.queues import Stop
 
 #: The pictures of the page come first where there are fewer cores than work.
@@ -67,7 +67,7 @@ class CaseProcess:
         try:
             asked.send(case.name)
             for _ in range(2):
-                while not asked.poll(STOP_LOOK):
+                while not asked.poll(STOP_POLL):
                     if stop:
                         raise Cancelled
                 yield asked.recv()

@@ -38,11 +38,11 @@ export function render({ model }) {
   show();
   // A curve nobody looks at is not computed.
   let onScreen = true;
-  const look = () => model.send_msg({ do: "curve-visible", value: onScreen && !window.granchain.covered });
+  const tellVisible = () => model.send_msg({ do: "curve-visible", value: onScreen && !window.granchain.covered });
   new IntersectionObserver(([entry]) => {
     onScreen = entry.isIntersecting;
-    look();
+    tellVisible();
   }).observe(document.getElementById("curve"));
-  window.granchain.on("cover", look);
+  window.granchain.on("cover", tellVisible);
   return root;
 }

@@ -14,8 +14,8 @@ from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Feature, Measured
 from granchain_core.steady.resonance import Place, place_of
 
-from ...page.format import short_error
-from ...page.frames import prefixed, round_up
+from ...page.format import prefixed, short_error
+from ...page.frames import round_up
 from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
 from ...pictures.regimes import REGIMES, regime_key
 
@@ -220,13 +220,13 @@ class Curve:
 
     def _columns(self, points: list[CurvePoint]) -> dict[str, Any]:
         points = sorted(points, key=lambda point: point.frequency)
-        looks = [REGIMES[regime_key(point)] for point in points]
+        styles = [REGIMES[regime_key(point)] for point in points]
         return {
             "frequency": [point.frequency for point in points],
             "force": [point.max_output_force / self._scale[0] for point in points],
-            "marker": [look[0] for look in looks],
-            "colour": [look[1] for look in looks],
-            "size": [look[2] for look in looks],
+            "marker": [style[0] for style in styles],
+            "colour": [style[1] for style in styles],
+            "size": [style[2] for style in styles],
             "regime": [point.regime.sentence for point in points],
             "error": ["not estimated" if point.error_estimate is None else short_error(point.error_estimate)
                       for point in points],

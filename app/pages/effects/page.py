@@ -24,7 +24,7 @@ from ...serve.queues import MEASUREMENTS
 
 
 class EffectsPanel(Page):
-    """While it is on the screen it looks at the jobs, and has the cost of one effect after the other measured."""
+    """While it is on the screen it lists what is being computed and measures the cost of one effect after the other."""
 
     def __init__(self, host: Host, view: Component) -> None:
         self._host = host
@@ -77,7 +77,7 @@ class EffectsPanel(Page):
         self._open = bool(message.get("value"))
         self._turn += 1
         if self._open:
-            self._look(self._turn)
+            self._poll(self._turn)
 
     def _switch(self, message: dict[str, Any]) -> None:
         name, on = message.get("name"), message.get("value")
@@ -90,13 +90,13 @@ class EffectsPanel(Page):
         finally:
             self._show()
 
-    def _look(self, turn: int) -> None:
+    def _poll(self, turn: int) -> None:
         """Again and again while the panel is open."""
         if not self._open or turn != self._turn:
             return
         self._next()
         self._show()
-        self._host.after(ACTIVITIES_EVERY, self._look, turn)
+        self._host.after(ACTIVITIES_EVERY, self._poll, turn)
 
     def _next(self) -> None:
         """Begin what is to be done next: compile for one effect, or time it."""

@@ -9,7 +9,8 @@ export const MAP = {
   now: { x: [], y: [] },
   done: 0,
   status: "none",
-  sentence: "",
+  running: false,
+  words: "",
   stale: false,
   attractors: [],
   search: "none",
@@ -18,6 +19,9 @@ export const MAP = {
   // Redraws what is on the screen; set while the tab is open.
   redraw: () => {},
 };
+
+// What a computation says: why it failed, else how far it is.
+const wordsOf = ({ sentence, progress }) => sentence || progress;
 
 export function mapMessage(message) {
   if (message.type === "map-head") {
@@ -28,9 +32,10 @@ export function mapMessage(message) {
     MAP.done = message.done;
   } else if (message.type === "map-now") MAP.now = message.now;
   else if (message.type === "map-stale") MAP.stale = true;
-  else if (message.type === "map-status") Object.assign(MAP, { status: message.status, sentence: message.sentence });
+  else if (message.type === "map-status")
+    Object.assign(MAP, { status: message.status, running: message.running, words: wordsOf(message) });
   else if (message.type === "map-attractors")
-    Object.assign(MAP, { attractors: message.attractors, search: message.status, searched: message.sentence });
+    Object.assign(MAP, { attractors: message.attractors, search: message.status, searched: wordsOf(message) });
   else return;
   MAP.redraw(message.type);
 }

@@ -4,28 +4,18 @@ import { part } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
 import { cellAt, finest, MAP, valuesOf } from "./cells.js";
 
-const MAP_STATUS = {
-  none: "",
-  waiting: "waiting for the curve …",
-  compiling: "compiling the kernels: some 10 s, only the first time on this computer …",
-  computing: "",
-  done: "",
-  cancelled: "stopped; what is there stays",
-  failed: "",
-};
-
 const swatch = (colour) => {
   const square = part("i", { className: "swatch" });
   square.style.background = colour;
   return square;
 };
 
-// Sends the look of the page, whose colours the figure has; set while the tab is open.
-let look = () => {};
-window.granchain.on("look", () => look());
+// Sends the theme of the page, whose colours the figure has; set while the tab is open.
+let sendTheme = () => {};
+window.granchain.on("theme", () => sendTheme());
 
 export function mapTab(model) {
-  look = () => model.send_msg({ do: "map-look", value: window.granchain.look() });
+  sendTheme = () => model.send_msg({ do: "map-theme", value: window.granchain.theme() });
   const button = (text, action, properties = {}) => {
     const element = part("button", { type: "button", textContent: text, ...properties });
     element.addEventListener("click", action);
@@ -98,12 +88,7 @@ export function mapTab(model) {
 
   const listed = () => {
     if (MAP.search !== "") {
-      const words = {
-        none: "",
-        searching: "from rest, both sweeps and random states …",
-        compiling: MAP_STATUS.compiling,
-        failed: MAP.searched,
-      }[MAP.search];
+      const words = MAP.searched;
       found.replaceChildren(...(words ? [part("p", { className: "soft", textContent: words })] : []));
       return;
     }
@@ -137,9 +122,8 @@ export function mapTab(model) {
   };
   const redraw = (what) => {
     for (const choice of choices) choice.setAttribute("aria-pressed", String(choice.value === MAP.shown));
-    const running = ["waiting", "compiling", "computing"].includes(MAP.status);
-    status.textContent = MAP.stale ? "the knobs have moved …" : MAP.sentence || MAP_STATUS[MAP.status];
-    meter.hidden = stop.hidden = !running;
+    status.textContent = MAP.stale ? "the knobs have moved …" : MAP.words;
+    meter.hidden = stop.hidden = !MAP.running;
     again.hidden = MAP.status !== "cancelled";
     meter.value = MAP.done;
     host.classList.toggle("stale", MAP.stale);
@@ -151,7 +135,7 @@ export function mapTab(model) {
   MAP.redraw = (what) => {
     if (host.isConnected) redraw(what);
   };
-  look();
+  sendTheme();
   requestAnimationFrame(() => redraw());
   const segments = part("span", { className: "segments" }, ...choices);
   return [

@@ -18,6 +18,7 @@ from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 from ...page.borders import listed
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.progress import progress
 from ...page.session import slider_range
 from ...page.task import Job, Task
 from ...parts.component import Component
@@ -61,9 +62,9 @@ class MapTab(Page):
         self._found_at = ""
         self.status = "none"
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "map-visible": self._look, "map-stop": lambda _: self._cancel(), "map-compute": lambda _: self._begin(),
-            "map-choose": self._choose, "map-attractors": lambda _: self._find(), "map-load": self._load,
-            "map-look": self._dress,
+            "map-visible": self._set_visible, "map-theme": self._dress, "map-stop": lambda _: self._cancel(),
+            "map-compute": lambda _: self._begin(), "map-choose": self._choose,
+            "map-attractors": lambda _: self._find(), "map-load": self._load,
         }
 
     def close(self) -> None:
@@ -88,7 +89,7 @@ class MapTab(Page):
     def _stale(self) -> bool:
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
 
-    def _look(self, message: dict[str, Any]) -> None:
+    def _set_visible(self, message: dict[str, Any]) -> None:
         self._visible = bool(message.get("value"))
         if not self._visible:
             self._cancel()
@@ -103,7 +104,7 @@ class MapTab(Page):
         self._show_attractors("" if self._found else "none")
 
     def _dress(self, message: dict[str, Any]) -> None:
-        """The look of the page, which the figure follows."""
+        """The theme of the page, which the figure follows."""
         theme = THEMES.get(str(message.get("value")), self._theme)
         if theme != self._theme:
             self._theme = theme
@@ -161,7 +162,7 @@ class MapTab(Page):
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status
-        self._tell(type="map-status", status=status, sentence=sentence)
+        self._tell(type="map-status", **progress("map", status), sentence=sentence)
 
     def _send_all(self) -> None:
         assert self._grid is not None
@@ -209,7 +210,7 @@ class MapTab(Page):
 
     def _show_attractors(self, status: str, sentence: str = "") -> None:
         shown = self._shown if self._found else []
-        self._tell(type="map-attractors", status=status, sentence=sentence, attractors=shown)
+        self._tell(type="map-attractors", **progress("attractors", status), sentence=sentence, attractors=shown)
 
     def _forget_attractors(self) -> None:
         self._search.cancel()

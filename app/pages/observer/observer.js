@@ -181,7 +181,7 @@ export function render({ model }) {
   const tell = () => {
     const { state } = model;
     said.textContent = state.sentence ?? "";
-    status.textContent = state.status ?? "";
+    status.textContent = state.progress ?? "";
     rates.textContent = state.predicted
       ? `a drive period: predicted × ${state.predicted.toPrecision(4)}${state.measured ? `, measured × ${state.measured.toPrecision(4)}` : ""}`
       : "";
@@ -238,7 +238,7 @@ export function render({ model }) {
     for (const one of drawings) one.measure();
   };
   new ResizeObserver(measure).observe(stage);
-  page.on("look", measure);
+  page.on("theme", measure);
   page.on("play", (value) => {
     playing = value;
   });

@@ -12,12 +12,11 @@ from granchain_core.warm import CERTIFIED, OBSERVER
 
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.progress import progress
 from ...page.task import Job, Task
 from ...serve.queues import PICTURES
 from .view import Observer
 from .work import ObserverRun, Step
-
-_COMPILING = "Compiling the observer's kernels: some 10 s, only the first time on this computer."
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class ObserverPage(Page):
 
     def _said(self, status: str, _: str) -> None:
         if status == "compiling":
-            self._view.display(status=_COMPILING)
+            self._view.display(**progress("observer", status))
         elif self._asked:
             self._more()
 
@@ -96,5 +95,6 @@ class ObserverPage(Page):
 
     def _show(self, moved: _Moved) -> None:
         run = moved.run
-        self._view.display(status="", sentence=run.sentence, predicted=run.predicted, measured=run.measured)
+        self._view.display(**progress("observer", "done"), sentence=run.sentence, predicted=run.predicted,
+                           measured=run.measured)
         self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

@@ -11,7 +11,7 @@ from bokeh.embed import json_item
 
 from granchain_core import Scene
 
-from ...page.frames import prefixed
+from ...page.format import prefixed
 from ...parts.chain import PALETTE
 from ...parts.component import text
 from ...parts.drawn import Drawn
@@ -24,19 +24,23 @@ _TRANSIENT = 2
 """Drive periods after a start that no multiplier describes."""
 
 
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """The distance over time without its points, for the page and, small, for its tab."""
+    return {name: json_item(observer([], [], [], theme, compact))
+            for name, compact in (("page", False), ("small", True))}
+
+
 class Observer(Drawn):
     """The page over the pictures; every period comes as one message."""
 
     _esm = module("observer.js")
     _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012
+    empty_figures = staticmethod(empty_figures)
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state=first_state(), **params)
         self._anchor: tuple[float, float] | None = None
-
-    def empty_figures(self, theme: Theme) -> dict[str, Any]:
-        """The distance over time without its points, for the page and, small, for the corner."""
-        return empty_figures(theme)
 
     def step(self, step: Step, scene: Scene, began: bool, since: int, factor: float | None) -> None:
         """Send one period, and what is predicted from where the transient is over, two periods after the start."""
@@ -51,14 +55,7 @@ class Observer(Drawn):
 
 def first_state() -> dict[str, Any]:
     """What the page knows before anything was computed."""
-    return {"palette": PALETTE, "kappa": 0.0, "status": "", "sentence": ""}
-
-
-@cache
-def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The distance over time without its points, for the page and, small, for the corner."""
-    return {name: json_item(observer([], [], [], theme, compact))
-            for name, compact in (("page", False), ("small", True))}
+    return {"palette": PALETTE, "kappa": 0.0, "progress": "", "sentence": ""}
 
 
 def step_message(step: Step, scene: Scene, began: bool) -> dict[str, Any]:

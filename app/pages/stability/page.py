@@ -18,6 +18,7 @@ from ...page.activities import IDLE, OFF, RUNNING, Activity
 from ...page.borders import whole
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.progress import progress
 from ...page.task import Job, Task
 from ...pictures.multipliers import plane_state
 from ...serve.delays import ANALYSIS_QUIET
@@ -187,7 +188,7 @@ class StabilityPage(Page):
         before = self._trail.before(orbit.period) if analysis.target.followed else []
         self._view.need_figures()
         self._view.display(
-            status="done", failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
+            **progress("stability", "done"), failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
             searched=not analysis.target.followed, rank=self._rank, period=orbit.period,
             count=len(orbit.multipliers), told=multiplier_sentence(orbit, self._rank),
             plane=plane_state(orbit, self._observer, self._rank, before))
@@ -211,8 +212,9 @@ class StabilityPage(Page):
     def _clear(self, sentence: str) -> None:
         """There are no multipliers to show; why is told."""
         self._analysis, self.status = None, "none"
-        self._view.display(status="none", failure="", stale=False, sentence=sentence, plane=plane_state(None), count=0,
-                           told="", searched=False, evidence=[], observer=self._observer)
+        self._view.display(**progress("stability", "none"), failure="", stale=False, sentence=sentence,
+                           plane=plane_state(None), count=0, told="", searched=False, evidence=[],
+                           observer=self._observer)
         self._view.tell(type="no-mode")
         if self._host.session.mode == "live":
             self._view.tell(type="no-section")
@@ -220,7 +222,7 @@ class StabilityPage(Page):
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status
-        self._view.display(status=status, failure=sentence)
+        self._view.display(**progress("stability", status), failure=sentence)
         if status == "failed" and self._analysis is None and self._target is not None:
             self._view.display(sentence=sentence, failure="", plane=plane_state(None), count=0, told="",
                                stale=False)

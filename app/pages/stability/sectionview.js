@@ -5,14 +5,15 @@ import { Embedded } from "../../parts/embedded.js";
 
 // Which bead, at which phase of the drive.
 export class SectionView {
-  constructor(send) {
+  constructor(send, phases) {
+    this.phases = phases;
     this.beads = part("select", { title: "the bead whose section is shown" });
     this.beads.setAttribute("aria-label", "bead of the section");
-    this.phase = part("input", { type: "range", min: 0, max: 47, value: 0, step: 1 });
+    this.phase = part("input", { type: "range", min: 0, max: phases - 1, value: 0, step: 1 });
     this.phase.setAttribute("aria-label", "drive phase of the section");
     this.said = part("output");
     this.close = part("input", { type: "checkbox" });
-    this.close.addEventListener("change", () => this.look());
+    this.close.addEventListener("change", () => this.showRanges());
     this.told = part("span", { className: "soft" });
     this.host = part("div", { className: "picture" });
     this.figure = new Embedded(this.host, () => this.fill());
@@ -47,7 +48,7 @@ export class SectionView {
   }
 
   say() {
-    this.said.textContent = `${(Number(this.phase.value) / 48).toFixed(2)} T`;
+    this.said.textContent = `${(Number(this.phase.value) / this.phases).toFixed(2)} T`;
   }
 
   load(message) {
@@ -57,14 +58,14 @@ export class SectionView {
   }
 
   // Which part of the plane: all of it, or that of the second half of the points.
-  look() {
+  showRanges() {
     const ranges = this.close.checked ? this.data?.near : this.data?.drawn;
     if (ranges) for (const name of ["displacements", "velocities"]) this.figure.set(name, ranges[name]);
   }
 
   fill() {
     for (const [name, properties] of Object.entries(this.data?.drawn ?? {})) this.figure.set(name, properties);
-    this.look();
+    this.showRanges();
   }
 
   draw(state, item) {

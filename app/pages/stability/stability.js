@@ -5,11 +5,6 @@ import { Embedded, fillModels } from "../../parts/embedded.js";
 import { ModeView } from "./mode.js";
 import { SectionView } from "./sectionview.js";
 
-const STATUS = {
-  compiling: "compiling the tangent flow: some 20 s, only the first time for this set of effects …",
-  computing: "computing …",
-  searching: "searching …",
-};
 function evidenceTable(rows) {
   const body = part("tbody");
   for (const { name, value, meaning } of rows)
@@ -24,11 +19,11 @@ function evidenceTable(rows) {
   return part("table", { className: "evidence" }, body);
 }
 
-function searchRow(send) {
+function searchRow(send, longest) {
   const period = part("input", {
     type: "number",
     min: 1,
-    max: 16,
+    max: longest,
     value: 1,
     title: "period of the orbit in drive periods",
   });
@@ -114,8 +109,8 @@ export function render({ model }) {
     part("div", { className: "draw" }, wiggles),
     turn,
   );
-  const section = new SectionView(send),
-    search = searchRow(send);
+  const section = new SectionView(send, model.state.phases),
+    search = searchRow(send, model.state.longest_period);
   const table = part("div", { className: "table" });
   const root = part("div", { className: "part sheet" }, head, say, plane, motion, section.root, table, search.root);
 
@@ -138,7 +133,7 @@ export function render({ model }) {
     fillModels(figure, state.plane);
     told.textContent = state.told ?? "";
     root.classList.toggle("stale", Boolean(state.stale));
-    status.textContent = STATUS[state.status] ?? "";
+    status.textContent = state.progress ?? "";
     said.textContent = state.sentence ?? "";
     mine.textContent = state.searched ? "Found by search; the chain does not follow this orbit." : "";
     mine.hidden = !mine.textContent;
@@ -194,15 +189,15 @@ export function render({ model }) {
       });
   });
   model.on("figures", show);
-  page.on("look", () => {
-    mode.drawing.look();
+  page.on("theme", () => {
+    mode.drawing.readTheme();
     redraw();
   });
   document.addEventListener("visibilitychange", looking);
   new IntersectionObserver(([entry]) => {
     seen = entry.isIntersecting;
     looking();
-  }).observe(document.getElementById("corner"));
+  }).observe(document.getElementById("tabs"));
   const sized = new ResizeObserver(() => {
     if (page.covered === "stability") redraw();
   });

@@ -1,4 +1,4 @@
-// The Stability tab of the corner: the unit circle and the sentence; it draws what the Stability page holds.
+// The Stability tab: the unit circle and the sentence; it draws what the Stability page holds.
 
 import { part } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
@@ -14,10 +14,7 @@ export function stabilityTab() {
   const show = () => {
     const { state = {}, small } = page.stability ?? {};
     said.textContent = state.sentence || "Follows the settled picture.";
-    more.textContent =
-      state.failure ||
-      { compiling: "compiling …", computing: "computing …", searching: "searching …" }[state.status] ||
-      "";
+    more.textContent = state.failure || state.progress || "";
     host.classList.toggle("stale", Boolean(state.stale));
     if (!host.isConnected) return;
     if (figure.item !== small) figure.load(small, "multipliers and the unit circle");

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -14,42 +15,41 @@ from granchain_core.integrate.methods import LIVE
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
 from granchain_core.steady.poincare import Section
-from granchain_core.steady.regime import modulus_words
+from granchain_core.steady.regime import LONGEST_PERIOD, modulus_words
 
-from ...page.format import duration, short_error
-from ...page.frames import prefixed
+from ...page.format import duration, prefixed, short_error
 from ...parts.component import text
 from ...parts.drawn import Drawn
 from ...pictures.multipliers import multiplier_words, plane, plane_state
 from ...pictures.section import SectionPoints, close_up, section, section_state
 from ...pictures.theme import Theme
 from ...scripts import module
-from .work import Analysis
+from .work import PHASES, Analysis
+
+
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """The plane, also small for the tab, and the section, all without points."""
+    empty = plane_state(None)
+    nothing = SectionPoints(np.zeros((1, 2)), np.zeros((0, 2)), 1, 0, False, 1, ("m", "m/s"))
+    return {"section": json_item(section(nothing, theme)), "plane": json_item(plane(empty, theme)),
+            "small": json_item(plane(empty, theme, compact=True))}
 
 
 class Stability(Drawn):
-    """The page over the pictures and, through what it shares in the browser, the small version in the corner."""
+    """The page over the pictures and, through what it shares in the browser, the small version in its tab."""
 
     _esm = module("stability.js")
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "stability")]  # noqa: RUF012
+    empty_figures = staticmethod(empty_figures)
 
-    def empty_figures(self, theme: Theme) -> dict[str, Any]:
-        """The plane, also small for the corner, and the section, all without points."""
-        return empty_figures(theme)
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, state={"longest_period": LONGEST_PERIOD, "phases": PHASES}, **params)
 
     def section(self, shown: SectionPoints) -> None:
         """Show a section in place of what there is of one."""
         self.need_figures()
         self.tell(**section_message(shown))
-
-
-@cache
-def empty_figures(theme: Theme) -> dict[str, Any]:
-    """The plane, also small for the corner, and the section, all without points."""
-    empty = plane_state(None)
-    nothing = SectionPoints(np.zeros((1, 2)), np.zeros((0, 2)), 1, 0, False, 1, ("m", "m/s"))
-    return {"section": json_item(section(nothing, theme)), "plane": json_item(plane(empty, theme)),
-            "small": json_item(plane(empty, theme, compact=True))}
 
 
 def period_words(orbit: Orbit) -> str:

@@ -10,8 +10,9 @@ from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.lower import lower
 from granchain_core.state import rest
+from granchain_core.steady.alone import steady_state
 from granchain_core.steady.batch_settle import batch_results
-from granchain_core.steady.curve import CurvePoint, steady_state
+from granchain_core.steady.curve import CurvePoint
 from granchain_core.stop import Stop
 
 CHAINS: list[dict[str, object]] = [

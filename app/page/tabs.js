@@ -1,4 +1,4 @@
-// The corner below the curve: what to look at, what the marks mean, which effects are on, the visitor's own data.
+// The tabs below the curve: what to look at, what the marks mean, a tab for every page, the visitor's own data.
 
 import { branchesTab } from "../pages/branches/branchessmall.js";
 import { effectsTab } from "../pages/effects/effects.js";
@@ -60,8 +60,7 @@ const TABS = {
     const figure = new Embedded(host, (one) => fillAccuracy(one, page.accuracy));
     const said = paragraph("");
     const show = () => {
-      const { drawn = {}, small, told, status, done = 0 } = page.accuracy ?? {};
-      const running = ["waiting", "compiling", "measuring"].includes(status);
+      const { drawn = {}, small, told, running, done = 0 } = page.accuracy ?? {};
       said.textContent = running
         ? `measuring, ${Math.round(100 * done)} % …`
         : told?.stale

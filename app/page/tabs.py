@@ -1,0 +1,14 @@
+"""The tabs below the curve: what to look at, a tab for every page, the visitor's own data."""
+
+from __future__ import annotations
+
+from ..parts.component import Component, text
+from ..scripts import module
+
+
+class Tabs(Component):
+    """All tabs and what stands in the one that is chosen; the data tab sends the text of a CSV file."""
+
+    _esm = module("tabs.js")
+    _stylesheets = [text(f"{name}.css")  # noqa: RUF012
+                    for name in ("controls", "drawing", "tabs", "map")]

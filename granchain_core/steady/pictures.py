@@ -1,0 +1,200 @@
+"""What a chain settles to, recorded: pictures on the way, and the certified orbit with its error.
+
+Motions that are not periodic are recorded by the live method, without a claim on their error.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..integrate import Engine, State
+from ..integrate.methods import jump_errors, typical_error
+from ..result import Cost, Run, relative_changes, run_from
+from ..scene import Scene
+from ..stop import Stop
+from .orbit_errors import force_distances, orbit_force_errors
+from .regime import Regime
+from .relax import relax
+from .settle import Settling, run_until_settled
+
+#: Samples a period of a picture.
+PICTURE_SAMPLES = 96
+#: Periods shown of a motion that is not periodic.
+_SHOWN = 4
+#: Time after which a first picture is shown although nothing is decided yet [s].
+_PREVIEW_AFTER = 0.012
+
+
+@dataclass(frozen=True, eq=False)
+class Settled:
+    """A steady state, or the motion when settling ended.
+
+    Attributes
+    ----------
+    run : Run
+        The recorded orbit, or a few periods where the motion is not periodic.
+    regime : Regime
+        What kind of motion it is.
+    state : State
+        Where the chain is at drive phase 0.
+    start : str
+        Where the motion came from: "rest" or "previous state".
+    preview : bool
+        Whether this is a first picture by the live method.
+    final : bool
+        Whether it is the last and best.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> found = settle(scene("sec2").evolve(N=2, f=2000.0), samples=16)
+    >>> found.run.time.shape, found.state.displacement.shape
+    ((17,), (2,))
+    """
+
+    run: Run
+    regime: Regime
+    state: State
+    start: str
+    preview: bool
+    final: bool
+
+
+def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
+             stop: Stop | None = None) -> Iterator[Settled]:
+    """Pictures on the way to the steady state: a quick preview first, the certified one last.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    start : State, optional
+        Where the motion begins; at rest if not given.
+    samples : int
+        Samples a drive period of each picture.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+
+    Yields
+    ------
+    Settled
+        About ten a second; `final` is set on the last.
+
+    Raises
+    ------
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settling
+    >>> [picture.final for picture in settling(scene("sec2").evolve(N=2, f=2000.0))][-1]
+    True
+    """
+    origin = "rest" if start is None else "previous state"
+    began = time.perf_counter()
+    way = Settling(scene, start, stop)
+    way.run(_PREVIEW_AFTER)
+    while not way.decided:
+        yield live_picture(way, samples, began, origin, final=False)
+        way.go_on(0.1)
+    if way.regime.name == "periodic":
+        yield certified_picture(way, samples, began, origin)
+    else:
+        yield live_picture(way, samples, began, origin, final=True)
+
+
+def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
+            stop: Stop | None = None) -> Settled:
+    """The steady state that a chain reaches. Also called `settle`.
+
+    The live method runs until the distance to the orbit is bounded or the regime is decided otherwise; a periodic orbit
+    is then computed by the certified method (docs/design.md, "Settled is a bound").
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    start : State, optional
+        Where the motion begins; at rest if not given.
+    samples : int
+        Samples a drive period of the recorded orbit.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+
+    Returns
+    -------
+    Settled
+        One orbit where the motion is periodic, else a few periods of it.
+
+    Raises
+    ------
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> found = settle(scene("sec2").evolve(N=2, f=2000.0))
+    >>> found.regime.name, found.regime.period
+    ('periodic', 1)
+    >>> f"{found.run.max_output_force_elastic:.3f} N"
+    '2.260 N'
+    """
+    began = time.perf_counter()
+    way = run_until_settled(scene, start, stop)
+    origin = "rest" if start is None else "previous state"
+    if way.regime.name == "periodic":
+        return certified_picture(way, samples, began, origin)
+    return live_picture(way, samples, began, origin, final=True)
+
+
+def live_picture(way: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
+    """The present motion by the live method, over one orbit or a few periods; the settling itself is not advanced."""
+    engine = Engine(way.scene, way.engine.setting, samples, stop=way.stop)
+    state = way.engine.state
+    engine.start(state)
+    shown = way.regime.period or _SHOWN
+    record = engine.record(shown * samples)
+    engine.counts.array += way.engine.counts.array
+    cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)
+    run = run_from(engine, record, 0, way.regime, None, cost)
+    return Settled(run, way.regime, state, origin, not final, final)
+
+
+def certified_picture(way: Settling, samples: int, began: float, origin: str) -> Settled:
+    """The periodic orbit by the certified method, with its error: integration plus distance from the orbit.
+
+    An error e of the n-period map moves its fixed point by e/(1 − |μ|).
+    """
+    n = way.regime.period
+    assert n is not None
+    engine, distance = relax(way, way.scene.accuracy, samples)
+    start = engine.state
+    fine = Engine(way.scene, engine.setting.finer(), samples, stop=way.stop)
+    fine.start(start)
+    record = fine.record(n * samples)
+    coarse = Engine(way.scene, engine.setting, samples, stop=way.stop)
+    coarse.start(start)
+    other = coarse.record(n * samples)
+    largest = float(np.abs(record.displacement).max())
+    integration = float(np.abs(record.displacement - other.displacement).max()) / largest if largest > 0 else 0.0
+    fine.counts.array += way.engine.counts.array + engine.counts.array + coarse.counts.array
+    cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
+    regime = replace(way.regime, distance=distance)
+    still = 1.0 / (1.0 - way.regime.slowness)
+    integration *= still
+    jumps = jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
+    left = force_distances(distance, fine.lowered, fine.tops, fine.y)
+    forces = orbit_force_errors(relative_changes(fine.tops, coarse.tops), left, way.regime.slowness, jumps,
+                                typical_error(fine.setting))
+    run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces)
+    return Settled(run, regime, start, origin, False, True)

@@ -1,0 +1,54 @@
+"""A first visit: a page that is slow to say that it is ready, one that fits, kernels that are still to be compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from knobs import settled
+from playwright.sync_api import Browser, Page, expect
+from started import dashboard
+
+Visit = Callable[..., Page]
+
+
+SAYS_LATE_THAT_IT_IS_READY = """
+const before = WebSocket.prototype.send;
+let message = [];
+WebSocket.prototype.send = function (frame) {
+  message.push(frame);
+  if (message.length < 3) return;
+  const frames = message;
+  message = [];
+  const late = String(frames[2]).includes("document_ready") ? 1500 : 0;
+  const send = () => frames.forEach((one) => before.call(this, one));
+  late ? setTimeout(send, late) : send();
+};
+"""
+
+
+def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) -> None:
+    """Its parts ask before; what Panel is told to change before is lost. So the answers wait for it."""
+    page = visit(script=SAYS_LATE_THAT_IT_IS_READY)
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("340", timeout=5_000)
+    settled(page)
+    expect(page.locator("#bar select").first).to_have_value("sec2")
+
+
+def test_everything_is_in_view_without_scrolling(visit: Visit) -> None:
+    page = visit()
+    size = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+    assert size == [1280, 800]
+    foot = page.locator("#foot").bounding_box()
+    assert foot is not None and foot["y"] + foot["height"] <= 800
+
+
+def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromium: Browser,
+                                                            tmp_path: Path) -> None:
+    with dashboard(tmp_path / "log", GRANCHAIN_CACHE=str(tmp_path / "cache"), NUMBA_OPT="1") as url:
+        page = chromium.new_page()
+        page.goto(url)
+        expect(page.get_by_role("alert")).to_contain_text("Compiling the kernels", timeout=10_000)
+        expect(page.locator("#foot b")).to_contain_text("period 1", timeout=90_000)
+        expect(page.get_by_role("alert")).to_be_hidden()
+        page.close()

@@ -1,0 +1,90 @@
+"""The knobs: dragged, typed into, put back, set by a click on the curve; what is wrong gets a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from knobs import knob, settled, type_into
+from playwright.sync_api import Page, expect
+
+Visit = Callable[..., Page]
+
+
+@pytest.mark.parametrize("key", ["ArrowRight", "Shift+ArrowRight"])
+def test_a_slider_step_repaints_the_map(visit: Visit, key: str) -> None:
+    page = visit()
+    settled(page)
+    before, count = page.evaluate("[pixels('map'), painted.length]")
+    page.locator('[data-knob="f"] input[type="range"]').press(key)
+    page.wait_for_function(f"painted.length > {count} && pixels('map') !== {before}")
+
+
+def test_fine_coarse_typed_and_back(visit: Visit) -> None:
+    page = visit()
+    slider = page.locator('[data-knob="f"] input[type="range"]')
+    slider.press("ArrowRight")
+    assert float(knob(page, "f")) == pytest.approx(340.1)
+    slider.press("Shift+ArrowRight")
+    assert float(knob(page, "f")) > 345
+    type_into(page, "f", "615")
+    assert knob(page, "f") == "615"
+    page.locator('[data-knob="f"] label').dblclick()
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("340")
+
+
+def test_k_shows_kappa_and_the_foundation_frequency(visit: Visit) -> None:
+    page = visit("?v=1&scene=rig")
+    assert float(knob(page, "kappa")) == pytest.approx(1e-3)
+    type_into(page, "k", "0")
+    expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("0")
+    expect(page.locator("#knobs .aside")).to_contain_text("none")
+
+
+def test_an_amplitude_moved_alone_is_said_beside_kappa(visit: Visit) -> None:
+    page = visit("?v=1&scene=rig")
+    expect(page.locator("#knobs .kept")).to_be_empty()
+    type_into(page, "A0", "6")
+    expect(page.locator("#knobs .kept")).to_have_text("κ was 0.001; A₀ moved, not k")
+    assert knob(page, "kappa") == "0.00108012"
+    type_into(page, "A0", "8")
+    expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("9.35414e-4")
+    type_into(page, "kappa", "0.001")
+    expect(page.locator("#knobs .kept")).to_be_empty()
+
+
+def test_a_click_on_the_curve_sets_the_frequency(visit: Visit) -> None:
+    page = visit()
+    box = page.locator("#curve").bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])
+    page.wait_for_function("""() => {
+      const inner = document.querySelector("#knobs > div > *");
+      const host = document.querySelector("#knobs > div").shadowRoot ?? inner.shadowRoot;
+      return host.querySelector('[data-knob="f"] input[type="text"]').value !== "340";
+    }""")
+    assert 1000 < float(knob(page, "f")) < 2500
+
+
+@pytest.mark.parametrize("value", ["1e15", '{"type":"number","value":"nan"}', '"three"', "null", "[1]", "-5"])
+def test_wrong_values_get_their_sentence(visit: Visit, value: str) -> None:
+    page = visit()
+    settled(page)
+    expect(page.locator("#foot b")).not_to_contain_text("the curve is on its way", timeout=60_000)
+    regime = page.locator("#foot b").inner_text()
+    page.evaluate("value => { window.forged = value; }", value)
+    page.locator('[data-knob="f"] input[type="range"]').press("ArrowRight")
+    expect(page.get_by_role("alert")).to_contain_text("drive frequency")
+    assert page.locator("#foot b").inner_text() == regime
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("340")
+    page.evaluate("window.forged = undefined")
+    page.locator('[data-knob="f"] input[type="range"]').press("ArrowRight")
+    expect(page.get_by_role("alert")).to_be_hidden()
+
+
+def test_a_phone_has_the_knobs_in_a_drawer(visit: Visit) -> None:
+    page = visit(viewport={"width": 390, "height": 844}, has_touch=True)
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    expect(page.locator("#side")).to_be_hidden()
+    page.get_by_role("button", name="Show the knobs").click()
+    expect(page.locator('[data-knob="f"] input[type="range"]')).to_be_visible()

@@ -1,0 +1,33 @@
+"""The themes: from a link, from the system, by the button."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Page
+
+Visit = Callable[..., Page]
+
+
+# Whether a mark of a picture that the server draws has this colour.
+INK = """(ink) => Bokeh.documents.some((one) => [...(one.all_models ?? one._all_models.values())].some(
+  ({ line_color }) => (line_color?.value ?? line_color) === ink))"""
+
+
+@pytest.mark.parametrize(("look", "ink"), [("dark", "#eef1f6"), ("projector", "#000000")])
+def test_a_link_says_how_the_page_looks(visit: Visit, look: str, ink: str) -> None:
+    page = visit(f"?look={look}")
+    page.wait_for_function(f"document.documentElement.dataset.theme === '{look}'")
+    assert page.evaluate("localStorage.getItem('granchain-look')") is None  # another page looks as it did
+    # the pictures too, which the server draws
+    page.wait_for_function(INK, arg=ink)
+    page.get_by_role("button", name="Light, dark, projector").click()
+    page.locator("select.speed").select_option("5")
+    page.wait_for_function("granchain.kept.speed === 5")
+    assert page.evaluate("document.documentElement.dataset.theme") != look
+
+
+def test_dark_on_a_dark_system(visit: Visit) -> None:
+    page = visit(color_scheme="dark")
+    assert page.evaluate("document.documentElement.dataset.theme") == "dark"

@@ -1,0 +1,98 @@
+"""Time on the page: the chain moves, stops, is dragged through its period; a live run goes on and is stepped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from knobs import settled
+from playwright.sync_api import Page, expect
+
+Visit = Callable[..., Page]
+
+
+def test_the_chain_moves(visit: Visit) -> None:
+    page = visit()
+    first = page.evaluate("pixels('chain')")
+    page.wait_for_function(f"pixels('chain') !== {first}")
+    settled(page)
+    expect(page.locator("#foot")).to_contain_text("period 1")
+
+
+# A busy machine may paint once more what it had begun; a chain that plays changes in every 300 ms.
+STANDS_STILL = """async () => {
+  const before = pixels("chain");
+  await new Promise((done) => setTimeout(done, 300));
+  return pixels("chain") === before;
+}"""
+
+
+def test_pause_stops_the_chain_and_a_dragged_cursor_moves_it(visit: Visit) -> None:
+    page = visit()
+    settled(page)
+    page.get_by_role("button", name="Play or pause").click()
+    page.wait_for_function(STANDS_STILL)
+    still = page.evaluate("pixels('chain')")
+    box = page.locator("#map").bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 100, box["y"] + 120)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 100, box["y"] + 260)
+    page.mouse.up()
+    page.wait_for_function(f"pixels('chain') !== {still}")
+
+
+def test_a_bead_has_the_colour_of_its_column(visit: Visit) -> None:
+    page = visit()
+    settled(page)
+    page.get_by_role("button", name="Play or pause").click()
+    box = page.locator("#map").bounding_box()
+    assert box is not None
+    # 1.1 ms into the picture the pulse is in the last beads and the first are at rest
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 50 + (box["height"] - 102) * 0.095)
+    page.evaluate("shown()")
+    beads, columns = page.evaluate(COLOURS)
+    for bead, column in zip(beads, columns, strict=True):
+        assert max(abs(a - b) for a, b in zip(bead, column, strict=True)) < 60
+    assert max(sum(column) for column in columns) > 150 > min(sum(column) for column in columns)
+
+
+# The colour in the lower half of every bead and of its column of the map, at the time of the cursor.
+COLOURS = """() => {
+  const pixel = (id, x, y) => {
+    const canvas = canvasIn(id), box = canvas.getBoundingClientRect();
+    const { data } = canvas.getContext("2d").getImageData(Math.round(x - box.x), Math.round(y - box.y), 1, 1);
+    return [...data].slice(0, 3);
+  };
+  const map = document.getElementById("map").getBoundingClientRect();
+  const chain = document.getElementById("chain").getBoundingClientRect();
+  const line = document.getElementById("cursor").getBoundingClientRect();
+  const pitch = (map.width - 12) / 11, beads = [], columns = [];
+  for (let i = 0; i < 11; i++) {
+    const x = map.x + 6 + (i + 0.5) * pitch;
+    beads.push(pixel("chain", x, chain.y + 0.53 * chain.height + 0.12 * pitch));
+    columns.push(pixel("map", x, line.y + line.height / 2));
+  }
+  return [beads, columns];
+}"""
+
+
+def test_live_frames_advance(visit: Visit) -> None:
+    page = visit()
+    page.get_by_role("button", name="The run goes on").click()
+    page.wait_for_function("painted.filter((event) => event.live).length > 10")
+    count = page.evaluate("painted.length")
+    page.wait_for_function(f"painted.length > {count} + 16")  # how many a second: tests/benchmarks/browser_latency.py
+    expect(page.locator("#foot b")).to_contain_text("live")
+
+
+def test_live_stops_when_paused_and_steps_by_one_period(visit: Visit) -> None:
+    page = visit()
+    page.get_by_role("button", name="The run goes on").click()
+    page.wait_for_function("painted.filter((event) => event.live).length > 10")
+    page.get_by_role("button", name="Play or pause").click()
+    page.wait_for_timeout(500)
+    count = page.evaluate("painted.length")
+    page.wait_for_timeout(400)  # nothing to wait for: that nothing comes is the point
+    assert page.evaluate("painted.length") == count
+    page.get_by_role("button", name="One drive period on").click()
+    page.wait_for_function(f"painted.length > {count}")
