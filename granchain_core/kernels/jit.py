@@ -137,7 +137,7 @@ def inline_numba(function):
     return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
 
 
-#: Every function made by `by_slot`, with the code it has for each slot class.
+#: The terms of effects: every function made by `by_slot`, with the code it has for each slot class.
 _TERMS: list[Any] = []
 #: Slot classes for which the SIMD kernels have code.
 _IN_SIMD_KERNELS: set[type] = set()
@@ -187,6 +187,22 @@ def by_slot(absent, forceinline=False):
 def by_slot_inlined(absent):
     """A term that becomes part of its caller's code: for one that takes many arguments and is called at each step."""
     return by_slot(absent, forceinline=True)
+
+
+def by_type(declared, forceinline=False):
+    """The same for what is never absent, as a method: the decorated function is a name and a docstring only.
+
+    It is no term of an effect.
+    """
+    function = by_slot(declared, forceinline)
+    _TERMS.remove(function)
+    del function.implementations[type(None)]
+    return function
+
+
+def by_type_inlined(declared):
+    """Such a function that becomes part of its caller's code."""
+    return by_type(declared, forceinline=True)
 
 
 def in_simd_kernels(slot_class):

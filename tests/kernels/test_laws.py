@@ -8,7 +8,7 @@ import numba
 import pytest
 
 from granchain_core.kernels.effects import dissipation as loss
-from granchain_core.kernels.jit import by_slot, check_effects
+from granchain_core.kernels.jit import by_slot, by_type, check_effects
 from granchain_core.laws import LAWS, Law
 from granchain_core.scene.effects import Effect
 
@@ -80,6 +80,18 @@ def test_a_slot_without_code_is_named_in_python_and_by_the_compiler() -> None:
         pushed_by(Unfinished(1.0), 2.0)
     with pytest.raises(Exception, match=r"Unfinished .*has no `pushed_by`"):
         compiled(Unfinished(1.0), 2.0)
+
+
+def test_what_is_never_absent_has_no_code_for_none() -> None:
+    @by_type
+    def width_of(vector):  # type: ignore[no-untyped-def]
+        """How many numbers it holds."""
+
+    width_of.of(Unfinished)(lambda vector: 8)
+    compiled = numba.njit(lambda vector: width_of(vector))
+    assert width_of(Unfinished(1.0)) == compiled(Unfinished(1.0)) == 8
+    with pytest.raises(TypeError, match=r"NoneType .*has no `width_of`"):
+        width_of(None)
 
 
 class Half(NamedTuple):

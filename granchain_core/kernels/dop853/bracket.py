@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import by_slot, inline_numba, internal
+from ..jit import by_type, inline_numba, internal
 
 #: Factor by which a golden section shrinks the bracket.
 _RATIO = 0.6180339887498949
@@ -24,10 +24,9 @@ class Bracket(NamedTuple):
     moved: int
 
 
-@by_slot
+@by_type
 def value_at(quantity, step, x):
     """A quantity at fraction x of a step."""
-    raise NotImplementedError
 
 
 @internal

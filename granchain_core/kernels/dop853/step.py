@@ -10,7 +10,7 @@ import numpy as np
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import motion
-from ..jit import by_slot, inline_numba, internal, kernel
+from ..jit import by_type, inline_numba, internal, kernel
 from .bracket import Bracket, root_inside, top_inside, value_at
 from .tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
 
@@ -182,10 +182,9 @@ def interpolate(y, work, x):
         work.probe[i] = dense_value(work.dense, y[i], x, i)
 
 
-@by_slot
+@by_type
 def drive_phase(step, x):
     """Drive phase at fraction x of the step."""
-    raise NotImplementedError
 
 
 @drive_phase.of(Step)

@@ -15,7 +15,7 @@ from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, shape
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import row_overlap, row_values
-from ..jit import by_slot, inline_llvm
+from ..jit import by_slot, by_type, inline_llvm
 from ..simd.functions import root
 from ..simd.vector import blank, from_left, from_right, load, load16, load32, store, with_first
 from .contact_events import GAP, RATE
@@ -88,10 +88,9 @@ class ChainState(NamedTuple):
     elastic: Any
 
 
-@by_slot
+@by_type
 def load_row(width, array, row):
     """One row of a (rows, width) array."""
-    raise NotImplementedError
 
 
 @load_row.of(Width8)

@@ -15,7 +15,7 @@ from ..effects.preload import overlap
 from ..equations.motion import copy, motion
 from ..forces.crossings import end_overlaps, watch_crossings
 from ..forces.largest import Instant, Span, watch_event
-from ..jit import by_slot, by_slot_inlined, inline_numba, internal
+from ..jit import by_slot, by_type_inlined, inline_numba, internal
 from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
     DISPLACEMENT_ERROR,
@@ -143,14 +143,13 @@ def _(balance, excess, y):
     y[y.size - 2] -= excess
 
 
-@by_slot_inlined
+@by_type_inlined
 def step(method, trajectory, j, out):
     """Advance y by one step from half-step index 2j of the drive; slope in stages.k[0] before and after.
 
     Largest forces and jumps inside the step go into the log. Returns the time from the last state at which they were
     followed to the step's end.
     """
-    raise NotImplementedError
 
 
 @internal
