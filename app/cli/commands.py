@@ -124,7 +124,7 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.out:
         check_writable(arguments.out)
     if arguments.explain:
-        _explain(chosen, arguments.method, sys.stderr if arguments.json else sys.stdout)
+        _explain(chosen, arguments, sys.stderr if arguments.json else sys.stdout)
     progress = _progress if sys.stderr.isatty() else None
     result = in_background(lambda stop: run_scene(chosen, arguments.periods, arguments.record, arguments.samples,
                                                   arguments.method, stop=stop, progress=progress,
@@ -134,6 +134,9 @@ def run(arguments: argparse.Namespace) -> None:
     if result.status == "accuracy-not-reached":
         say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
              f"{result.error_estimate:.1e} of the largest displacement.")
+    if result.status == "over-budget":
+        say(f"A finer computation would not fit the budget of {arguments.budget:g} s: the error may be "
+            f"{result.error_estimate:.1e} of the largest displacement, {chosen.accuracy:g} was asked for.")
     if result.jumps.unresolved:
         say(f"{result.jumps.unresolved} touches were shorter than a step of {result.cost.method} and are not resolved: "
             "their jumps are read off the step's ends.")
@@ -169,10 +172,10 @@ def _progress(fraction: float) -> None:
     print(f"\r{100 * fraction:3.0f} %", end="\n" if fraction >= 1.0 else "", file=sys.stderr, flush=True)
 
 
-def _explain(chosen: Scene, method: str | None, stream: Any) -> None:
+def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:
     from app.cli.explain import explanation
 
-    print(explanation(chosen, method), file=stream, flush=True)
+    print(explanation(chosen, arguments.method, arguments.samples), file=stream, flush=True)
 
 
 def curve(arguments: argparse.Namespace) -> None:

@@ -8,8 +8,8 @@ from granchain_core.scene import Scene
 from granchain_core.warm import structure
 
 
-def explanation(scene: Scene, method: str | None) -> str:
-    """The slots of the kernel that `run` uses, and its method, in a few lines."""
+def explanation(scene: Scene, method: str | None, samples: int) -> str:
+    """The slots of the kernel that `run` uses, and its method, in a few lines; `samples` a period may set its steps."""
     lowered = lower(scene)
     slots = slots_of(scene, balance=True)
     present = [f"{title} ({kind})" for _, title, kind in slots if kind is not None]
@@ -18,7 +18,7 @@ def explanation(scene: Scene, method: str | None) -> str:
     chosen = METHODS[setting.method]
     why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"
     fineness = (f"tolerance per step {setting.tolerance:.1e}" if chosen.adaptive
-                else f"{setting.steps_per_period(lowered, 1)} steps a period")
+                else f"{setting.steps_per_period(lowered, samples)} steps a period")
     return "\n".join((
         f"compiled in: {', '.join(present)}",
         f"absent, with no code and no array: {', '.join(absent) if absent else 'nothing'}",

@@ -11,7 +11,7 @@ from granchain_core import Scene, Settled
 from granchain_core.accuracy import Row
 from granchain_core.accuracy.ways import label
 from granchain_core.integrate import METHODS, Setting, live, method_for
-from granchain_core.steady.relax import certified_setting
+from granchain_core.steady.relax import orbit_setting
 
 #: The live picture's steps (granchain_core.run.live).
 _LIVE = live(2)
@@ -35,7 +35,7 @@ def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
         return method_for(scene.accuracy, scene.cuts_tension)
     if picture.preview or picture.regime.name != "periodic":
         return Setting(picture.run.cost.method)
-    return certified_setting(scene, scene.accuracy, picture.regime.slowness).finer()
+    return orbit_setting(scene, scene.accuracy, picture.regime.slowness).finer()
 
 
 def locate(setting: Setting, rows: Sequence[Row]) -> Now | None:

@@ -52,7 +52,7 @@ class Setting:
         return Setting(self.method, 2 * self.refine)
 
     def finer_than(self, lowered: Lowered, samples: int) -> Setting:
-        """The next finer setting with other steps: where samples set their number, twice as fine may be as fine."""
+        """The next finer setting that really has more steps: they are rounded up to a multiple of the samples."""
         finer = self.finer()
         if not METHODS[self.method].adaptive:
             while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):
@@ -146,8 +146,8 @@ METHODS: dict[str, Method] = {
         Method(
             name=LIVE, title="RK4 in w, steps split at contact events, quadrature corrected there", order_smooth=4.0,
             order=3.9, events=True, adaptive=False, symplectic=False,
-            restrictions="fixed step; order 3.5 below errors of about 1e-9; with more than 30 beads two changes of one "
-                         "contact inside a step are not seen",
+            restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; with more than "
+                         "30 beads two changes of one inner contact inside a step are not seen",
             reference="Kutta 1901; w-variables and events: docs/model.md", stepper=_fixed(Rk4Split, simd=True),
             cost=StepCost(450e-9, 45e-9), usual_error=_LIVE_ERROR, even=True),
         Method(

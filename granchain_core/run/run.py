@@ -42,7 +42,7 @@ _TWICE = 2.0
 #: Factors on the changes of largest forces before those of stated.py, where no force jumps and where some do: caution
 #: found by trial (`python -m tests.numerics.forces run`). At jumps the error is uneven from one step size to the next.
 _FORCES, _FORCES_THAT_JUMP = 1.5, 3.0
-#: Fewest periods on which a run is called anything but unsettled.
+#: Fewest periods after which multipliers or a Lyapunov exponent are computed; a shorter run is judged by its strobes.
 _ENOUGH = 40
 
 

@@ -16,9 +16,9 @@ _CAUTION, _UNEVEN = 1.5, 3.0
 _ROUNDINGS = 32.0
 #: Where the typical error of the steps is above this, rounding is no part of the difference.
 _SMOOTH = 1e-10
-#: Relative error above which a motion counts as chaotic at its end.
+#: Stated relative error above which the result is worth nothing.
 _WORTHLESS = 0.05
-#: What is stated then, in amplitudes of the motion: two chaotic computations may differ by twice the amplitude.
+#: What is stated then, relative to the largest displacement: two motions that have parted differ by at most twice it.
 _ALL = 2.0
 
 

@@ -18,21 +18,21 @@ from .relax import relax
 from .settle import Settling, run_until_settled
 from .steady_state import SteadyState
 
-#: Forces on a curve are not computed to less relative error than this, whatever the scene asks of its picture.
+#: Points of a curve are computed to this relative accuracy at best, even if the scene asks for more.
 CURVE_ACCURACY = 1e-5
 
 
 def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
-    """The steady state of `scene` from rest or from `start`, certified where it is periodic."""
+    """The steady state of `scene` from rest or from `start`, refined where it is periodic."""
     way = run_until_settled(scene, start, stop)
     if way.regime.name == "periodic":
-        return _certified(way)
+        return _on_its_orbit(way)
     tops = way.tops[-min(len(way.tops), 100) :].max(axis=0) * way.engine.lowered.scales.force
     return SteadyState(scene, tops, way.regime, None, way.engine.state)
 
 
-def _certified(way: Settling) -> SteadyState:
-    """Largest forces on the certified orbit, and their errors from a finer computation of it."""
+def _on_its_orbit(way: Settling) -> SteadyState:
+    """Largest forces on the refined orbit, and their errors from a finer computation of it."""
     engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
     n = way.regime.period
     assert n is not None

@@ -14,7 +14,7 @@ from ..result import relative_changes
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
-from .decide import MOST_PERIODS, SLOW_PERIODS
+from .decide import EXAMINED_AFTER, MOST_PERIODS
 from .orbit_errors import force_distances, orbit_force_errors
 from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
@@ -62,7 +62,7 @@ class Job:
     @property
     def affordable(self) -> bool:
         """Whether the budget of steps allows another measurement."""
-        return self.run + MOST_PERIODS < self.affordable_periods
+        return self.run + EXAMINED_AFTER < self.affordable_periods
 
     def fine_result(self, block: Batch, lane: int) -> SteadyState:
         """The result of the finer run. Raises `Cancelled`."""
@@ -77,7 +77,7 @@ class Job:
             located, moved = self._located_tops(y, regime, block.stop)
             tops, change = np.where(at_jump, located, tops), np.where(at_jump, 0.0, change)
             further = np.where(at_jump, moved, 0.0)
-        # either run has come to its own orbit: the change is that of the orbits
+        # each of the two runs has come to its own orbit: the change is the difference of these orbits
         left = force_distances(max(distance, regime.distance), self.lowered, tops, y)
         errors = orbit_force_errors(change, left, further=further)
         tops = tops * self.lowered.scales.force
@@ -110,7 +110,7 @@ def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:
     return SteadyState(job.scene, tops, regime, None, job.lowered.unscaled(block.state.y[:, lane]), number=job.number)
 
 
-def check_coarse(job: Job, block: Batch, lane: int) -> SteadyState | Job | None:
+def outcome_of_coarse_run(job: Job, block: Batch, lane: int) -> SteadyState | Job | None:
     """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
     here = int(block.state.periods[lane])
     run = job.run + here
@@ -122,9 +122,9 @@ def check_coarse(job: Job, block: Batch, lane: int) -> SteadyState | Job | None:
     if run >= job.affordable_periods:
         return unsettled(job, block, lane, run)
     record = block.strobes(lane)
-    if run >= SLOW_PERIODS or (len(record) >= SLOW_RECORD and not shrinking(record)):
+    if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not shrinking(record)):
         return _in_doubt(job, block, lane, run, record.copy())
-    block.state.look[lane] = min(here + max(MOST_PERIODS // 4, SLOW_RECORD - len(record)),
+    block.state.look[lane] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)
     return None
 

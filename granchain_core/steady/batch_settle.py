@@ -21,15 +21,15 @@ from ..lower import lower
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
-from .batch_job import Job, Start, check_coarse, draft_result, failed
-from .decide import BLOCK, BLOCKS, MOST_PERIODS, SLOW_PERIODS
+from .batch_job import Job, Start, draft_result, failed, outcome_of_coarse_run
+from .decide import BLOCK, BLOCKS, EXAMINED_AFTER, MOST_PERIODS
 from .lyapunov import MOST_APART, exponents_in_pairs
 from .nearby_orbit import MOST_BEADS, seen_modulus
 from .regime import agree, clearly_chaotic, find_period, irregular
 from .steady_state import SteadyState
 
-#: Steps of the finer run for one of the coarse run: its force errors are then a tenth of the change between the two,
-#: and the change is claimed.
+#: Steps of the finer run for one of the coarse run. Twice the change between the two, with the distance left, is stated
+#: (orbit_errors.py).
 _FINER = 3
 #: Periods after which a draft gives up.
 _DRAFT = 300
@@ -65,7 +65,7 @@ class _Lanes:
     def _start(self, lane: int, job: Job) -> None:
         """The coarse run is checked once it may have settled, the finer one once its start has decayed."""
         if job.coarse is None:
-            look = min(_DRAFT if self.draft else MOST_PERIODS, job.affordable_periods - job.run)
+            look = min(_DRAFT if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
             self.block.put(lane, job.lowered, job.y, 1, look)
             return
         regime, tops = job.coarse
@@ -84,7 +84,8 @@ class _Lanes:
             result = draft_result(job, self.block, lane)
             self._free(lane)
             return result
-        outcome = check_coarse(job, self.block, lane) if job.coarse is None else job.fine_result(self.block, lane)
+        coarse = job.coarse is None
+        outcome = (outcome_of_coarse_run(job, self.block, lane) if coarse else job.fine_result(self.block, lane))
         if outcome is None:
             return None
         self._free(lane)
@@ -125,7 +126,7 @@ class _Lanes:
             if before is None and regime.name != "unsettled" and not clearly_chaotic(growth):
                 job.measured, job.in_doubt = regime, True
                 self.doubtful.append(job)
-            elif regime.name == "unsettled" and growth.mean() < 0.0 and job.run < SLOW_PERIODS and job.affordable:
+            elif regime.name == "unsettled" and growth.mean() < 0.0 and job.run < MOST_PERIODS and job.affordable:
                 self.waiting.append(job)
             else:
                 unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))

@@ -18,9 +18,9 @@ from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen
 from .regime import Regime, agree, clearly_chaotic, departing, irregular, slowing
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
-MOST_PERIODS = 400
+EXAMINED_AFTER = 400
 #: Most drive periods in all.
-SLOW_PERIODS = 4000
+MOST_PERIODS = 4000
 #: Blocks in one measurement of the Lyapunov exponent.
 BLOCKS = 10
 #: Drive periods in a block.
@@ -67,7 +67,7 @@ class Decisions:
                 found = self._beside(orbit, regime)
                 if found is not None:
                     return found
-        if regime.periods_run >= SLOW_PERIODS * (_PATIENCE if self._leaves else 1):
+        if regime.periods_run >= MOST_PERIODS * (_PATIENCE if self._leaves else 1):
             return Decision(regime)
         if slowing(strobes) or departing(strobes):
             return Decision()

@@ -1,4 +1,4 @@
-"""What a chain settles to, recorded: pictures on the way, and the certified orbit with its error.
+"""What a chain settles to, recorded: pictures on the way, and the refined orbit with its error.
 
 Motions that are not periodic are recorded by the live method, without a claim on their error.
 """
@@ -66,7 +66,7 @@ class Settled:
 
 def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
              stop: Stop | None = None) -> Iterator[Settled]:
-    """Pictures on the way to the steady state: a quick preview first, the certified one last.
+    """Pictures on the way to the steady state: a quick preview first, the refined one last.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
         yield live_picture(way, samples, began, origin, final=False)
         way.go_on(0.1)
     if way.regime.name == "periodic":
-        yield certified_picture(way, samples, began, origin)
+        yield orbit_picture(way, samples, began, origin)
     else:
         yield live_picture(way, samples, began, origin, final=True)
 
@@ -153,7 +153,7 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
     way = run_until_settled(scene, start, stop)
     origin = "rest" if start is None else "previous state"
     if way.regime.name == "periodic":
-        return certified_picture(way, samples, began, origin)
+        return orbit_picture(way, samples, began, origin)
     return live_picture(way, samples, began, origin, final=True)
 
 
@@ -170,8 +170,8 @@ def live_picture(way: Settling, samples: int, began: float, origin: str, final: 
     return Settled(run, way.regime, state, origin, not final, final)
 
 
-def certified_picture(way: Settling, samples: int, began: float, origin: str) -> Settled:
-    """The periodic orbit by the certified method, with its error: integration plus distance from the orbit.
+def orbit_picture(way: Settling, samples: int, began: float, origin: str) -> Settled:
+    """The periodic orbit by the finer method, with its error: integration plus distance from the orbit.
 
     An error e of the n-period map moves its fixed point by e/(1 − |μ|).
     """

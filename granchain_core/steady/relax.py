@@ -1,4 +1,4 @@
-"""From the orbit of the live method onto the certified one: a few periods more, and jumps where they would be many."""
+"""From the orbit of the live method's own step onto that of a finer setting: a few more periods, or extrapolation."""
 
 from __future__ import annotations
 
@@ -10,27 +10,30 @@ from .extrapolate import ORDER, reduced_rank, within_reach
 from .regime import changes
 from .settle import Settling
 
-#: Rounds of relaxation onto the certified orbit at most, each of as many orbits as one extrapolation uses.
+#: At most so many rounds, each of as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 
 
-def certified_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
-    """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − rate)."""
+def orbit_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
+    """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − rate).
+
+    It is rk4-split with finer steps; dop853 below 1e-10, or where tension is cut.
+    """
     return method_for(max(1e-13, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)), scene.cuts_tension)
 
 
 def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
-    """The certified method on its own orbit, and the bound on the distance left.
+    """The finer method on its own orbit, and the bound on the distance left.
 
     The orbit of the live method differs from the true one by its error; a few more periods remove it. With r the
     slowness of the regime (|μ| where it was computed, else the decay) and `change` from one n-period map to the next,
-    the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; a jump after
+    the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; one after
     which they are not smaller is undone.
     """
     scene, n = way.scene, way.regime.period
     assert n is not None
     rate = way.regime.slowness
-    setting = certified_setting(scene, accuracy, rate)
+    setting = orbit_setting(scene, accuracy, rate)
     engine = Engine(scene, setting, samples, stop=way.stop)
     engine.start(way.engine.state)
     bound, unproved = np.inf, None
@@ -46,7 +49,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
             unproved, bound = None, change * rate / (1.0 - rate)
             if bound <= 0.3 * accuracy:
                 return engine, bound
-        if unproved is not None:  # the jump did not lead nearer: back to where it began
+        if unproved is not None:  # the extrapolation did not lead nearer: back to where it began
             engine.start(unproved[0])
             unproved, bound = None, np.inf
         elif bound > 0.3 * before and not setting.finest:
@@ -54,13 +57,13 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
             setting, state = setting.finer(), engine.state
             engine = Engine(scene, setting, samples, stop=way.stop)
             engine.start(state)
-        elif rounds < _MOST_ROUNDS - 1:  # behind the last jump there must be a change that proves it
+        elif rounds < _MOST_ROUNDS - 1:  # after the last extrapolation there must be a change that proves it
             here = engine.state
-            unproved = (here, change) if jump(engine, states, change, rate) else None
+            unproved = (here, change) if move_to_limit(engine, states, change, rate) else None
     return engine, bound
 
 
-def jump(engine: Engine, states: np.ndarray, change: float, rate: float) -> bool:
+def move_to_limit(engine: Engine, states: np.ndarray, change: float, rate: float) -> bool:
     """Put the engine where successive states (k, 2, N) lead, if that is within reach; whether it was."""
     there = reduced_rank(states)
     largest = np.abs(states).max(axis=(0, 2))[:, None]

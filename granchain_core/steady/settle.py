@@ -1,7 +1,7 @@
 """Bringing a chain to its steady state, and deciding whether it is there.
 
 The live method runs from the start until the distance bound is small (regime.py) or the regime is decided otherwise
-(decide.py). A periodic orbit is then handed to the certified method (relax.py); pictures.py records what was reached.
+(decide.py). A periodic orbit is then computed again with finer steps (relax.py); pictures.py records what was reached.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..integrate import Engine, State, live
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
-from .decide import MOST_PERIODS, REMEMBERED, Decisions
+from .decide import EXAMINED_AFTER, REMEMBERED, Decisions
 from .regime import Regime, find_period
 
 #: Most steps of the live method while settling: about half a minute.
@@ -40,7 +40,7 @@ class Settling:
         """A new record of strobes from where the engine is, after `run` periods."""
         first, scales = self.engine.state, self.engine.lowered.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
-        self._run, self._stop_at = run, MOST_PERIODS
+        self._run, self._stop_at = run, EXAMINED_AFTER
         self.regime = Regime.unsettled(run)
 
     @property
@@ -107,7 +107,7 @@ class Settling:
         else:
             if found.strobes is not None:
                 self._note(found.strobes)
-            self._stop_at = self._here + MOST_PERIODS
+            self._stop_at = self._here + EXAMINED_AFTER
 
 
 def run_until_settled(scene: Scene, start: State | None, stop: Stop | None) -> Settling:

@@ -26,7 +26,7 @@ import numba
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate.methods import CERTIFIED
+from ..integrate.methods import LIVE
 from ..quantities import QUANTITIES
 from ..result import Cost, ForceErrors, Jumps, Run
 from ..scene import Scene
@@ -120,7 +120,7 @@ def save_curve(curve: Curve, path: str | Path) -> Path:
 
     def write(file: h5py.File) -> None:
         reached = [p.error_estimate for p in curve.points if p.error_estimate is not None]
-        _provenance(file, curve.scene, CERTIFIED, max(reached) if reached else None)
+        _provenance(file, curve.scene, f"rk4 in batches, {LIVE} for single points", max(reached) if reached else None)
         file.attrs["start"], file.attrs["wall_s"] = curve.start, curve.wall_s
         group = file.create_group("curve")
         _scale(group, "frequency", curve.column("frequency"), "Hz", "drive frequency")

@@ -42,7 +42,7 @@ from granchain_core.warm import structure
 one = scene("sec2").evolve(dissipation="three-quarters")
 print(one.effects[-1], one.equation_latex(), structure(one), sep="|")
 print([spec["choices"] for spec in knob_state(one)["specs"] if spec["name"] == "dissipation"])
-print(explanation(one, None))
+print(explanation(one, None, 96))
 """)
     first, choices, *explained = told.splitlines()
     name, equation, kernels = first.split("|")

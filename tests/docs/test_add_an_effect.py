@@ -62,7 +62,7 @@ from granchain_core.lower import lower
 one = scene("drag")
 print(one.effects, one.equation_latex(), one.evolve(c=0.0).effects)
 print(lower(one.evolve(c=0.0)).slots.drag)
-print(explanation(one, None))
+print(explanation(one, None, 96))
 """)
     first, absent, *explained = told.splitlines()
     assert "ground drag" in first.split("]")[0] and r"- c\,\dot u_i" in first

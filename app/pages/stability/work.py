@@ -12,7 +12,7 @@ from granchain_core import NumbersFailed, Scene, Settled, State
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import Mode, mode, orbit_section
 from granchain_core.orbits.search import search_orbit
-from granchain_core.steady.decide import MOST_PERIODS
+from granchain_core.steady.decide import EXAMINED_AFTER
 from granchain_core.steady.poincare import Section, iter_section
 
 from ...serve.queues import Stop
@@ -90,7 +90,7 @@ def transient(picture: Settled, section: Section) -> int:
     """How many of its first periods are on the way: all of them where a periodic orbit ends it."""
     if picture.regime.name in ("periodic", "unsettled"):
         return section.periods
-    return min(MOST_PERIODS, section.periods)
+    return min(EXAMINED_AFTER, section.periods)
 
 
 def search(picture: Settled, section: Section | None, period: int, stop: Stop) -> Target:

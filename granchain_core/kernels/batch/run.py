@@ -21,7 +21,7 @@ from ..simd.vector import LANES, load, store
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .contact_correction import correct_contacts
 from .period_end import end_period
-from .step import Values, batch_step, watch_ends
+from .step import Values, batch_step, watch_batch_ends
 
 
 class Lanes(NamedTuple):
@@ -110,7 +110,7 @@ def batch_steps(lanes, state, count):
         gap_first = batch_overlap(values.preload, sine, load(y, 1), 0)
         gap_last = batch_overlap(values.preload, load(y, last), load(y, last + 1), last)
         ends = batch_step(values, y, h, sine, middle, end)
-        watch_ends(values, h, gap_first, gap_last, beta * cosine, ends, state.ends, state.peaks)
+        watch_batch_ends(values, h, gap_first, gap_last, beta * cosine, ends, state.ends, state.peaks)
         sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
     store(state.phase, 1, cosine)

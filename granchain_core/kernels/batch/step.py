@@ -148,7 +148,7 @@ def batch_step(values, y, h, u0, middle, end):
 
 
 @inline_llvm
-def watch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
+def watch_batch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
     """Follow input force, output force and its elastic part in all lanes, where a step began."""
     first, last = Approach(gap_first, v0 - ends.v_first), Approach(gap_last, ends.v_last)
     watch_lanes(peaks, INPUT, ends.pushed + damping(values.law, positive_part(first.gap)) * first.rate)

@@ -17,7 +17,7 @@ from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, tim
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.
 _LANDED = 1e-14
-#: A release is located in advance if it is at most this many steps away.
+#: A step aims at the next release if that is at most so many step lengths away.
 _AIM = 1.5
 #: Attempts to locate one event, and to take one step.
 _TRIALS, _ATTEMPTS = 8, 60

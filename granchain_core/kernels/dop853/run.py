@@ -196,6 +196,7 @@ def certified_step(method, trajectory, t, limit, counts):
         h *= x
     if aimed >= 0:
         h = locate_event(method, step, limit, aimed, counts)
+        # behind the event is a term (t − t_e)^{5/2}: a first step of this size errs by about the tolerance
         clock[0] = min(clock[0], 2.0 * method.tolerance**0.4)
     elif not kinked and (h < limit - t or factor < 1.0 or clock[0] <= h):
         clock[0] = h * factor  # behind a kink the motion is smooth on both sides: the next step need not start small

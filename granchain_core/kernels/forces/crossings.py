@@ -27,8 +27,9 @@ class Approach(NamedTuple):
 def closing_rate(before, after, rate, open_rate, own, h):
     """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
 
-    `rate` is δ̇ before. `open_rate` is δ̇ after plus own·δ, by which the contact's own damping has reduced it since then.
-    Between the two the rate is a parabola, whose integral is the overlap's own change. For numbers and vectors.
+    `rate` is δ̇ before the step. `open_rate` is δ̇ after it with the contact's own damping undone: δ̇ + own·δ with
+    own = λ(1/m_c + 1/m_{c+1}). Without that damping the rate is smooth across the closing and is taken as a parabola,
+    whose integral is the overlap's change. For numbers and vectors.
     """
     s = before / (before - after)
     closed = 0.5 * (1.0 - s) * after

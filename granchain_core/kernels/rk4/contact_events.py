@@ -25,7 +25,7 @@ TINY = 1e-300
 
 @internal
 def hermite_root(d0, s0, d1, s1, high):
-    """First root in [0, high] of the cubic with values d0, d1 and slopes s0, s1 at 0 and 1, of another sign there."""
+    """The root in [0, high] of the cubic with values d0, d1 and slopes s0, s1 at 0 and 1; its sign changes there."""
     low = 0.0
     a = 2.0 * (d0 - d1) + s0 + s1
     b = 3.0 * (d1 - d0) - 2.0 * s0 - s1

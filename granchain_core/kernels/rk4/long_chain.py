@@ -61,7 +61,7 @@ def steps_without_events(simd, trajectory, j, count, peaks):
             if changed or (first_before and not first) or (last_before and not last):
                 pack(before, blocks, y, m)
                 return done - 1
-            watch_ends(slots, simd, v0, peaks)
+            watch_long_chain_ends(slots, simd, v0, peaks)
         if done == count:
             pack(now, blocks, y, m)
             return done
@@ -145,7 +145,7 @@ def comes_nearer(simd, slots, v0):
 
 
 @internal
-def watch_ends(slots, simd, v0, peaks):
+def watch_long_chain_ends(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
     block, lane = last // LANES, last % LANES

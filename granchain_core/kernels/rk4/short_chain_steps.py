@@ -7,7 +7,7 @@ import numpy as np
 from ..effects.contact import positive_part
 from ..effects.dissipation import damping
 from ..effects.driver import driver_displacement, driver_velocity
-from ..forces.largest import watch_ends
+from ..forces.largest import watch_ends_at_event
 from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from ..jit import inline_llvm, inline_numba, internal
 from ..simd.functions import larger
@@ -66,7 +66,8 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
         store_state(wide, BEGIN, event)
         done += part
         add_quadrature_errors(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
-        watch_ends(slots, ends, contact, there, out.log)
+        # after it: the overlap now has the sign that it has behind the event
+        watch_ends_at_event(slots, ends, contact, there, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
                        row_correction(row, load_row(wide.width, ends, DISPLACEMENT_ERROR)),

@@ -222,6 +222,7 @@ def split(trajectory, j, u_end, v_end, out):
         motion(slots, u, v, y, k[0], stages.forces)
         done += part
         keep_overlaps(slots, y, k[0], ends, GAP, RATE)
+        # before add_quadrature_errors, which overwrites the overlap with a sign
         watch_event(slots, y, k[0], stages.forces.e, h * part, contact, there, out.log)
         add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
