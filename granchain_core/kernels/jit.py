@@ -147,9 +147,9 @@ def by_slot(absent, forceinline=False):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 
     The decorated function is the code for an absent effect (slot None). `function.of(Slot, …)` registers the code
-    for slots of these NamedTuple classes. An absent effect leaves no code behind, in no caller; the SIMD kernels' machine
-    code is tested for it (tests/kernels/test_machine_code.py). A slot without code is a TypeError that names slot and
-    function, in Python and while a kernel is typed.
+    for slots of these NamedTuple classes. An absent effect leaves no code behind, in no caller: of the SIMD kernels
+    the machine code is tested for it (tests/kernels/test_machine_code.py). A slot without code is a TypeError that
+    names slot and function, in Python and while a kernel is typed.
     """
     implementations = {type(None): absent}
 
