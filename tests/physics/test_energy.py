@@ -46,11 +46,11 @@ def test_the_account_closes(law, tension, kappa, preload):
 @pytest.mark.parametrize("law", ["none", "linear"])
 def test_the_account_closes_after_discarded_periods_too(law):
     """The residual belongs to the recorded part, which may begin anywhere."""
-    result = run(chain(law, "allowed", 0.002, 0.0).evolve(accuracy=1e-6), periods=10, record=3, samples=16)
+    result = run(chain(law, "allowed", 0.002, 2.0 if law == "none" else 0.0).evolve(accuracy=1e-6), periods=10, record=3, samples=16)
     assert result.energy_residual < 1e-5  # ten times the accuracy asked for, energies being quadratic
 
 
-@pytest.mark.parametrize(("law", "tension", "kappa", "preload"), COMBINATIONS[::3])
+@pytest.mark.parametrize(("law", "tension", "kappa", "preload"), [c for c in COMBINATIONS if c[0] != "none"][::3])
 def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, kappa, preload):
     """W = ∫ F_0 v_0 dt and Q = ∫ Σ (F − F_el) δ̇ dt, by the trapezoidal rule over fine samples.
 
@@ -91,7 +91,7 @@ def test_damping_only_takes_energy(law, method):
     assert np.diff(lost).min() > -1e-6 * lost[-1]
 
 
-@pytest.mark.parametrize(("knobs", "method"), [({"dissipation": "none"}, "dop853"), ({"D": 0.0, "kappa": 0.002}, "dop853"),
+@pytest.mark.parametrize(("knobs", "method"), [({"dissipation": "none"}, "dop853"), ({"D": 0.0, "kappa": 0.002, "F0": 2.0}, "dop853"),
                                                ({"dissipation": "none"}, "rk4-split")])
 def test_without_damping_nothing_is_lost_and_the_chain_keeps_what_the_driver_gave(knobs, method):
     """Q = 0, and E − E(0) = W."""
