@@ -10,7 +10,7 @@ from ..integrate import Engine, State, live
 from ..integrate.batch import Batch
 from ..integrate.methods import AT_A_JUMP, jump_errors
 from ..lower import Lowered
-from ..result import relative_changes
+from ..result import CAUTION, relative_changes
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
@@ -87,16 +87,19 @@ class Job:
     def _located_tops(self, y: np.ndarray, regime: Regime, stop: Stop) -> tuple[np.ndarray, np.ndarray]:
         """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
-        Lanes take their steps across events: what they see of a jump is off by an order of the step. A second orbit
-        shows by how much the forces still change on the way from the lanes' orbit to this method's.
+        Lanes take their steps across events: what they see of a jump is off by an order of the step. A second orbit,
+        with half the step, shows both by how much the forces still change on the way from the lanes' orbit to this
+        method's and what the step does at a jump, where its order is uneven.
         """
         assert regime.period is not None
         engine = Engine(self.scene, _LOCATED, 1, stop=stop, lowered=self.lowered)
         engine.start_scaled(self.lowered.beads_of(y))
         first = engine.largest_forces(regime.period)
-        tops = engine.largest_forces(regime.period)
-        moved = relative_changes(tops, first) / (1.0 - regime.slowness)
-        return tops, moved + jump_errors(_LOCATED, self.lowered, 1, engine.jumps, tops)
+        finer = Engine(self.scene, _LOCATED.finer(), 1, stop=stop, lowered=self.lowered)
+        finer.start(engine.state)
+        tops = finer.largest_forces(regime.period)
+        change = CAUTION * relative_changes(tops, first) / (1.0 - regime.slowness)
+        return tops, change + jump_errors(finer.setting, self.lowered, 1, finer.jumps, tops)
 
 
 def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:
