@@ -216,7 +216,7 @@ class Controller:
         self.curves.moved(self.session.scene)
 
     def _choose_frequency(self, frequency: object) -> None:
-        """A click on the curve; for what is no number the knob has the sentence."""
+        """Go to the clicked frequency; the knob refuses anything that is not a number."""
         if isinstance(frequency, (int, float)) and not isinstance(frequency, bool):
             low, high = slider_range(self.session.scene, "f")
             frequency = round(min(max(frequency, low), high), 1)

@@ -10,7 +10,7 @@ from granchain_core import Run, Scene
 
 _FEWEST, _MOST, _STEP = 96, 384, 48
 _PER_CONTACT_TIME = 1.5
-"""Rows while the contacts' own time 1/φ passes: a pulse stays on a bead for about three of these times."""
+"""Rows per contact time 1/φ; a pulse takes about three such times to pass a bead."""
 _LARGEST = 60_000
 """Values of one quantity in a picture; beyond it rows are left out, because nobody sees them."""
 
@@ -18,7 +18,7 @@ LIVE_PERIODS = 4
 SETTLED_PERIODS, _REPEATED = 4, 4
 
 def round_up(value: float) -> float:
-    """The next of a few steps in every decade: a scale that keeps still while a knob moves."""
+    """Round up to one of ten steps per decade, so that a scale keeps still while a knob moves."""
     if not value > 0.0 or not np.isfinite(value):
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))
@@ -66,7 +66,7 @@ _SERIES = tuple(field.name for field in fields(Frames)
 
 
 def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A force train as a line whose jumps (J, 2) are vertical: two points more each, at 0 and at the force there."""
+    """A force train as a line with vertical jumps (J, 2): each adds two points, at 0 and at the force reached."""
     places = np.searchsorted(time, jumps[:, 0])
     feet = np.zeros(len(jumps))
     twice = np.repeat(places, 2)
@@ -88,7 +88,7 @@ def samples_for(scene: Scene) -> int:
 
 
 def settled_frames(run: Run) -> Frames:
-    """Whole periods from time 0, the orbit repeated until one sees that it repeats.
+    """Whole periods from time 0, with the orbit repeated often enough to show that it repeats.
 
     What is not periodic does not repeat, and is shown as it was recorded.
     """

@@ -1,4 +1,4 @@
-"""What the dashboard tells each of its pages, and asks of it."""
+"""The hooks through which the dashboard informs each page, and what it asks of a page."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from .activities import Activity
 
 
 class Page:
-    """One page of one visitor. Every hook is called in the document's turn, and does nothing here.
+    """One page of one visitor. Hooks are called in the document's turn; by default they do nothing.
 
-    `actions` are the messages from the browser that the page answers, by their "do"; names are unique in the dashboard.
+    `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
     """
 
     actions: dict[str, Callable[[dict[str, Any]], None]]
@@ -24,13 +24,13 @@ class Page:
         return None
 
     def moved(self) -> None:
-        """Another picture is asked for."""
+        """A new picture was requested: what belongs to the old one is out of date."""
 
     def changed(self) -> None:
         """The knobs have changed, or another scene was opened."""
 
     def arrived(self, picture: Settled) -> None:
-        """A settled picture has come, perhaps not the last for these knobs (`picture.final`)."""
+        """A settled picture is ready; a better one for these knobs may follow unless `picture.final`."""
 
     def close(self) -> None:
         """The visitor left."""

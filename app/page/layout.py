@@ -54,7 +54,7 @@ class Views:
 
     def fit(self, narrow: bool) -> None:
         """Shorter titles and fewer numbers on the axes over time, where there is little room for them."""
-        with unlocked():  # the same way as the pictures, which write the same titles: none overtakes the other
+        with unlocked():  # sent like the pictures, which write the same titles, so that neither overtakes the other
             self.trains.fit(narrow)
             self.energy.fit(narrow)
 

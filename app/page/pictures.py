@@ -78,7 +78,7 @@ class Pictures:
     # In a worker thread
 
     def _settled(self, scene: Scene, start: State | None, stop: Stop) -> Iterator[Settled]:
-        """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
+        """Pictures on the way to the steady state, once the kernels are compiled."""
         self._await_live_kernels(scene, stop)
         self._session.began = start or self._session.previous_state()
         pictures = settling(scene, start=self._session.began, samples=samples_for(scene), stop=stop)
@@ -91,7 +91,8 @@ class Pictures:
 
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
         if not COMPILER.has(scene, LIVE):
-            self._host.later(self._note, f"{compiling_words('picture').capitalize()}; the picture follows by itself.")
+            self._host.later(self._note, f"{compiling_words('picture').capitalize()}; the picture then appears by "
+                                         "itself.")
             for piece in (LIVE, CERTIFIED, CURVE):
                 COMPILER.ask(scene, piece)
             COMPILER.await_piece(scene, LIVE, stop)
@@ -127,7 +128,7 @@ class Pictures:
         self._painter.painted(number)
 
     def restart(self) -> None:
-        """The page can be seen again: acknowledgements of before will never come."""
+        """The page is visible again: acknowledgements still outstanding will never come."""
         self._painter.restart()
 
     def idle(self) -> None:

@@ -28,7 +28,7 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
 
 
 def show_regime(views: Views) -> None:
-    """The status line's words once more, after the curve that names the place has come."""
+    """Update the status line when the curve is complete, which tells on which peak or valley the motion lies."""
     if views.shown is not None:
         views.status_line.display(**settled_entries(views.shown, views.curve.place(views.shown.run)))
 

@@ -27,9 +27,8 @@ from .host import Host
 class Row:
     """One page: its name in messages, the words on its tab, what is computed and how it is drawn.
 
-    `page` is made with the host and the view. `view` is drawn over the pictures; a page without one is drawn in its
-    tab, by the tabs themselves. `words` stand in the tab until the page has something to say. `roomy` makes the tab
-    higher.
+    `page` is made with the host and the view. `view` covers the pictures; a page without one is drawn in its tab by
+    tabs.js. `words` stand in the tab until the page has something to say. `roomy` gives the tab more height.
     """
 
     name: str

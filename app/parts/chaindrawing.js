@@ -12,7 +12,7 @@ export function unpack(frames) {
     ["energy", beads],
     ["drive", 1],
   ]) {
-    // A plain array: Bokeh's own kind makes its parts start at the beginning again.
+    // A plain Float32Array: a part of Bokeh's own array type would start at the buffer's beginning again.
     frames[name] = new Float32Array(values.buffer, values.byteOffset + 4 * at, rows * width);
     at += rows * width;
   }
@@ -54,7 +54,8 @@ export class ChainDrawing {
     this.span = mapBox.width - 2 * gap;
   }
 
-  // The exaggeration (beads are drawn one pitch apart, which is one diameter): as large as possible while pressed beads do not run into each other.
+  // The scale of displacements: as large as possible without drawing pressed beads over one another. One pitch on the
+  // screen stands for one diameter.
   load(frames) {
     const { rows, beads } = frames;
     const u = frames.displacement;

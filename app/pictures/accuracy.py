@@ -20,7 +20,7 @@ _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_tr
 _NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), "#8a8f98"
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
 _HIGHEST = 10.0
-"""Larger errors say nothing more; their points stand here."""
+"""Largest error drawn; points beyond it, which mean no more, stand here."""
 _COLUMNS = ("ms", "error", "setting", "told")
 
 
@@ -28,7 +28,7 @@ _COLUMNS = ("ms", "error", "setting", "told")
 class Asked:
     """What belongs to the picture but is no measurement.
 
-    accuracy : asked for, a part of the largest displacement. agreement : of the two references, or None.
+    accuracy : asked for, a fraction of the largest displacement. agreement : of the two references, or None.
     cheapest : seconds and error of the row that reaches it first; now : those of the page's own setting.
     """
 

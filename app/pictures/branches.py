@@ -30,7 +30,7 @@ _ORBIT = ("x", "y", "told", "elastic", "output", "input", "period", "motion", "r
 _MARK = ("x", "y", "told", "place")
 _TITLE = "largest elastic output force"
 _TARGET = 13
-"""Pixels around an orbit in which a pointer means it; the orbits beside a special point leave the place to it."""
+"""Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one."""
 
 Columns = dict[str, dict[str, list[Any]]]
 
@@ -52,7 +52,7 @@ class Growth:
         self.special: list[SpecialPoint] = []
 
     def add(self, arm: int, branch: Branch, points: list[BranchPoint], special: list[SpecialPoint]) -> dict[str, Any]:
-        """Rows by source, pieces of lines as (source, number, x, y) to go on with, and what changes of other models."""
+        """New rows by source, line pieces to append as (source, number, x, y), changed properties of other models."""
         new = drawn_orbits(points, special)
         self._force = self._force or force_scale(_TITLE, new[0].max_output_force_elastic)
         self._knob = self._knob or knob_scale(branch.axis.knob, (branch.axis.high,))
@@ -210,7 +210,8 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
     if special.contact is not None:
         told += f": contact {special.contact} has one {special.event} more on one side"
     elif special.kind == "neimark_sacker" and special.multiplier is not None:
-        told += f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i passes the circle"
+        told += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
+                 "circle")
     return told
 
 

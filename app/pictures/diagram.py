@@ -38,7 +38,7 @@ COLOURS = [REGIMES[name][1] if name in REGIMES else "#7a3b00" for name in CATEGO
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
 _FIFTH = 5
 MOST_CELLS = 40_000
-"""Beyond it a browser does not show the cells fluently."""
+"""Most cells that a browser shows smoothly."""
 _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "told", "spacing",
          "number", "own_right", "own_top")
 
@@ -90,7 +90,7 @@ def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float
 def _hatched(plot: figure, source: ColumnDataSource) -> list[LegendItem]:
     """Every computed cell's own place in the colour and hatch of its regime, and an entry of the legend for each.
 
-    A renderer for each regime, because a hatch of every cell's own would be drawn into an image of its own.
+    One renderer per regime: with a hatch per cell the browser would draw an image for each.
     """
     items = []
     for name, colour, hatch in zip(CATEGORIES, COLOURS, _HATCHES, strict=True):

@@ -67,7 +67,7 @@ def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) ->
 @pytest.mark.parametrize(("error", "sentence", "told"), [
     (NumbersFailed("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
     (BadInput("f must be positive."), "f must be positive.", False),
-    (ZeroDivisionError("1/0"), "The measurement stopped by a fault inside granchain.", True)])
+    (ZeroDivisionError("1/0"), "The measurement failed because of an error in granchain.", True)])
 def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: Dashboard,
                                                           task: Task) -> None:
     task.start(failing(error))

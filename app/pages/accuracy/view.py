@@ -21,7 +21,7 @@ from ...pictures.theme import Theme
 from ...scripts import module
 
 _LOST = 1e-4
-"""References that differ by more than this belong to a motion that nobody can follow for ten periods."""
+"""References that differ by more than this show a motion too sensitive to be followed for ten periods."""
 
 
 @cache

@@ -62,7 +62,7 @@ class BranchesPage(Page):
         self._view.display(now=now.f, stale=stale)
 
     def cancel(self) -> None:
-        """Stop; what there is stays and can be gone on with."""
+        """Stop; what has been computed stays and can be continued."""
         if self._task.cancel():
             self._say("cancelled")
 
@@ -145,7 +145,7 @@ class BranchesPage(Page):
         self._draw()
 
     def _draw(self) -> None:
-        """Send what has grown since; special points are in their arm before the orbit behind them is."""
+        """Send what is new; an arm gets a special point before the orbit that follows it."""
         with unlocked():
             for number, drawn in enumerate(self._drawn):
                 points = drawn.arm.points[drawn.points :]

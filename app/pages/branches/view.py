@@ -14,7 +14,7 @@ from ...pictures.branches import branches
 from ...pictures.theme import Theme
 from ...scripts import module
 
-#: Drive periods of an orbit that can be asked for here.
+#: Longest period that can be asked for here, in drive periods.
 LONGEST_PERIOD = 8
 
 

@@ -15,7 +15,7 @@ const cost = (measured) => {
     `${signed(difference)} ns`,
     part("small", { textContent: ` ± ${spread.toFixed(0)} · ${signed(percent)} %` }),
   );
-  cell.title = `with it ${measured.with.toFixed(1)} ns a step, without ${measured.without.toFixed(1)} ns; medians of runs by turns, spread ± ${spread.toFixed(1)} ns`;
+  cell.title = `${measured.with.toFixed(1)} ns a step with it, ${measured.without.toFixed(1)} ns without; medians of alternating runs, spread ± ${spread.toFixed(1)} ns`;
   return cell;
 };
 
@@ -51,11 +51,11 @@ export function effectsTab(model) {
     part("th", { textContent: "effect and its slot in the kernel" }),
     part("th", {
       textContent: "its code",
-      title: "What its code adds to a plain RK4 step, whose every step does the same arithmetic.",
+      title: "What its code adds to a plain RK4 step, in which the arithmetic is always the same.",
     }),
     part("th", {
       textContent: "in this motion",
-      title: "What it changes of a step of the live method, which also splits steps where contacts open or close.",
+      title: "How it changes the time of a step of the live method, which splits steps where contacts open or close.",
     }),
   );
   const whole = part(
@@ -87,7 +87,7 @@ export function effectsTab(model) {
   return [
     table,
     paragraph(`Always compiled in: ${always}. Kernel: ${panel.structure}.`, "soft"),
-    part("h3", { textContent: "computed now" }),
+    part("h3", { textContent: "being computed now" }),
     doing,
     ...(validity ?? []).map((sentence) => paragraph(sentence, "soft")),
   ];

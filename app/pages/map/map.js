@@ -102,7 +102,7 @@ export function mapTab(model) {
         part("td", {
           className: "number",
           textContent: one.share_words,
-          title: `${one.starts} starts of all lead here`,
+          title: `${one.starts} of all starts lead here`,
         }),
         part("td", { className: "soft", textContent: one.from.join(", ") }),
         part(
@@ -116,7 +116,7 @@ export function mapTab(model) {
     const head = part(
       "tr",
       {},
-      ...["", "attractor", "random states", "also from", ""].map((textContent) => part("th", { textContent })),
+      ...["", "attractor", "share of random states", "also from", ""].map((textContent) => part("th", { textContent })),
     );
     found.replaceChildren(part("table", { className: "attractors" }, part("thead", {}, head), body));
   };

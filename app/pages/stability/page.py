@@ -35,7 +35,7 @@ from .view import (
 )
 from .work import PHASES, Analysis, Target, analyse, search, section_of, transient
 
-_LIVE = "A live run is on its way, and only a motion that repeats has multipliers: choose “settled” above."
+_LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
 
 class StabilityPage(Page):

@@ -81,10 +81,10 @@ def _observed(orbit: Orbit) -> str:
 
 def _leaves(leading: complex) -> str:
     if leading.imag != 0.0:
-        return "turns while it grows: a pair outside the circle, as behind a Neimark–Sacker bifurcation"
+        return "turns while it grows: a pair outside the circle, as past a Neimark–Sacker bifurcation"
     if leading.real > 0.0:
-        return "leaves to one side: a multiplier above +1, as behind a fold"
-    return "changes sides each time: a multiplier below −1, as behind a period doubling"
+        return "leaves to one side: a multiplier above +1, as past a fold"
+    return "changes sides each time: a multiplier below −1, as past a period doubling"
 
 
 def no_multipliers(picture: Settled) -> str:
