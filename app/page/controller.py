@@ -16,6 +16,7 @@ from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..serve.websocket import in_its_turn, send_at_once
 from .activities import Activity, account_activity, picture_activities
+from .hooks import Actions, all_actions
 from .layout import Views
 from .links_and_files import LinksAndFiles
 from .live import LiveRun
@@ -44,17 +45,20 @@ class Controller:
         self.themes = Themes(session, views, self.curves)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pages = tuple(row.page(self, views.covers.get(row.name, views.tabs)) for row in PAGES)
-        self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        own: Actions = {
             "ping": lambda _: views.chain.tell(type="pong"),
             "ready": self._ready, "visible": lambda _: self.pictures.restart(),
             "room": lambda m: views.fit(bool(m.get("narrow"))),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood,
-            **Transport(session, self.pictures, self._compute, self._header, self.say).actions,
-            **self.files.actions, **self.themes.actions,
-            **{name: action for page in self.pages for name, action in page.actions.items()},
         }
+        playback = Transport(session, self.pictures, self._compute, self._header, self.say)
+        self._actions = all_actions({
+            "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
+            "the theme": self.themes.actions,
+            **{f"the page {row.name!r}": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
+        })
 
     # Coming in and going out
 

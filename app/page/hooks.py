@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from granchain_core import Settled
 
 from .activities import Activity
+
+Actions = Mapping[str, Callable[[dict[str, Any]], None]]
 
 
 class Page:
@@ -16,7 +18,7 @@ class Page:
     `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
     """
 
-    actions: dict[str, Callable[[dict[str, Any]], None]]
+    actions: Actions
 
     @property
     def activity(self) -> Activity | None:
@@ -34,3 +36,14 @@ class Page:
 
     def close(self) -> None:
         """The visitor left."""
+
+
+def all_actions(owners: Mapping[str, Actions]) -> Actions:
+    """The actions of all owners in one table. Raises `TypeError` if two of them use one name."""
+    owner_of: dict[str, str] = {}
+    for owner, actions in owners.items():
+        for name in actions:
+            if name in owner_of:
+                raise TypeError(f"{owner_of[name]} and {owner} both have an action {name!r}; rename one of them.")
+            owner_of[name] = owner
+    return {name: action for actions in owners.values() for name, action in actions.items()}

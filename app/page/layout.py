@@ -59,9 +59,9 @@ class Views:
             self.energy.fit(narrow)
 
     def dress(self, theme: Theme) -> None:
-        """Another theme for every picture that is drawn here."""
-        for part in (*self.covers.values(), self.tabs):
-            part.dress(theme)
+        """Draw the figures of all pages in another theme."""
+        for cover in self.covers.values():
+            cover.dress(theme)
 
     def template(self) -> pn.Template:
         """The page; its layout is a CSS grid in page.css."""

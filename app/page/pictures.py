@@ -7,7 +7,7 @@ from functools import partial
 
 from bokeh.document import Document
 
-from granchain_core import Run, Scene, Settled, State, settling
+from granchain_core import Cancelled, Run, Scene, Settled, State, settling
 from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
 from ..serve.compiler import COMPILER, compiling_words
@@ -90,12 +90,14 @@ class Pictures:
                     yield with_account(picture, stop)
 
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
+        """Wait until another process has compiled them. Raises `Cancelled`: settling would compile them in this one."""
         if not COMPILER.has(scene, LIVE):
             self._host.later(self._note, f"{compiling_words('picture').capitalize()}; the picture then appears by "
                                          "itself.")
             for piece in (LIVE, CERTIFIED, CURVE):
                 COMPILER.ask(scene, piece)
-            COMPILER.await_piece(scene, LIVE, stop)
+            if not COMPILER.await_piece(scene, LIVE, stop):
+                raise Cancelled
 
     def _live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
         live = self.live

@@ -94,14 +94,14 @@ export class ChainDrawing {
     const at = sampler(frames, row);
     const place = (i) => this.left + (i - 0.5) * pitch + at.u(i) * this.exaggeration * pitch;
     this.ground(frames, pitch, radius, y, place);
-    for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, pitch, radius, y);
+    for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, radius, y);
     this.bodies(place, pitch, radius, y, beads);
     for (let i = 1; i <= beads; i++)
       this.bead(place(i), y, radius * (frames.radii[i - 1] / this.largest), at.energy(i) / frames.energy_high);
     this.words();
   }
 
-  contact(c, force, frames, place, _pitch, radius, y) {
+  contact(c, force, frames, place, radius, y) {
     const { context: g, ink } = this;
     if (Math.abs(force) < 1e-6 * this.force) return;
     const from = c === 0 ? place(0) + radius : place(c);

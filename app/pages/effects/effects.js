@@ -42,7 +42,6 @@ export function effectsTab(model) {
   const { panel, validity } = model.state;
   if (!panel) return [];
   const { step } = panel;
-  const slotOf = { dashpot: "dissipation", account: "balance" };
   const slots = new Map(panel.slots.map((one) => [one.slot, one]));
   const ns = (value) => (value ? `${value.toFixed(0)} ns` : "–");
   const head = part(
@@ -65,10 +64,10 @@ export function effectsTab(model) {
     part("td", { textContent: ns(step.rk4) }),
     part("td", { textContent: ns(step["rk4-split"]) }),
   );
-  const rows = panel.effects.map((effect) => effectRow(model, effect, slots.get(slotOf[effect.name] ?? effect.name)));
+  const rows = panel.effects.map((effect) => effectRow(model, effect, slots.get(effect.slot)));
   const table = part("table", { className: "costs" }, part("thead", {}, head), part("tbody", {}, ...rows, whole));
   const always = panel.slots
-    .filter((one) => ["chain", "driver"].includes(one.slot))
+    .filter((one) => panel.always.includes(one.slot))
     .map((one) => `${one.title} (${one.type})`)
     .join(", ");
   const doing = part("table", { className: "doing" });
