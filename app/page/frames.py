@@ -14,8 +14,9 @@ _PER_CONTACT_TIME = 1.5
 _LARGEST = 60_000
 """Values of one quantity in a picture; beyond it rows are left out, because nobody sees them."""
 
-LIVE_PERIODS = 4
-SETTLED_PERIODS, _REPEATED = 4, 4
+PERIODS = 4
+"""Drive periods in a live picture, and in a settled one at least; a longer orbit is shown once."""
+
 
 def round_up(value: float) -> float:
     """Round up to one of ten steps per decade, so that a scale keeps still while a knob moves."""
@@ -94,7 +95,7 @@ def settled_frames(run: Run) -> Frames:
     """
     rows = len(run.time)
     periods = max(1, round((rows - 1) / run.samples))
-    copies = max(-(-SETTLED_PERIODS // periods), 2 if periods <= _REPEATED else 1)
+    copies = max(-(-PERIODS // periods), 2 if periods <= PERIODS else 1)
     if run.regime.name != "periodic":
         copies = 1
     values = copies * rows * run.displacement.shape[1]
@@ -111,7 +112,7 @@ def settled_frames(run: Run) -> Frames:
 class LiveWindow:
     """The last few periods of a live run; every row knows how many drive periods ago it was."""
 
-    def __init__(self, samples: int, periods: int = LIVE_PERIODS) -> None:
+    def __init__(self, samples: int, periods: int = PERIODS) -> None:
         self._samples = samples
         self._rows = periods * samples + 1
         self._time = -np.arange(self._rows)[::-1] / samples

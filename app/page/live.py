@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.run.live import joined
 
-from .frames import LIVE_PERIODS, Frames, LiveWindow, samples_for
+from .frames import PERIODS, Frames, LiveWindow, samples_for
 
 _LONGEST_STEP = 0.1
 """Most seconds of viewing time that one step makes up for: after a hidden tab the run does not jump."""
@@ -92,5 +92,5 @@ class LiveRun:
         if self._runs and self._runs[-1].displacement.shape[1] != run.displacement.shape[1]:
             self._runs.clear()
         self._runs.append(run)
-        while sum(len(piece.time) - 1 for piece in self._runs) > LIVE_PERIODS * self.samples and len(self._runs) > 1:
+        while sum(len(piece.time) - 1 for piece in self._runs) > PERIODS * self.samples and len(self._runs) > 1:
             self._runs.popleft()

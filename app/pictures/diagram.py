@@ -29,14 +29,13 @@ from granchain_core.diagram.cells import empty_cells
 
 from ..page.format import short_error
 from .axes import Scale, in_words, knob_scale
-from .regimes import REGIMES
+from .regimes import REGIMES, regime_key
 from .theme import Theme, dress, frame, in_theme
 
 CATEGORIES = (*REGIMES, "failed")
 """What a cell may be, in the curve's colours, each with a hatch of its own."""
 COLOURS = [REGIMES[name][1] if name in REGIMES else "#7a3b00" for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
-_FIFTH = 5
 MOST_CELLS = 40_000
 """Most cells that a browser shows smoothly."""
 _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "told", "spacing",
@@ -171,9 +170,7 @@ def category(cell: np.ndarray) -> str:
 
 
 def _category(regime: int, period: int) -> str:
-    if NAMES[regime] != "periodic":
-        return NAMES[regime]
-    return f"period {period}" if period < _FIFTH else "period 5+"
+    return "failed" if NAMES[regime] == "failed" else regime_key(NAMES[regime], period)
 
 
 def cell_words(grid: Grid, cell: np.ndarray) -> str:
