@@ -21,11 +21,11 @@ from .layout import Views
 from .links_and_files import LinksAndFiles
 from .live import LiveRun
 from .pictures import Pictures
-from .playback import Transport
+from .playback import Playback
 from .session import SPEEDS, Session, presets, slider_range
 from .show import show_regime
 from .table import PAGES
-from .theme import Themes
+from .theme import DisplayChoices
 
 log = logging.getLogger("granchain")
 
@@ -42,7 +42,7 @@ class Controller:
         self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
         self.pictures = Pictures(document, self, views, self.note, self._arrived)
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
-        self.themes = Themes(session, views, self.curves)
+        self.choices = DisplayChoices(session, views, self.curves)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pages = tuple(row.page(self, views.covers.get(row.name, views.tabs)) for row in PAGES)
         own: Actions = {
@@ -53,10 +53,10 @@ class Controller:
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood,
         }
-        playback = Transport(session, self.pictures, self._compute, self._header, self.say)
+        playback = Playback(session, self.pictures, self._compute, self._header, self.say)
         self._actions = all_actions({
             "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
-            "the theme": self.themes.actions,
+            "display choices": self.choices.actions,
             **{f"the page {row.name!r}": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
         })
 
@@ -125,9 +125,9 @@ class Controller:
         return self.pictures.busy
 
     @property
-    def unsettled(self) -> bool:
+    def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet."""
-        return self.pictures.unsettled
+        return self.pictures.awaiting_picture
 
     @property
     def curve_computing(self) -> bool:
@@ -162,7 +162,7 @@ class Controller:
     def _ready(self, message: dict[str, Any]) -> None:
         send_at_once(self._document)
         self.views.fit(bool(message.get("narrow")))
-        self.themes.choose({"value": message.get("theme")})
+        self.choices.choose({"value": message.get("theme")})
         self._new_scene()
 
     def _new_scene(self) -> None:

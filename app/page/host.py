@@ -21,7 +21,7 @@ class Host(Protocol):
         """Whether a picture is being computed."""
 
     @property
-    def unsettled(self) -> bool:
+    def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
 
     @property

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.run.live import joined
 
-from .frames import PERIODS, Frames, LiveWindow, samples_for
+from ..frames import PERIODS, Frames, LiveWindow, samples_for
 
 _LONGEST_STEP = 0.1
 """Most seconds of viewing time that one step makes up for: after a hidden tab the run does not jump."""

@@ -10,12 +10,12 @@ from bokeh.document import Document
 from granchain_core import Cancelled, Run, Scene, Settled, State, settling
 from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
+from ..frames import samples_for
 from ..serve.compiler import COMPILER, compiling_words
 from ..serve.pacing import Painter
 from ..serve.queues import LatestWins, Stop
 from ..serve.websocket import in_one_go
 from .energy_residual import with_account
-from .frames import samples_for
 from .host import Host
 from .layout import Views
 from .live import LivePicture, LiveRun
@@ -46,7 +46,7 @@ class Pictures:
         return self._jobs.busy
 
     @property
-    def unsettled(self) -> bool:
+    def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
         return self._jobs.busy and self.live is None
 

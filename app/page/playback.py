@@ -10,7 +10,7 @@ from .pictures import Pictures
 from .session import Session
 
 
-class Transport:
+class Playback:
     """Actions of the bar on top that deal with time; `compute` asks for a picture, `header` draws the bar anew."""
 
     def __init__(self, session: Session, pictures: Pictures, compute: Callable[[], None], header: Callable[[], None],

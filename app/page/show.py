@@ -7,10 +7,10 @@ from panel.io import unlocked
 
 from granchain_core import Scene, Settled
 
+from ..format import prefixed
+from ..frames import Frames, settled_frames
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
-from .format import prefixed
-from .frames import Frames, settled_frames
 from .layout import Views
 from .live import LivePicture
 

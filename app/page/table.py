@@ -10,9 +10,9 @@ from ..pages.accuracy.page import AccuracyPage
 from ..pages.accuracy.view import Accuracy
 from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
-from ..pages.check.page import HardPage
-from ..pages.check.view import Hard
 from ..pages.effects.page import EffectsPanel
+from ..pages.hard_cases.page import HardPage
+from ..pages.hard_cases.view import Hard
 from ..pages.map.page import MapTab
 from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer

@@ -49,7 +49,7 @@ class Job:
 
     def give_way(self, to: Callable[[], bool] | None = None) -> None:
         """Wait while the picture for a moved knob is being computed, or while `to` returns True."""
-        waits = to or (lambda: self._host.unsettled)
+        waits = to or (lambda: self._host.awaiting_picture)
         while waits() and not self.stop:
             time.sleep(PICTURE_POLL)
 

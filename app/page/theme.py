@@ -11,7 +11,7 @@ from .layout import Views
 from .session import Session
 
 
-class Themes:
+class DisplayChoices:
     """Display choices, which start no computation except, perhaps, another curve."""
 
     def __init__(self, session: Session, views: Views, curves: Curves) -> None:

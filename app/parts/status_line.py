@@ -7,7 +7,7 @@ from typing import Any
 from granchain_core import Run, Settled
 from granchain_core.steady.resonance import Place, place_words, pushes
 
-from ..page.format import duration, short_error
+from ..format import duration, short_error
 from ..scripts import module
 from .component import Component, text
 

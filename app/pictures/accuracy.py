@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 
 from granchain_core.accuracy import Row, ways
 
-from ..page.format import duration, short_error
+from ..format import duration, short_error
 from .theme import Theme, dress, frame, in_theme
 
 _PALETTE = ("#e0900a", "#9b6bf2", "#0fa3b8", "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")

@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 from granchain_core.orbits import Branch, BranchPoint, SpecialPoint
 from granchain_core.steady.regime import modulus_words
 
-from ..page.format import short_error
+from ..format import short_error
 from .axes import Scale, force_scale, in_words, knob_scale
 from .theme import Theme, dress, frame, in_theme
 

@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 
 from granchain_core import Curve
 
-from ..page.format import short_error
+from ..format import short_error
 from .axes import force_scale, in_words, knob_scale
 from .regimes import REGIMES, regime_key
 from .theme import Theme, dress, frame, in_theme

@@ -27,7 +27,7 @@ from granchain_core.diagram import Axis, Diagram, Grid
 from granchain_core.diagram.cells import REGIMES as NAMES
 from granchain_core.diagram.cells import empty_cells
 
-from ..page.format import short_error
+from ..format import short_error
 from .axes import Scale, in_words, knob_scale
 from .regimes import REGIMES, regime_key
 from .theme import Theme, dress, frame, in_theme

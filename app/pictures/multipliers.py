@@ -15,7 +15,7 @@ from bokeh.plotting import figure
 from granchain_core.orbits import Orbit
 from granchain_core.steady.regime import modulus_words
 
-from ..page.format import duration
+from ..format import duration
 from .theme import Theme, dress, frame, in_theme
 
 _FARTHEST = 2.4

@@ -14,9 +14,9 @@ from bokeh.events import Tap
 from turns import Turns
 
 from app.page import links_and_files, pictures
-from app.page.borders import listed, whole
 from app.page.controller import Controller
 from app.page.hooks import all_actions
+from app.page.message_checks import listed, whole
 from app.page.session import Session
 from app.serve import server
 from app.serve.compiler import COMPILER, Compiler

@@ -140,7 +140,7 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
 class Page:
     """The host of the page: what is asked to be done later is done when the test says so."""
 
-    busy = unsettled = curve_computing = False
+    busy = awaiting_picture = curve_computing = False
 
     def __init__(self, mode: str = "settled") -> None:
         self.session = SimpleNamespace(mode=mode, began=None, scene=scene("sec2"))

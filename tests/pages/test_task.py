@@ -18,7 +18,7 @@ from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 class Dashboard(Turns):
     """A host whose turn comes when the test says so."""
 
-    unsettled = False
+    awaiting_picture = False
 
     def __init__(self) -> None:
         super().__init__()
@@ -129,11 +129,11 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: Dashboard) ->
 
 
 def test_work_gives_way_to_a_moving_knob(host: Dashboard, task: Task) -> None:
-    host.unsettled = True
+    host.awaiting_picture = True
     task.start(lambda job: job.give_way())
     time.sleep(0.1)
     assert host.turns == []
-    host.unsettled = False
+    host.awaiting_picture = False
     host.work_off(lambda: not task.running)
 
 

@@ -13,9 +13,9 @@ from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
+from ...format import duration, short_error
 from ...page.active_setting import locate, page_setting
 from ...page.activities import IDLE, OFF, RUNNING, Activity
-from ...page.format import duration, short_error
 from ...page.hooks import Page
 from ...page.host import Host
 from ...page.progress import progress

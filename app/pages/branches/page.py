@@ -13,9 +13,9 @@ from granchain_core import Scene
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
-from ...page.borders import listed, whole
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.message_checks import listed, whole
 from ...page.progress import progress
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task

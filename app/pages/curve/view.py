@@ -14,8 +14,8 @@ from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Feature, Measured
 from granchain_core.steady.resonance import Place, place_of
 
-from ...page.format import prefixed, short_error
-from ...page.frames import round_up
+from ...format import prefixed, short_error
+from ...frames import round_up
 from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
 from ...pictures.curve import DASHES, WORDS
 from ...pictures.regimes import REGIMES, regime_key

@@ -102,7 +102,7 @@ class EffectsPanel(Page):
     def _next(self) -> None:
         """Begin what is to be done next: compile for one effect, or time it."""
         scene = self._host.session.scene
-        busy = self.measuring or self._host.unsettled or self._host.curve_computing
+        busy = self.measuring or self._host.awaiting_picture or self._host.curve_computing
         if busy or time.monotonic() - self._moved < COST_QUIET:
             return
         if not COMPILER.has(scene, LIVE, CERTIFIED, CURVE):  # the picture's own kernels come first

@@ -15,9 +15,9 @@ from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagr
 from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 
-from ...page.borders import listed
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.message_checks import listed
 from ...page.progress import progress
 from ...page.session import slider_range
 from ...page.task import Job, Task
@@ -148,7 +148,7 @@ class MapTab(Page):
 
     def _in_front(self) -> bool:
         """Whether the picture or the curve is being computed, which come first."""
-        return self._host.unsettled or self._host.curve_computing
+        return self._host.awaiting_picture or self._host.curve_computing
 
     # To the browser
 

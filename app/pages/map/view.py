@@ -11,7 +11,7 @@ from granchain_core.diagram import Attractor, Grid
 from granchain_core.orbits import response
 from granchain_core.steady.regime import modulus_words
 
-from ...page.format import short_error
+from ...format import short_error
 from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models
 from ...pictures.regimes import REGIMES, regime_key
 from ...pictures.theme import Theme

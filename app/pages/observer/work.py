@@ -19,7 +19,7 @@ from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.state import rest
 from granchain_core.stop import Stop
 
-from ...page.frames import samples_for
+from ...frames import samples_for
 
 #: What a nudge moves the observer's beads by, root mean square, as a part of A0.
 NUDGE = 1e-3

@@ -15,9 +15,9 @@ from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
 from ...page.activities import IDLE, OFF, RUNNING, Activity
-from ...page.borders import whole
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.message_checks import whole
 from ...page.progress import progress
 from ...page.task import Job, Task
 from ...pictures.multipliers import plane_state

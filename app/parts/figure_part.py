@@ -11,7 +11,7 @@ from ..pictures.theme import THEMES, Theme
 from .component import Component
 
 
-class Drawn(Component):
+class FigurePart(Component):
     """A component with figures. They are sent without data when first needed, and again when the theme changes.
 
     `figures` are Bokeh's JSON by name, kept out of `state` because each change sends all of that. Data come as
