@@ -21,7 +21,7 @@ _NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), "#8a8f98"
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
 _HIGHEST = 10.0
 """Largest error drawn; points beyond it, which mean no more, stand here."""
-_COLUMNS = ("ms", "error", "setting", "told")
+_COLUMNS = ("ms", "error", "setting", "tooltip")
 
 
 @dataclass(frozen=True)
@@ -124,7 +124,7 @@ def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: b
             in_theme(dots, fill_color="card")
         shown.append(dots)
         items.append(LegendItem(label=name.replace("scipy ", "SciPy "), renderers=[line, dots]))
-    plot.add_tools(HoverTool(renderers=shown, tooltips=[("", "$name"), ("", "@setting"), ("", "@told")]))
+    plot.add_tools(HoverTool(renderers=shown, tooltips=[("", "$name"), ("", "@setting"), ("", "@tooltip")]))
     if not compact:
         plot.add_layout(Legend(items=items, click_policy="hide", padding=0, margin=0, spacing=0, label_height=14,
                                glyph_height=14), "right")

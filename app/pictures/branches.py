@@ -25,9 +25,9 @@ _STYLES: dict[str, dict[str, Any]] = {
 }
 _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 """Width and dash."""
-_ORBIT = ("x", "y", "told", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
+_ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
-_MARK = ("x", "y", "told", "place")
+_MARK = ("x", "y", "tooltip", "place")
 _TITLE = "largest elastic output force"
 _TARGET = 13
 """Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one."""
@@ -185,9 +185,9 @@ def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
     marks = [one for item in items for one in item.renderers if item.label.value in SPECIAL.values()]
     plot.add_tools(
         HoverTool(renderers=[targets], limit=1, attachment="below", tooltips=[
-            ("orbit", "@told"), ("motion", "@motion"), ("elastic output force", "@elastic"),
+            ("orbit", "@tooltip"), ("motion", "@motion"), ("elastic output force", "@elastic"),
             ("output force", "@output"), ("input force", "@input"), ("relative error of the orbit", "@residual")]),
-        HoverTool(renderers=marks, tooltips=[("", "@told")], limit=2, attachment="above"),
+        HoverTool(renderers=marks, tooltips=[("", "@tooltip")], limit=2, attachment="above"),
         TapTool(name="tap", renderers=[targets, *marks], mode="replace"))
     plot.add_layout(Legend(name="legend", items=items, click_policy="hide", orientation="horizontal", ncols=len(items),
                            padding=0, margin=4, spacing=12, glyph_width=26), "below")
@@ -216,7 +216,7 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
 
 
 def _orbit_words(point: BranchPoint, branch: Branch) -> tuple[Any, ...]:
-    """The columns of an orbit from `told` to `stable`."""
+    """The columns of an orbit from `tooltip` to `stable`."""
     scale = knob_scale(branch.axis.knob, (branch.axis.high,))
     forces = (point.max_output_force_elastic, point.max_output_force, point.max_input_force)
     return (f"{point.knob / scale.factor:.7g} {scale.unit}, period {branch.period}",

@@ -38,7 +38,7 @@ COLOURS = [REGIMES[name][1] if name in REGIMES else "#7a3b00" for name in CATEGO
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
 MOST_CELLS = 40_000
 """Most cells that a browser shows smoothly."""
-_CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "told", "spacing",
+_CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip", "spacing",
          "number", "own_right", "own_top")
 
 
@@ -73,7 +73,7 @@ def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float
     plot.add_layout(bar, "above")
     plot.add_layout(Legend(name="regimes", orientation="horizontal", ncols=3, padding=0, margin=2,
                            items=items), "above")
-    plot.add_tools(HoverTool(renderers=[force, regime], tooltips=[("", "@told")], limit=1, sort_by="spacing"),
+    plot.add_tools(HoverTool(renderers=[force, regime], tooltips=[("", "@tooltip")], limit=1, sort_by="spacing"),
                    TapTool(name="tap", renderers=[force, regime], mode="replace"))
     _marks(plot, now_row(grid, *now) if now else now_row(grid))
     for name, properties in {**shown_models(shown), **scale_models(computed)}.items():

@@ -95,9 +95,9 @@ export function render({ model }) {
 
   const choose = (source, row) => {
     const columns = grown.rows[source];
-    const [told, place] = [columns.told[row], columns.place[row]];
+    const [tooltip, place] = [columns.tooltip[row], columns.place[row]];
     chosen.hidden = false;
-    chosen.replaceChildren(told);
+    chosen.replaceChildren(tooltip);
     if (source === "orbits") {
       model.send_msg({ do: "branches-orbit", arm: columns.arm[row], place });
       chosen.append(

@@ -49,7 +49,7 @@ export function mapTab(model) {
 
   const pick = (row) => {
     if (row < 0) return;
-    said.textContent = MAP.cells.rows.cells.told[row];
+    said.textContent = MAP.cells.rows.cells.tooltip[row];
     send("map-choose", valuesOf(row));
   };
   const figure = new Embedded(host, (one) => {
@@ -66,7 +66,7 @@ export function mapTab(model) {
     const edge = (name) => (row < 0 ? [] : [MAP.cells.rows.cells[name][row]]);
     const data = { left: edge("left"), right: edge("right"), bottom: edge("bottom"), top: edge("top") };
     figure.set("cursor", { data });
-    if (row >= 0) said.textContent = MAP.cells.rows.cells.told[row];
+    if (row >= 0) said.textContent = MAP.cells.rows.cells.tooltip[row];
   };
   host.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] }[event.key];
