@@ -21,7 +21,7 @@ class Scripts:
     __javascript_modules__ = tuple(FILES.values())
 
 
-#: The class again, under a name that changes with any file: a browser must not mix new modules with old ones it kept.
+#: The same class under a name that changes with any file, so that a browser never mixes new modules with cached ones.
 _NAME = "Scripts_" + hashlib.sha256(b"".join(path.read_bytes() for path in FILES.values())).hexdigest()[:12]
 globals()[_NAME] = Scripts
 

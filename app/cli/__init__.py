@@ -1,8 +1,8 @@
 """The command line: serve, scenes, warm, run, curve, orbit, branch, observe, map, accuracy, check.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
-130 cancelled. With --json one object goes to stdout and nothing else: the result, or of a computation that failed or
-would not fit its outcome, sentence and what is known. Progress goes to stderr.
+130 cancelled. With --json exactly one object goes to stdout: the result or, if the computation failed or was over
+budget, its outcome, a sentence and what is known. Progress goes to stderr.
 """
 
 from __future__ import annotations

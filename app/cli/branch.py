@@ -32,7 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--both", action="store_true",
                         help="begin at the scene's own value of the knob and go both ways, to a and to b")
     parser.add_argument("--points", type=int, default=MOST_POINTS, metavar="m", help="orbits each way at most")
-    parser.add_argument("--resume", metavar="FILE", help="go on with a branch that --out has written")
+    parser.add_argument("--resume", metavar="FILE", help="continue a branch written by --out")
     add_picture(parser)
 
 
@@ -62,7 +62,7 @@ def branch(arguments: argparse.Namespace) -> None:
         save_branch(found, arguments.out)
     write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", lambda theme: _drawn(found, theme))
     for arm in found.arms:
-        say(f"{len(arm.points)} orbits {_way(arm)}: {arm.reason or 'stopped there, as many as were asked for'}")
+        say(f"{len(arm.points)} orbits {_way(arm)}: {arm.reason or 'stopped after the number of orbits asked for'}")
     if arguments.json:
         print(json.dumps(branch_json(found), allow_nan=False))
     else:
@@ -88,8 +88,8 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> Branch:
 
     if arguments.resume:
         if arguments.knob or arguments.start or arguments.end or arguments.period or arguments.set:
-            raise BadInput(f"--resume goes on with what {Path(arguments.resume).name} says; --knob, --from, --to, "
-                           "--period and --set do not go with it.")
+            raise BadInput(f"--resume takes everything from {Path(arguments.resume).name}; it cannot be combined with "
+                           "--knob, --from, --to, --period or --set.")
         found = load_branch(arguments.resume)
         if found.axis.scene.name != arguments.scene:
             raise BadInput(f"{arguments.resume} is a branch of {found.axis.scene.name}, not of {arguments.scene}.")

@@ -1,4 +1,4 @@
-"""What each command does; names, JSON keys and meanings are what others script against."""
+"""The commands. Their names, JSON keys and meanings are an interface on which others' scripts depend."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from granchain_core.scene.foundation import moved_kappa
 
 
 def kept_spring(before: Scene, after: Scene, named: Collection[str]) -> str:
-    """What an A0 that was set without k or kappa did to kappa, and how to keep it; else nothing."""
+    """If A0 was set without k or kappa: what that did to kappa, and how to keep it; otherwise an empty string."""
     told = "" if {"k", "kappa"} & set(named) else moved_kappa(before, after)
     return told and f"{told}. It is {after.kappa:.6g} now; --set kappa={before.kappa:.6g} keeps it."
 
@@ -18,5 +18,5 @@ def kept_along(current: Scene, *knobs: str) -> str:
     """That kappa changes along a branch or map in A0 at constant k, in one sentence; else nothing."""
     if "A0" not in knobs or {"k", "kappa"} & set(knobs) or current.k == 0.0:
         return ""
-    return (f"A0 is moved and k stays {current.k:.6g} N/m, so kappa goes with 1/√A0; "
-            f"it is {current.kappa:.6g} at {current.A0:g} m.")
+    return (f"A0 varies at constant k = {current.k:.6g} N/m, so kappa is proportional to 1/√A0; "
+            f"it is {current.kappa:.6g} at A0 = {current.A0:g} m.")

@@ -32,11 +32,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene(parser)
     for name, example in (("--x", "f=30:3000:100"), ("--y", "A0=1e-7:1e-5:100:log")):
         parser.add_argument(name, required=True, metavar="KNOB=a:b:n",
-                            help=f"n values of a knob from a to b, evenly or, with :log behind them, by their ratio; "
-                                 f"for example {example}")
+                            help="n values of a knob from a to b, evenly spaced or, with :log appended, "
+                                 f"logarithmically; for example {example}")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
     parser.add_argument("--out", required=True, metavar="FILE", help="write an HDF5 file")
-    parser.add_argument("--resume", action="store_true", help="go on with a map that was cut off")
+    parser.add_argument("--resume", action="store_true", help="continue a map that was interrupted")
     add_json(parser)
     add_picture(parser)
 
@@ -62,7 +62,7 @@ def axis_from(option: str, text: str) -> Axis:
         raise BadInput(f"{option} {text[:60]!r}: from {parts[0]} to {parts[1]} there are "
                        f"{'one point' if len(ends) == 1 else 'at least two points'}, not {count}.")
     if logarithmic and ends[0] <= 0.0:
-        raise BadInput(f"{option} {text[:60]!r}: points by their ratio need both ends above 0; leave :log away.")
+        raise BadInput(f"{option} {text[:60]!r}: logarithmic spacing needs both ends above 0; leave out :log.")
     spaced = np.geomspace if logarithmic else np.linspace
     return Axis.of(knob, spaced(ends[0], ends[-1], count).tolist())
 

@@ -22,7 +22,7 @@ def check_picture(name: str | None) -> None:
     if name is None:
         return
     if Path(name).suffix.lower() not in (".html", ".htm"):
-        raise BadInput(f"--picture {name} is an HTML file; call it {Path(name).with_suffix('.html')}.")
+        raise BadInput(f"--picture writes an HTML file; name it {Path(name).with_suffix('.html')}, not {name}.")
     check_writable(name)
 
 

@@ -21,7 +21,7 @@ def picture_activities(session: Session, busy: bool) -> list[Activity]:
         ("live run", (RUNNING if session.playing else IDLE) if live else OFF,
          ("goes on" if session.playing else "paused") if live else "the page shows the steady state"),
         ("steady state", OFF if live else running,
-         "live mode looks for none" if live else "not found yet" if picture is None else picture.regime.sentence),
+         "not looked for in live mode" if live else "not found yet" if picture is None else picture.regime.sentence),
         ("Lyapunov exponent", *_lyapunov(None if live else picture)),
     ]
 
@@ -43,7 +43,7 @@ def _account(session: Session, busy: bool) -> tuple[str, str]:
     if not session.account:
         return OFF, "switched off"
     if session.mode == "live":
-        return OFF, "the live run keeps none"
+        return OFF, "not computed in a live run"
     if picture is None or picture.run.energy_residual is None:
-        return RUNNING if busy else IDLE, "follows the picture"
+        return RUNNING if busy else IDLE, "computed after the picture"
     return IDLE, f"closes to {picture.run.energy_residual:.0e}"

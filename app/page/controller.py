@@ -16,15 +16,16 @@ from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..serve.websocket import in_its_turn, send_at_once
 from .activities import Activity, account_activity, picture_activities
+from .hooks import Actions, all_actions
 from .layout import Views
 from .links_and_files import LinksAndFiles
 from .live import LiveRun
 from .pictures import Pictures
-from .playback import Transport
+from .playback import Playback
 from .session import SPEEDS, Session, presets, slider_range
 from .show import show_regime
 from .table import PAGES
-from .theme import Themes
+from .theme import DisplayChoices
 
 log = logging.getLogger("granchain")
 
@@ -41,20 +42,23 @@ class Controller:
         self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
         self.pictures = Pictures(document, self, views, self.note, self._arrived)
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
-        self.themes = Themes(session, views, self.curves)
+        self.choices = DisplayChoices(session, views, self.curves)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pages = tuple(row.page(self, views.covers.get(row.name, views.tabs)) for row in PAGES)
-        self._actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        own: Actions = {
             "ping": lambda _: views.chain.tell(type="pong"),
             "ready": self._ready, "visible": lambda _: self.pictures.restart(),
             "room": lambda m: views.fit(bool(m.get("narrow"))),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
             "understood": self._understood,
-            **Transport(session, self.pictures, self._compute, self._header, self.say).actions,
-            **self.files.actions, **self.themes.actions,
-            **{name: action for page in self.pages for name, action in page.actions.items()},
         }
+        playback = Playback(session, self.pictures, self._compute, self._header, self.say)
+        self._actions = all_actions({
+            "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
+            "display choices": self.choices.actions,
+            **{f"the page {row.name!r}": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
+        })
 
     # Coming in and going out
 
@@ -121,9 +125,9 @@ class Controller:
         return self.pictures.busy
 
     @property
-    def unsettled(self) -> bool:
+    def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet."""
-        return self.pictures.unsettled
+        return self.pictures.awaiting_picture
 
     @property
     def curve_computing(self) -> bool:
@@ -158,7 +162,7 @@ class Controller:
     def _ready(self, message: dict[str, Any]) -> None:
         send_at_once(self._document)
         self.views.fit(bool(message.get("narrow")))
-        self.themes.choose({"value": message.get("theme")})
+        self.choices.choose({"value": message.get("theme")})
         self._new_scene()
 
     def _new_scene(self) -> None:
@@ -216,7 +220,7 @@ class Controller:
         self.curves.moved(self.session.scene)
 
     def _choose_frequency(self, frequency: object) -> None:
-        """A click on the curve; for what is no number the knob has the sentence."""
+        """Go to the clicked frequency; the knob refuses anything that is not a number."""
         if isinstance(frequency, (int, float)) and not isinstance(frequency, bool):
             low, high = slider_range(self.session.scene, "f")
             frequency = round(min(max(frequency, low), high), 1)

@@ -1,4 +1,4 @@
-"""The energy account of the picture on the screen: the same motion once more, with work and loss integrated along."""
+"""The energy account of the picture shown: its motion computed again, with work and loss integrated alongside."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from granchain_core.result import residual
 from ..serve.queues import Stop
 
 _FINENESS = 0.01
-"""The account's tolerance per step over the accuracy asked for: the residual must not be the account's own error."""
+"""Tolerance per step over the accuracy asked for: small, so that the residual is not the account's own error."""
 
 
 def with_account(picture: Settled, stop: Stop) -> Settled:
-    """The picture with how far its energy is from closing over the periods shown. Raises `Cancelled`."""
+    """The picture with its energy residual over the periods shown. Raises `Cancelled`."""
     run = picture.run
     setting = certified(max(1e-13, _FINENESS * run.scene.accuracy))
     engine = Engine(run.scene, setting, 1, balance=True, stop=stop)

@@ -1,22 +1,24 @@
-"""What the dashboard tells each of its pages, and asks of it."""
+"""The hooks through which the dashboard informs each page, and what it asks of a page."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from granchain_core import Settled
 
 from .activities import Activity
 
+Actions = Mapping[str, Callable[[dict[str, Any]], None]]
+
 
 class Page:
-    """One page of one visitor. Every hook is called in the document's turn, and does nothing here.
+    """One page of one visitor. Hooks are called in the document's turn; by default they do nothing.
 
-    `actions` are the messages from the browser that the page answers, by their "do"; names are unique in the dashboard.
+    `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
     """
 
-    actions: dict[str, Callable[[dict[str, Any]], None]]
+    actions: Actions
 
     @property
     def activity(self) -> Activity | None:
@@ -24,13 +26,24 @@ class Page:
         return None
 
     def moved(self) -> None:
-        """Another picture is asked for."""
+        """A new picture was requested: what belongs to the old one is out of date."""
 
     def changed(self) -> None:
         """The knobs have changed, or another scene was opened."""
 
     def arrived(self, picture: Settled) -> None:
-        """A settled picture has come, perhaps not the last for these knobs (`picture.final`)."""
+        """A settled picture is ready; a better one for these knobs may follow unless `picture.final`."""
 
     def close(self) -> None:
         """The visitor left."""
+
+
+def all_actions(owners: Mapping[str, Actions]) -> Actions:
+    """The actions of all owners in one table. Raises `TypeError` if two of them use one name."""
+    owner_of: dict[str, str] = {}
+    for owner, actions in owners.items():
+        for name in actions:
+            if name in owner_of:
+                raise TypeError(f"{owner_of[name]} and {owner} both have an action {name!r}; rename one of them.")
+            owner_of[name] = owner
+    return {name: action for actions in owners.values() for name, action in actions.items()}

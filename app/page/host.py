@@ -1,4 +1,4 @@
-"""What a page may ask of the dashboard it stands in; the controller is one, a test may be another."""
+"""What a page may ask of its dashboard. `Controller` implements it; tests have their own."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .session import Session
 
 
 class Host(Protocol):
-    """One visitor's dashboard, as its pages see it. All of it but `later` belongs to the document's turn."""
+    """One visitor's dashboard, as its pages see it. Only `later` may be called from any thread."""
 
     session: Session
 
@@ -21,7 +21,7 @@ class Host(Protocol):
         """Whether a picture is being computed."""
 
     @property
-    def unsettled(self) -> bool:
+    def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
 
     @property
@@ -43,6 +43,6 @@ class Host(Protocol):
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.
 
-        In live mode the run goes on with the new knobs, unless a state is given. Raises `BadInput` for another mode
+        In live mode the run goes on with the new knobs, unless a state is given. Raises `BadInput` for a mode other
         than "settled" and "live".
         """

@@ -54,14 +54,14 @@ class Views:
 
     def fit(self, narrow: bool) -> None:
         """Shorter titles and fewer numbers on the axes over time, where there is little room for them."""
-        with unlocked():  # the same way as the pictures, which write the same titles: none overtakes the other
+        with unlocked():  # sent like the pictures, which write the same titles, so that neither overtakes the other
             self.trains.fit(narrow)
             self.energy.fit(narrow)
 
     def dress(self, theme: Theme) -> None:
-        """Another theme for every picture that is drawn here."""
-        for part in (*self.covers.values(), self.tabs):
-            part.dress(theme)
+        """Draw the figures of all pages in another theme."""
+        for cover in self.covers.values():
+            cover.dress(theme)
 
     def template(self) -> pn.Template:
         """The page; its layout is a CSS grid in page.css."""

@@ -51,7 +51,7 @@ class LinksAndFiles:
         self._saving.start(partial(self._write, run))
 
     def _write(self, run: Run, job: Job) -> None:
-        """In a worker thread: the file's content, by way of a folder that is gone afterwards."""
+        """In a worker thread: write the file in a temporary folder and send its content."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "picture.h5"
             save(run, path)
@@ -84,4 +84,4 @@ class LinksAndFiles:
 
 
 def _say_nothing(status: str, sentence: str) -> None:
-    """A file that is done is seen; one that failed is told by the host."""
+    """Show no status: a finished file speaks for itself, and the host reports failures."""

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.run.live import joined
 
-from .frames import LIVE_PERIODS, Frames, LiveWindow, samples_for
+from ..frames import PERIODS, Frames, LiveWindow, samples_for
 
 _LONGEST_STEP = 0.1
-"""Seconds of viewing time one step may catch up: after a hidden tab the run goes on, it does not jump."""
+"""Most seconds of viewing time that one step makes up for: after a hidden tab the run does not jump."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class LiveRun:
         self._last = None
 
     def step(self, periods_per_second: float) -> LivePicture:
-        """As many samples as viewing time has passed since the last step; in slow motion, the next one."""
+        """Advance by the viewing time since the last step; in slow motion, wait for the next sample."""
         rate = periods_per_second * self.samples
         now = time.perf_counter()
         elapsed = 0.03 if self._last is None else min(now - self._last, _LONGEST_STEP)
@@ -92,5 +92,5 @@ class LiveRun:
         if self._runs and self._runs[-1].displacement.shape[1] != run.displacement.shape[1]:
             self._runs.clear()
         self._runs.append(run)
-        while sum(len(piece.time) - 1 for piece in self._runs) > LIVE_PERIODS * self.samples and len(self._runs) > 1:
+        while sum(len(piece.time) - 1 for piece in self._runs) > PERIODS * self.samples and len(self._runs) > 1:
             self._runs.popleft()

@@ -7,15 +7,15 @@ from functools import partial
 
 from bokeh.document import Document
 
-from granchain_core import Run, Scene, Settled, State, settling
+from granchain_core import Cancelled, Run, Scene, Settled, State, settling
 from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
+from ..frames import samples_for
 from ..serve.compiler import COMPILER, compiling_words
 from ..serve.pacing import Painter
 from ..serve.queues import LatestWins, Stop
 from ..serve.websocket import in_one_go
 from .energy_residual import with_account
-from .frames import samples_for
 from .host import Host
 from .layout import Views
 from .live import LivePicture, LiveRun
@@ -46,7 +46,7 @@ class Pictures:
         return self._jobs.busy
 
     @property
-    def unsettled(self) -> bool:
+    def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
         return self._jobs.busy and self.live is None
 
@@ -78,7 +78,7 @@ class Pictures:
     # In a worker thread
 
     def _settled(self, scene: Scene, start: State | None, stop: Stop) -> Iterator[Settled]:
-        """Pictures on the way to the steady state; kernels that are not compiled yet are waited for."""
+        """Pictures on the way to the steady state, once the kernels are compiled."""
         self._await_live_kernels(scene, stop)
         self._session.began = start or self._session.previous_state()
         pictures = settling(scene, start=self._session.began, samples=samples_for(scene), stop=stop)
@@ -90,11 +90,14 @@ class Pictures:
                     yield with_account(picture, stop)
 
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
+        """Wait until another process has compiled them. Raises `Cancelled`: settling would compile them in this one."""
         if not COMPILER.has(scene, LIVE):
-            self._host.later(self._note, f"{compiling_words('picture').capitalize()}; the picture follows by itself.")
+            self._host.later(self._note, f"{compiling_words('picture').capitalize()}; the picture then appears by "
+                                         "itself.")
             for piece in (LIVE, CERTIFIED, CURVE):
                 COMPILER.ask(scene, piece)
-            COMPILER.await_piece(scene, LIVE, stop)
+            if not COMPILER.await_piece(scene, LIVE, stop):
+                raise Cancelled
 
     def _live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
         live = self.live
@@ -127,7 +130,7 @@ class Pictures:
         self._painter.painted(number)
 
     def restart(self) -> None:
-        """The page can be seen again: acknowledgements of before will never come."""
+        """The page is visible again: acknowledgements still outstanding will never come."""
         self._painter.restart()
 
     def idle(self) -> None:

@@ -1,4 +1,4 @@
-"""How time runs on the page: settled or live, from where, how fast, playing or paused, one period on."""
+"""The time controls: settled or live, the start, speed, play or pause, one period forward."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .pictures import Pictures
 from .session import Session
 
 
-class Transport:
+class Playback:
     """Actions of the bar on top that deal with time; `compute` asks for a picture, `header` draws the bar anew."""
 
     def __init__(self, session: Session, pictures: Pictures, compute: Callable[[], None], header: Callable[[], None],
@@ -49,13 +49,13 @@ class Transport:
         self._pictures.idle()
 
     def _again(self, message: dict[str, Any]) -> None:
-        """The page had lost its server and was built again from its knobs."""
+        """The browser lost its server and has reloaded the page from its share link."""
         self._speed({"value": message.get("speed")})
         if not message.get("playing"):
             self._playing({"value": False})
             self._header()
-        gone = ", and uploaded data are gone" if message.get("uploaded") else ""
-        self._say("The connection was lost. The page is back with your settings; the chain started again from rest"
+        gone = " and your uploaded data are gone" if message.get("uploaded") else ""
+        self._say("The connection was lost. Your settings are restored, but the chain has started again from rest"
                   f"{gone}.")
 
     def _reset(self, _: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""Where a computation in the background stands, in words: the one place for them, whatever page it belongs to."""
+"""Words for the status of background computations. Curve and effects have their own; see also activities.py."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from ..serve.compiler import compiling_words
 #: States in which a computation is under way or waits for its turn.
 RUNNING = ("waiting", "compiling", "settling", "following", "measuring", "computing", "searching", "running", "drawing")
 
-#: What every page says; states that are missing here, such as "done", are not told.
+#: Words for every page; a status without an entry, such as "done", is not shown.
 _WORDS = {"waiting": "waiting for its turn …", "settling": "looking for the first orbit …",
           "following": "following …", "measuring": "measuring …", "computing": "computing …",
           "searching": "searching …", "drawing": "drawing …", "cancelled": "cancelled"}
 
-#: What a page says instead.
+#: Words that one page uses instead.
 _OWN = {
-    "accuracy": {"cancelled": "cancelled; what was measured stays"},
-    "branches": {"cancelled": "stopped; what was found stays"},
-    "map": {"waiting": "waiting for the curve …", "computing": "", "cancelled": "stopped; what is there stays"},
-    "attractors": {"searching": "from rest, both sweeps and random states …"},
+    "accuracy": {"cancelled": "cancelled; the measurements so far are kept"},
+    "branches": {"cancelled": "stopped; the orbits found so far are kept"},
+    "map": {"waiting": "waiting for the curve …", "computing": "",
+            "cancelled": "stopped; the cells computed so far are kept"},
+    "attractors": {"searching": "searching from rest, from both sweeps and from random states …"},
 }
 
 

@@ -46,7 +46,7 @@ class Session:
         self.scene = self.scene.evolve(**{name: value})
 
     def switch(self, name: str, on: bool) -> None:
-        """Switch an effect on or off; what its knobs were is remembered for the way back."""
+        """Switch an effect on or off; its knobs' values are kept for switching it back on."""
         if name == ACCOUNT:
             self.account = on
             return
@@ -100,12 +100,12 @@ def slider_range(current: Scene, name: str) -> tuple[float, float]:
 
 
 def without_frequency(current: Scene) -> Scene:
-    """What a curve or a branch over f belongs to: moving f costs nothing on it."""
+    """The scene with a fixed f, which identifies a curve or a branch over f: they do not depend on where f stands."""
     return current.evolve(f=slider_range(current, "f")[0])
 
 
 def rig_beads() -> tuple[Bead, ...]:
-    """The beads of the paper's experiment: what it states about its rig is drawn over scenes that have them."""
+    """The beads of the paper's rig: its stated features are drawn for scenes with these beads."""
     return scene("rig").pattern
 
 

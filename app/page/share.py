@@ -1,6 +1,6 @@
 """Share links: scene name, knobs that differ from its preset, mode and start, as one versioned query string.
 
-A changed preset changes what old links mean.
+A link stores differences only: a changed preset changes what old links mean (tests/page/test_share.py).
 Every field is checked by itself: a bad one is refused with its sentence and the others still count.
 """
 
@@ -14,8 +14,7 @@ from granchain_core import BadInput, Scene, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 
 VERSION = "1"
-#: View settings a link may carry, and their values; the first holds where the link has none. "look" is the theme, which
-#: with "auto" the browser chooses.
+#: View settings a link may carry; the first value is the default. "look" is the theme; at "auto" the browser chooses.
 EXTRAS: dict[str, tuple[str, ...]] = {
     "mode": ("settled", "live"),
     "start": ("rest", "previous"),
@@ -42,10 +41,10 @@ def decode(query: str) -> tuple[Scene, dict[str, str], list[str]]:
     refused: list[str] = []
     fields = _fields(query, refused)
     if fields.pop("v", VERSION) != VERSION:
-        refused.append(f"The link is of another version than {VERSION}; what is understood of it is shown.")
+        refused.append(f"The link's format is not version {VERSION}; only the fields that are understood were used.")
     shown = _scene(fields.pop("scene", scene_names()[0]), refused)
     extras: dict[str, str] = {}
-    # kappa last, so that it means the link's own amplitude and replaces a k only if it can be used
+    # kappa last: it is converted with the link's own A0, and replaces k only if it is valid
     for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
         if name in EXTRAS:
             if text in EXTRAS[name]:
@@ -59,7 +58,7 @@ def decode(query: str) -> tuple[Scene, dict[str, str], list[str]]:
             refused.append(f"In the link: {problem}")
             continue
         if name == "kappa" and "k" in fields:
-            refused.append("k and kappa in the link say the same thing; kappa was used.")
+            refused.append("The link sets both k and kappa, which are the same quantity; kappa was used.")
     return shown, extras, refused
 
 
@@ -68,7 +67,7 @@ def _fields(query: str, refused: list[str]) -> dict[str, str]:
     fields: dict[str, str] = {}
     for name, text in parse_qsl(query.lstrip("?"), keep_blank_values=True):
         if name in fields:
-            refused.append(f"{name[:40]} stands twice in the link; {fields[name][:40]!r} was used.")
+            refused.append(f"{name[:40]} occurs twice in the link; the first value, {fields[name][:40]!r}, was used.")
         else:
             fields[name] = text
     return fields

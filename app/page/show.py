@@ -7,10 +7,10 @@ from panel.io import unlocked
 
 from granchain_core import Scene, Settled
 
+from ..format import prefixed
+from ..frames import Frames, settled_frames
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
-from .format import prefixed
-from .frames import Frames, settled_frames
 from .layout import Views
 from .live import LivePicture
 
@@ -28,7 +28,7 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
 
 
 def show_regime(views: Views) -> None:
-    """The status line's words once more, after the curve that names the place has come."""
+    """Update the status line when the curve is complete, which tells on which peak or valley the motion lies."""
     if views.shown is not None:
         views.status_line.display(**settled_entries(views.shown, views.curve.place(views.shown.run)))
 

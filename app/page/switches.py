@@ -1,4 +1,4 @@
-"""The effects one can switch: which knobs that moves, and the two kernels that show what an effect costs."""
+"""Switchable effects: the knobs each switch sets, and the two kernels whose times give an effect's cost."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ def refusal(name: str, shown: Scene) -> str:
 
 
 def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
-    """The knobs that switch the effect: back to what the visitor had, else to what the scene has, else to the usual."""
+    """Knob values for the switch; on: the visitor's earlier ones, else the preset's, else the usual ones."""
     if name not in EFFECTS or name == ACCOUNT:
-        raise BadInput(f"There is no effect {str(name)[:40]!r} that a knob switches.")
+        raise BadInput(f"There is no switchable effect {str(name)[:40]!r}.")
     if refused := refusal(name, shown):
         raise BadInput(refused)
     effect = EFFECTS[name]
@@ -39,7 +39,7 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
     before = {**scene(shown.name).knobs, **remembered}
     found: dict[str, Any] = {}
     for knob in effect.knobs:
-        # a knob that is not what switches the effect off still has its value
+        # switching off changed only the knobs in `off`; the others still have their value
         values = [before[knob]] if knob in effect.off else [shown.knobs[knob], before[knob]]
         found.update([(knob, value) for value in values if value != effect.off.get(knob, 0.0)][:1])
     missing = set(effect.knobs) - set(found)

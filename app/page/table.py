@@ -10,9 +10,9 @@ from ..pages.accuracy.page import AccuracyPage
 from ..pages.accuracy.view import Accuracy
 from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
-from ..pages.check.page import HardPage
-from ..pages.check.view import Hard
 from ..pages.effects.page import EffectsPanel
+from ..pages.hard_cases.page import HardPage
+from ..pages.hard_cases.view import Hard
 from ..pages.map.page import MapTab
 from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer
@@ -27,9 +27,8 @@ from .host import Host
 class Row:
     """One page: its name in messages, the words on its tab, what is computed and how it is drawn.
 
-    `page` is made with the host and the view. `view` is drawn over the pictures; a page without one is drawn in its
-    tab, by the tabs themselves. `words` stand in the tab until the page has something to say. `roomy` makes the tab
-    higher.
+    `page` is made with the host and the view. `view` covers the pictures; a page without one is drawn in its tab by
+    tabs.js. `words` stand in the tab until the page has something to say. `roomy` gives the tab more height.
     """
 
     name: str

@@ -151,7 +151,7 @@ export function render({ model }) {
     body.replaceChildren(...content);
     if (focused) body.querySelector(`[data-name="${focused}"]`)?.focus();
   };
-  // Nobody looks at the costs: then none are measured.
+  // Costs are measured only while somebody looks at them.
   const looking = () =>
     model.send_msg({ do: "effects-visible", value: chosen === "effects" && !window.granchain.covered });
   const choose = (name) => {

@@ -1,4 +1,4 @@
-"""Work in the background of a page: how it is started and cancelled, and the one place for what fails in it."""
+"""A page's background work: starting it, cancelling it, and the one place for its failures."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from ..serve.delays import PICTURE_POLL
 from ..serve.queues import Queue, Stop
 from .host import Host
 
-#: Takes a status and the sentence that goes with it, which is empty but for "failed".
+#: Called with a status and a sentence, which is empty unless the status is "failed".
 Say = Callable[[str, str], None]
 
 
 class Job:
-    """One start of a task, as its work sees it from a worker thread."""
+    """One run of a task, as its work sees it from a worker thread."""
 
     def __init__(self, host: Host, say: Say) -> None:
         self.stop: Stop = Stop()
@@ -48,17 +48,17 @@ class Job:
             COMPILER.load(scene, piece)
 
     def give_way(self, to: Callable[[], bool] | None = None) -> None:
-        """Wait as long as a knob's picture is not there yet, or as long as `to` says."""
-        waits = to or (lambda: self._host.unsettled)
+        """Wait while the picture for a moved knob is being computed, or while `to` returns True."""
+        waits = to or (lambda: self._host.awaiting_picture)
         while waits() and not self.stop:
             time.sleep(PICTURE_POLL)
 
 
 class Task:
-    """One thing that a page has computed in the background; a new start takes the place of the last.
+    """One kind of background work of a page; a new start replaces the last.
 
-    `say` is called in the document's turn with "done", or with "failed" and a sentence; what else it is told, the work
-    says. `title` begins the sentence about a fault. `failed` takes errors whose sentence has no place on the page.
+    `say` is called in the document's turn: with "done", with "failed" and a sentence, or with a status that the work
+    reports. `title` begins the sentence about a fault. `failed` takes errors that the page itself does not show.
     """
 
     def __init__(self, host: Host, queue: Queue, say: Say, title: str = "The computation",
@@ -99,7 +99,7 @@ class Task:
         except (NumbersFailed, BadInput) as problem:
             job.later(self._end, "failed", str(problem), problem)
         except Exception as error:
-            job.later(self._end, "failed", f"{self._title} stopped by a fault inside granchain.")
+            job.later(self._end, "failed", f"{self._title} failed because of an error in granchain.")
             self._host.later(self._host.failed, error)
         else:
             job.later(self._end, "done")

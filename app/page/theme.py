@@ -1,4 +1,4 @@
-"""What of the pictures the visitor chooses: their theme, a kept colour scale, which curves are drawn."""
+"""The visitor's display choices: theme, locked colour scale, which curves are drawn."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from .layout import Views
 from .session import Session
 
 
-class Themes:
-    """The visitor's choices that compute nothing but, perhaps, another curve."""
+class DisplayChoices:
+    """Display choices, which start no computation except, perhaps, another curve."""
 
     def __init__(self, session: Session, views: Views, curves: Curves) -> None:
         self._session = session

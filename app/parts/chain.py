@@ -10,8 +10,8 @@ from bokeh.palettes import Inferno256
 
 from granchain_core import Scene
 
-from ..page.format import prefixed
-from ..page.frames import Frames
+from ..format import prefixed
+from ..frames import Frames
 from ..scripts import module
 from .component import Component, text
 

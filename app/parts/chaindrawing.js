@@ -12,7 +12,7 @@ export function unpack(frames) {
     ["energy", beads],
     ["drive", 1],
   ]) {
-    // A plain array: Bokeh's own kind makes its parts start at the beginning again.
+    // A plain Float32Array: a part of Bokeh's own array type would start at the buffer's beginning again.
     frames[name] = new Float32Array(values.buffer, values.byteOffset + 4 * at, rows * width);
     at += rows * width;
   }
@@ -54,7 +54,8 @@ export class ChainDrawing {
     this.span = mapBox.width - 2 * gap;
   }
 
-  // The exaggeration (beads are drawn one pitch apart, which is one diameter): as large as possible while pressed beads do not run into each other.
+  // The scale of displacements: as large as possible without drawing pressed beads over one another. One pitch on the
+  // screen stands for one diameter.
   load(frames) {
     const { rows, beads } = frames;
     const u = frames.displacement;
@@ -93,14 +94,14 @@ export class ChainDrawing {
     const at = sampler(frames, row);
     const place = (i) => this.left + (i - 0.5) * pitch + at.u(i) * this.exaggeration * pitch;
     this.ground(frames, pitch, radius, y, place);
-    for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, pitch, radius, y);
+    for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, radius, y);
     this.bodies(place, pitch, radius, y, beads);
     for (let i = 1; i <= beads; i++)
       this.bead(place(i), y, radius * (frames.radii[i - 1] / this.largest), at.energy(i) / frames.energy_high);
     this.words();
   }
 
-  contact(c, force, frames, place, _pitch, radius, y) {
+  contact(c, force, frames, place, radius, y) {
     const { context: g, ink } = this;
     if (Math.abs(force) < 1e-6 * this.force) return;
     const from = c === 0 ? place(0) + radius : place(c);

@@ -21,10 +21,9 @@ def text(name: str) -> str:
 
 
 class Component(PromptEvents, JSComponent):
-    """A part of the page: `state` goes down and is kept, messages go both ways and are not.
+    """A part of the page. `state` is sent to the browser and kept; messages go both ways and are not kept.
 
-    Messages are used for what the visitor does because Panel holds property changes for 50 ms before it acts
-    on them, and messages not at all.
+    What the visitor does comes as messages, because Panel delays property changes by 50 ms and messages not at all.
     """
 
     state = param.Dict(default={})

@@ -1,20 +1,19 @@
-// The connection. While the server does not answer, no knob says what the pictures show: they are greyed, the knobs are
-// off and a sentence says so. When the server is back, the page opens its own share link, as the knobs stand.
+// Watches the connection. While the server does not answer, the pictures may not belong to the knobs: the pictures are
+// greyed, the knobs disabled, and a banner says so. When the server is back, the page reloads from its own share link.
 (() => {
   const page = window.granchain;
-  // Milliseconds: between looks at the clock, from an answer to the next ping, until silence counts as loss (together
-  // below 2 s), between tries to reach a lost server, and how long its socket may stay silent once it can be reached.
-  const TICK = 100,
-    REST = 300,
-    PATIENCE = 1300,
-    TRY = 400,
-    GRACE = 3000;
+  // All in milliseconds; REST + PATIENCE stays below 2 s.
+  const TICK = 100, // how often the state is checked
+    REST = 300, // from an answer to the next ping
+    PATIENCE = 1300, // silence after a ping that counts as a lost connection
+    TRY = 400, // between attempts to reach a lost server
+    GRACE = 3000; // how long the socket may stay silent once the server answers HTTP again
   const LOST = "Connection lost – trying again … These are the last pictures.";
   const BACK = "Connected again – restoring your settings …";
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "cover", "foot"];
 
-  // What the server last called its share link, and what was asked for since without an answer.
+  // The last share link from the server, and the requests since then that it has not answered.
   let link = "v=1";
   const unanswered = new Map();
   const linkReceived = (query, answered) => {
@@ -95,7 +94,7 @@
         cache: "no-store",
         signal: AbortSignal.timeout(2 * PATIENCE),
       });
-      // Where nobody answers health checks it is "not found", which is an answer; a proxy without its server says 502.
+      // A server without health checks answers 404, which will do; a proxy whose server is down answers 502.
       return status < 500;
     } catch {
       return false;
@@ -110,7 +109,7 @@
     else sinceReached += 1;
   };
 
-  // Time is counted in ticks, none for more than four, so that a computer that slept or a page that was busy is no silent server.
+  // One tick counts for four at most, so that a sleeping computer or a busy page is not taken for a silent server.
   let last = performance.now();
   const tick = () => {
     const now = performance.now(),

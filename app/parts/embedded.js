@@ -15,7 +15,7 @@ export class Embedded {
     this.host.setAttribute("aria-label", words);
     this.ready = this.ready.then(async () => {
       this.clear();
-      // Filled before it is drawn: axes of nothing have no range.
+      // Filled before it is drawn: an axis without data has no range.
       this.document = Bokeh.require("document").Document.from_json(item.doc);
       this.filled(this);
       this.views = await Bokeh.embed.add_document_standalone(this.document, this.host);
@@ -43,12 +43,12 @@ export class Embedded {
     this.model(name)?.setv(properties);
   }
 
-  // Rows behind those of a source.
+  // Append rows to a source.
   stream(name, columns) {
     this.model(name)?.stream(columns);
   }
 
-  // Points behind those of some lines of a source of many, or further lines: each a number, x and y.
+  // Append points to lines of a multi-line source, or new lines; each entry is [line number, xs, ys].
   extend(name, lines) {
     const source = this.model(name);
     if (!source) return;
@@ -56,8 +56,8 @@ export class Embedded {
     source.change.emit();
   }
 
-  // What the figure's tap tool hits is given to `choose` as the name of its source and the row that `pick` takes from
-  // all that are hit, else the nearest; of several sources the first of `names` counts.
+  // On a tap, calls choose(source, row). `pick` selects among the rows hit, by default the nearest; of several sources
+  // the first in `names` wins.
   taps(names, choose, pick = (rows, data, at) => nearest(rows, data, at, this.views.roots[0].frame)) {
     const hit = new Map();
     const chosen = () => {
@@ -82,7 +82,7 @@ function nearest(rows, { x, y }, { sx, sy }, { x_scale, y_scale }) {
   return rows.reduce((best, row) => (far(row) < far(best) ? row : best));
 }
 
-// What stands under a key; where nothing does, what `make` gives from now on.
+// store[key], made by make() if it is missing.
 function at(store, key, make) {
   store[key] ??= make();
   return store[key];
@@ -154,7 +154,7 @@ export function fillDistance(figure, { history, prediction }) {
     });
 }
 
-// The figure comes with its first points: axes of nothing have no range.
+// The figure comes with its first points: an axis without data has no range.
 export function showDistance(figure, item, known) {
   if (!known.history.length) return;
   if (figure.item !== item) figure.load(item, "distance between observer and chain over time");

@@ -6,8 +6,8 @@ import numpy as np
 from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper, Range1d, SingleIntervalTicker
 from bokeh.plotting import figure
 
-from ..page.format import prefixed
-from ..page.frames import Frames, round_up
+from ..format import prefixed
+from ..frames import Frames, round_up
 from .chain import PALETTE
 from .figure_style import GAP, quiet_axis, quiet_figure
 

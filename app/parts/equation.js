@@ -7,7 +7,7 @@ const SMALLEST = 0.55;
 
 export function render({ model }) {
   const root = part("div", { className: "formula" });
-  root.title = "The equation that is computed: only the active terms are there.";
+  root.title = "The equation being computed, with its active terms only.";
   const fit = () => {
     for (const line of root.children) {
       line.style.fontSize = "";

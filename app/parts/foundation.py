@@ -15,5 +15,5 @@ def foundation_words(current: Scene) -> str:
 
 
 def beside_kappa(current: Scene) -> str:
-    """What κ was in the preset, where A₀ has moved since and k has not; else nothing."""
+    """The preset's κ if A₀ has moved since and k has not; otherwise an empty string."""
     return moved_kappa(scene(current.name), current)

@@ -3,13 +3,16 @@
 import { part } from "./dom.js";
 
 const HELP = [
-  ["knobs", "Drag, type, or use the arrow keys; shift is coarse; a double click goes back to the scene's value."],
-  ["time", "Runs downwards in all pictures; drag a picture to stop it, space plays on."],
+  ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
+  ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
   ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
   ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
-  ["accuracy", "Click it in the status line: every method's error against its time, measured now on this machine."],
+  [
+    "accuracy",
+    "Click it in the status line to measure, on this machine, every method's error against its computing time.",
+  ],
   ["effects", "In the tab “effects”: switch an effect on or off and see what it costs."],
-  ["curve", "Click a frequency to go there. Shape and colour of a point say its regime."],
+  ["curve", "Click a frequency to go there. Shape and colour of a point show its regime."],
 ];
 
 // Drawn here, so that no font has to have them.
@@ -53,7 +56,7 @@ export function render({ model }) {
   });
   const reset = button(icon("reset", "reset"), "Back to rest", () => send({ do: "reset" }));
   const play = button("", "Play or pause (space)", () => setPlaying(!playing));
-  const period = button(icon("step", "period"), "One drive period on", () => {
+  const period = button(icon("step", "period"), "Forward one drive period", () => {
     setPlaying(false);
     page.emit("period");
     send({ do: "step" });
@@ -79,7 +82,7 @@ export function render({ model }) {
     send({ do: "start", value });
   });
   start.add(new Option("from rest", "rest"));
-  start.add(new Option("from where it was", "previous"));
+  start.add(new Option("from the previous state", "previous"));
   const share = button(icon("share", "share"), "Link to this picture", () => send({ do: "share" }));
   const save = button(icon("save", "save"), "Save this picture as HDF5", () => send({ do: "save" }), "save");
   const help = button(icon("help"), "Help", () => toggle(helpBox), "icon");

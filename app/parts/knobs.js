@@ -87,7 +87,7 @@ class Knob {
     for (const input of [this.slider, this.field]) input.addEventListener("keydown", (event) => this.key(event));
   }
 
-  // What cannot be read as a number goes to the server as it is: it has the sentence for it.
+  // Text that is not a number is sent as it is; the server answers with a sentence.
   typed() {
     this.editing = false;
     const raw = this.field.value.trim();
@@ -167,7 +167,7 @@ export function render({ model }) {
       if (spec.name === "kappa") {
         const aside = document.createElement("div");
         aside.className = "aside";
-        aside.innerHTML = `<div class="kept" title="κ = k/(K√A₀): at the same k another A₀ has another κ. Set κ to get the old value back."></div>
+        aside.innerHTML = `<div class="kept" title="κ = k/(K√A₀): at the same k, κ changes with A₀. Set κ to get the old value back."></div>
           <div title="Frequency of one bead on its foundation spring alone: √(k/m) / 2π.">foundation frequency <span></span></div>`;
         root.append(aside);
       }

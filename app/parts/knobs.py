@@ -20,10 +20,10 @@ _SHOWN_IN = {"A0": (1e-6, "µm")}
 
 _SHORT = {"D": "damping", "k": "foundation", "kappa": "k / (K√A₀)", "N": "beads", "F0": "preload",
           "wall": "wall", "dissipation": "law", "tension": "tension"}
-"""Labels that fit beside a number; the whole one is a hover away."""
+"""Short labels to fit beside a number; the tooltip has the full one."""
 
 _CUBIC = ("k", "kappa")
-"""Knobs that start at zero and span decades: the slider's cube, fine near zero, where κ = 0.001 lies."""
+"""Knobs that start at 0 and span decades: the value is the cube of the slider's position, fine near 0."""
 
 
 class Knobs(Component):

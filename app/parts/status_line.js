@@ -5,15 +5,15 @@ const ENTRIES = [
   [
     "accuracy",
     (v) => v,
-    "Relative error of the displacements: the one asked for, the one reached; the computing time of this picture. Click: what accuracy costs.",
+    "Relative error of the displacements, asked for and reached, and the computing time of this picture. Click to see what accuracy costs.",
   ],
   [
     "energy",
     (v) => v,
-    "Work of the driver minus what was lost and stored, over the largest of them, for the periods shown.",
+    "Work of the driver minus energy lost and stored, over the largest of the three, for the periods shown.",
   ],
   ["method", (v) => v, "Method of integration."],
-  ["effects", (v) => v.join(" · "), "The effects that are computed; an absent one has no code and no cost."],
+  ["effects", (v) => v.join(" · "), "The effects being computed; an absent one has no code and costs nothing."],
 ];
 
 export function render({ model }) {

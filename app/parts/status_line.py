@@ -7,7 +7,7 @@ from typing import Any
 from granchain_core import Run, Settled
 from granchain_core.steady.resonance import Place, place_words, pushes
 
-from ..page.format import duration, short_error
+from ..format import duration, short_error
 from ..scripts import module
 from .component import Component, text
 
@@ -46,7 +46,7 @@ def errors_hint(run: Run) -> str:
     said = [f"{name} {'not estimated' if error is None else short_error(error)}" for name, error in (
         ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
-    return f"Relative errors: {', '.join(said)}. Click: what accuracy costs."
+    return f"Relative errors: {', '.join(said)}. Click to see what accuracy costs."
 
 
 def run_entries(run: Run) -> dict[str, Any]:

@@ -6,8 +6,8 @@ import numpy as np
 from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
 from bokeh.plotting import figure
 
-from ..page.format import prefixed
-from ..page.frames import Frames, round_up, with_jumps
+from ..format import prefixed
+from ..frames import Frames, round_up, with_jumps
 from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
 
 _TITLES = ("drive u₀", "input force", "output force")

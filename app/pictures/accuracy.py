@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 
 from granchain_core.accuracy import Row, ways
 
-from ..page.format import duration, short_error
+from ..format import duration, short_error
 from .theme import Theme, dress, frame, in_theme
 
 _PALETTE = ("#e0900a", "#9b6bf2", "#0fa3b8", "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
@@ -20,15 +20,15 @@ _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_tr
 _NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), "#8a8f98"
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
 _HIGHEST = 10.0
-"""Larger errors say nothing more; their points stand here."""
-_COLUMNS = ("ms", "error", "setting", "told")
+"""Largest error drawn; points beyond it, which mean no more, stand here."""
+_COLUMNS = ("ms", "error", "setting", "tooltip")
 
 
 @dataclass(frozen=True)
 class Asked:
     """What belongs to the picture but is no measurement.
 
-    accuracy : asked for, a part of the largest displacement. agreement : of the two references, or None.
+    accuracy : asked for, a fraction of the largest displacement. agreement : of the two references, or None.
     cheapest : seconds and error of the row that reaches it first; now : those of the page's own setting.
     """
 
@@ -124,7 +124,7 @@ def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: b
             in_theme(dots, fill_color="card")
         shown.append(dots)
         items.append(LegendItem(label=name.replace("scipy ", "SciPy "), renderers=[line, dots]))
-    plot.add_tools(HoverTool(renderers=shown, tooltips=[("", "$name"), ("", "@setting"), ("", "@told")]))
+    plot.add_tools(HoverTool(renderers=shown, tooltips=[("", "$name"), ("", "@setting"), ("", "@tooltip")]))
     if not compact:
         plot.add_layout(Legend(items=items, click_policy="hide", padding=0, margin=0, spacing=0, label_height=14,
                                glyph_height=14), "right")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from granchain_core.quantities import QUANTITIES
 
-from ..page.format import prefixed
+from ..format import prefixed
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 from granchain_core.orbits import Branch, BranchPoint, SpecialPoint
 from granchain_core.steady.regime import modulus_words
 
-from ..page.format import short_error
+from ..format import short_error
 from .axes import Scale, force_scale, in_words, knob_scale
 from .theme import Theme, dress, frame, in_theme
 
@@ -25,12 +25,12 @@ _STYLES: dict[str, dict[str, Any]] = {
 }
 _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 """Width and dash."""
-_ORBIT = ("x", "y", "told", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
+_ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
-_MARK = ("x", "y", "told", "place")
+_MARK = ("x", "y", "tooltip", "place")
 _TITLE = "largest elastic output force"
 _TARGET = 13
-"""Pixels around an orbit in which a pointer means it; the orbits beside a special point leave the place to it."""
+"""Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one."""
 
 Columns = dict[str, dict[str, list[Any]]]
 
@@ -52,7 +52,7 @@ class Growth:
         self.special: list[SpecialPoint] = []
 
     def add(self, arm: int, branch: Branch, points: list[BranchPoint], special: list[SpecialPoint]) -> dict[str, Any]:
-        """Rows by source, pieces of lines as (source, number, x, y) to go on with, and what changes of other models."""
+        """New rows by source, line pieces to append as (source, number, x, y), changed properties of other models."""
         new = drawn_orbits(points, special)
         self._force = self._force or force_scale(_TITLE, new[0].max_output_force_elastic)
         self._knob = self._knob or knob_scale(branch.axis.knob, (branch.axis.high,))
@@ -185,9 +185,9 @@ def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
     marks = [one for item in items for one in item.renderers if item.label.value in SPECIAL.values()]
     plot.add_tools(
         HoverTool(renderers=[targets], limit=1, attachment="below", tooltips=[
-            ("orbit", "@told"), ("motion", "@motion"), ("elastic output force", "@elastic"),
+            ("orbit", "@tooltip"), ("motion", "@motion"), ("elastic output force", "@elastic"),
             ("output force", "@output"), ("input force", "@input"), ("relative error of the orbit", "@residual")]),
-        HoverTool(renderers=marks, tooltips=[("", "@told")], limit=2, attachment="above"),
+        HoverTool(renderers=marks, tooltips=[("", "@tooltip")], limit=2, attachment="above"),
         TapTool(name="tap", renderers=[targets, *marks], mode="replace"))
     plot.add_layout(Legend(name="legend", items=items, click_policy="hide", orientation="horizontal", ncols=len(items),
                            padding=0, margin=4, spacing=12, glyph_width=26), "below")
@@ -210,12 +210,13 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
     if special.contact is not None:
         told += f": contact {special.contact} has one {special.event} more on one side"
     elif special.kind == "neimark_sacker" and special.multiplier is not None:
-        told += f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i passes the circle"
+        told += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
+                 "circle")
     return told
 
 
 def _orbit_words(point: BranchPoint, branch: Branch) -> tuple[Any, ...]:
-    """The columns of an orbit from `told` to `stable`."""
+    """The columns of an orbit from `tooltip` to `stable`."""
     scale = knob_scale(branch.axis.knob, (branch.axis.high,))
     forces = (point.max_output_force_elastic, point.max_output_force, point.max_input_force)
     return (f"{point.knob / scale.factor:.7g} {scale.unit}, period {branch.period}",

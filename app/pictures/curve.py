@@ -10,13 +10,15 @@ from bokeh.plotting import figure
 
 from granchain_core import Curve
 
-from ..page.format import short_error
+from ..format import short_error
 from .axes import force_scale, in_words, knob_scale
 from .regimes import REGIMES, regime_key
 from .theme import Theme, dress, frame, in_theme
 
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
+"""Dashes of the line by the start of a sweep."""
 WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
+"""The same in words."""
 
 
 def curve(found: Sequence[Curve], theme: Theme) -> figure:
@@ -27,11 +29,12 @@ def curve(found: Sequence[Curve], theme: Theme) -> figure:
     plot = frame(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
     for one in found:
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
-        styles = [REGIMES[regime_key(p)] for p in points]
+        keys = [regime_key(p.regime.name, p.regime.period) for p in points]
+        styles = [REGIMES[key] for key in keys]
         source = ColumnDataSource(name=one.start, data={
             "frequency": [p.frequency for p in points], "force": [p.max_output_force / scale.factor for p in points],
             "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
-            "size": [style[2] + 3 for style in styles], "regime": [regime_key(p) for p in points],
+            "size": [style[2] + 3 for style in styles], "regime": keys,
             "sentence": [p.regime.sentence for p in points],
             "total": [in_words(p.max_output_force, "N") + _error(p.force_errors.output) for p in points],
             "elastic": [in_words(p.max_output_force_elastic, "N") + _error(p.force_errors.elastic) for p in points],

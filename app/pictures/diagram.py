@@ -27,19 +27,18 @@ from granchain_core.diagram import Axis, Diagram, Grid
 from granchain_core.diagram.cells import REGIMES as NAMES
 from granchain_core.diagram.cells import empty_cells
 
-from ..page.format import short_error
+from ..format import short_error
 from .axes import Scale, in_words, knob_scale
-from .regimes import REGIMES
+from .regimes import REGIMES, regime_key
 from .theme import Theme, dress, frame, in_theme
 
 CATEGORIES = (*REGIMES, "failed")
 """What a cell may be, in the curve's colours, each with a hatch of its own."""
 COLOURS = [REGIMES[name][1] if name in REGIMES else "#7a3b00" for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
-_FIFTH = 5
 MOST_CELLS = 40_000
-"""Beyond it a browser does not show the cells fluently."""
-_CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "told", "spacing",
+"""Most cells that a browser shows smoothly."""
+_CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip", "spacing",
          "number", "own_right", "own_top")
 
 
@@ -74,7 +73,7 @@ def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float
     plot.add_layout(bar, "above")
     plot.add_layout(Legend(name="regimes", orientation="horizontal", ncols=3, padding=0, margin=2,
                            items=items), "above")
-    plot.add_tools(HoverTool(renderers=[force, regime], tooltips=[("", "@told")], limit=1, sort_by="spacing"),
+    plot.add_tools(HoverTool(renderers=[force, regime], tooltips=[("", "@tooltip")], limit=1, sort_by="spacing"),
                    TapTool(name="tap", renderers=[force, regime], mode="replace"))
     _marks(plot, now_row(grid, *now) if now else now_row(grid))
     for name, properties in {**shown_models(shown), **scale_models(computed)}.items():
@@ -90,7 +89,7 @@ def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float
 def _hatched(plot: figure, source: ColumnDataSource) -> list[LegendItem]:
     """Every computed cell's own place in the colour and hatch of its regime, and an entry of the legend for each.
 
-    A renderer for each regime, because a hatch of every cell's own would be drawn into an image of its own.
+    One renderer per regime: with a hatch per cell the browser would draw an image for each.
     """
     items = []
     for name, colour, hatch in zip(CATEGORIES, COLOURS, _HATCHES, strict=True):
@@ -171,9 +170,7 @@ def category(cell: np.ndarray) -> str:
 
 
 def _category(regime: int, period: int) -> str:
-    if NAMES[regime] != "periodic":
-        return NAMES[regime]
-    return f"period {period}" if period < _FIFTH else "period 5+"
+    return "failed" if NAMES[regime] == "failed" else regime_key(NAMES[regime], period)
 
 
 def cell_words(grid: Grid, cell: np.ndarray) -> str:

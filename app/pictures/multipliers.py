@@ -15,7 +15,7 @@ from bokeh.plotting import figure
 from granchain_core.orbits import Orbit
 from granchain_core.steady.regime import modulus_words
 
-from ..page.format import duration
+from ..format import duration
 from .theme import Theme, dress, frame, in_theme
 
 _FARTHEST = 2.4
@@ -39,7 +39,7 @@ def multipliers(orbit: Orbit, theme: Theme, rank: int | None = None) -> figure:
 
 
 def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False) -> figure:
-    """The figure whose models of these names have these properties; `plane_state` gives them."""
+    """The plane drawn from `state`: properties by model name, as `plane_state` returns them."""
     made = {name: ColumnDataSource(name=name, **found) for name, found in state.items() if "data" in found}
     ranges = {axis: DataRange1d(range_padding=0.0) for axis in ("x_range", "y_range")}
     plot = frame(name="multipliers", min_border=2, match_aspect=True, active_scroll=None,
@@ -66,7 +66,7 @@ def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False)
 
 
 def _circle(plot: figure, compact: bool) -> None:
-    """The unit circle, half of it, and both axes."""
+    """The unit circle, the circle |μ| = 1/2, and both axes."""
     inside = plot.circle(0, 0, radius=1.0, fill_alpha=0.07, level="underlay")
     in_theme(inside, line_color="ink", line_width=2.0, fill_color="accent")
     plot.grid.visible = False
@@ -141,7 +141,7 @@ def multiplier_words(mu: complex, orbit: Orbit) -> tuple[str, str, str, str]:
     decay = ""
     if size > 0.0 and size != 1.0:
         periods = n / abs(math.log(size))
-        decay = (f"{'dies out' if size < 1.0 else 'grows'} by e in {periods:.3g} drive periods "
+        decay = (f"{'decays' if size < 1.0 else 'grows'} by a factor e in {periods:.3g} drive periods "
                  f"({duration(periods * orbit.scene.period)})")
     return (f"{mu.real:+.4f}" + (f" {'+' if mu.imag > 0 else '−'} {abs(mu.imag):.4f} i" if mu.imag else ""),
             modulus_words(size),

@@ -8,7 +8,7 @@ from bokeh.plotting import figure
 
 from granchain_core.observe import Observation
 
-from ..page.format import prefixed
+from ..format import prefixed
 from .axes import force_scale
 from .theme import Theme, dress, frame, in_theme
 

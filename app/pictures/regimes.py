@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from granchain_core import CurvePoint
-
 from .theme import THEMES
 
 #: Marker, colour and size of every regime: told apart with and without colour.
@@ -15,8 +13,8 @@ REGIMES = {
 }
 
 
-def regime_key(point: CurvePoint) -> str:
-    """The entry of `REGIMES` a point belongs to."""
-    if point.regime.name != "periodic" or not point.regime.period:
-        return point.regime.name if point.regime.name in REGIMES else "unsettled"
-    return f"period {point.regime.period}" if point.regime.period < 5 else "period 5+"
+def regime_key(name: str, period: int | None) -> str:
+    """The entry of `REGIMES` of a motion, by the name of its regime and its period where it has one."""
+    if name == "periodic" and period:
+        return f"period {period}" if f"period {period}" in REGIMES else "period 5+"
+    return name if name in REGIMES else "unsettled"

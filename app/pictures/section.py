@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 from .theme import Theme, dress, frame, in_theme, span_of
 
 _FEW = 150
-"""So many points of a transient or fewer are drawn larger."""
+"""Sections with fewer points than this have their transient drawn larger."""
 _PATH = 60
 """How many points of the way to an orbit are joined."""
 
@@ -65,7 +65,7 @@ def section(shown: SectionPoints, theme: Theme) -> figure:
 def section_state(shown: SectionPoints) -> dict[str, dict[str, Any]]:
     """Properties of the figure's models by their names: sources, ranges, titles of the axes.
 
-    What is not periodic is shown by what it does in the end; an orbit, with the way to it.
+    A motion that is not periodic sets the ranges by its settled part, an orbit with its approach.
     """
     points, own, before = shown.points, shown.own, min(shown.transient, len(shown.points))
     whole = bool(shown.period) or shown.transient >= len(points)

@@ -58,7 +58,7 @@ def frame(tools: str = TOOLS, **options: Any) -> figure:
 
 
 def in_theme(model: Any, **roles: str | float) -> Any:
-    """Say which properties follow the theme: a word is a colour's role, a number a width in pixels. Returns `model`."""
+    """Mark what follows the theme: a string is a colour's role, a number a line width in pixels. Returns `model`."""
     model.tags = [*model.tags, {"theme": roles}]
     return model
 

@@ -1,4 +1,4 @@
-"""Compiling outside the server: a visit never waits for a compiler without being told, and no other visit at all.
+"""Compiling outside the server process: a visitor who must wait is told so, and nobody else is held up.
 
 Numba holds the interpreter while it compiles, so kernels that are not cached yet are compiled in processes of
 their own; this one then loads them from the cache.
@@ -23,7 +23,7 @@ from .queues import COMPILATIONS, CURVES, Stop
 _COMPILED = {"picture": ("the kernels for this set of effects", 10), "map": ("the kernels", 10),
              "attractors": ("the kernels", 10), "observer": ("the observer's kernels", 10),
              "accuracy": ("the kernels of all methods", 20), "stability": ("the tangent flow", 20),
-             "branches": ("the kernels of branches", 40)}
+             "branches": ("the kernels for branches", 40)}
 
 _ROOT = Path(__file__).resolve().parents[2]
 
@@ -31,7 +31,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 def compiling_words(page: str) -> str:
     """What is being compiled for a page, or for the "picture" in front, and how long one has to wait for it."""
     what, seconds = _COMPILED[page]
-    return f"compiling {what}: some {seconds} s, only the first time on this computer"
+    return f"compiling {what}: about {seconds} s, only the first time on this computer"
 
 
 def _compile(scene: Scene, piece: str) -> None:
@@ -81,7 +81,7 @@ class Compiler:
         return True
 
     def load(self, scene: Scene, piece: str) -> None:
-        """Have kernels that are compiled in this process, too: the first call of each would load them."""
+        """Load compiled kernels into this process now, so that their first call does not have to."""
         key = structure(scene), piece
         if key not in self._loaded:
             compile_piece(scene, piece)

@@ -1,17 +1,17 @@
-"""How long the server waits, all in seconds: between two checks of something, and until a visitor's hand rests."""
+"""Delays in seconds: between two checks, and after the last knob movement before work begins."""
 
-#: Between checks whether the picture in front is done; what lasts longer never competes with a moving knob.
+#: Between two checks whether the main picture is done; long work waits for it and never competes with a knob.
 PICTURE_POLL = 0.01
 #: Between checks of a stop flag while another process works.
 STOP_POLL = 0.05
 
 #: Between a settled picture and its analysis: nothing is analysed while a knob moves.
 ANALYSIS_QUIET = 0.12
-#: Without a movement before a resonance curve is begun: nobody reads one while dragging.
+#: Without a knob movement before a resonance curve is begun: nobody reads one while dragging.
 CURVE_QUIET = 0.35
-#: Without a movement before a new map is begun.
+#: Without a knob movement before a new map is begun.
 MAP_QUIET = 0.7
-#: Without a movement before the cost of an effect is measured.
+#: Without a knob movement before the cost of an effect is measured.
 COST_QUIET = 0.7
 
 #: Between two lists of what is being computed, while the Effects panel is on the screen.

@@ -1,7 +1,7 @@
 """Where computations of the dashboard run: named queues for all visitors, one latest-wins job a page.
 
-Kernels release the GIL, so threads are enough. What lasts has queues of its own, because a picture must never wait
-for it.
+Kernels release the GIL, so threads are enough. Long work has queues of its own, because a picture must never wait for
+it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from granchain_core import Cancelled
 from granchain_core.stop import Stop
 
 Result = TypeVar("Result")
-
 
 
 class Queue:
@@ -63,14 +62,14 @@ _CORES = os.cpu_count() or 1
 PICTURES = Queue("pictures", 4 * max(2, _CORES))
 #: What follows a picture while the knobs rest: short, and given up when a knob moves.
 ANALYSES = Queue("analyses", max(2, _CORES))
-#: Writing and reading files for visitors: the document's turn of one would hold up all.
+#: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody.
 FILES = Queue("files", 2)
 #: Resonance curves, and loading kernels before a visitor asks. Maps and branches wait for a curve that is under way,
 #: so curves cannot share their queue.
 CURVES = Queue("curves", max(1, _CORES // 2))
 #: What lasts minutes: maps, searches for attractors, branches.
 LONG = Queue("long", 2)
-#: What measures times, one after the other for all visitors: two at once would measure each other.
+#: Timings, one at a time for all visitors: two at once would disturb each other.
 MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
 COMPILATIONS = Queue("compilations", 2)

@@ -1,7 +1,7 @@
-"""How messages travel: a picture's all in one go, and at once; the page's when they can be answered.
+"""The websocket: a picture's messages leave together and at once; requests wait until they can be answered.
 
-The private attributes of Tornado, Bokeh and Panel that can be done without are used in this file only. Each buys some
-milliseconds or a message that would be lost; where a release has it no more, the public way is taken.
+The optional private attributes of Tornado, Bokeh and Panel are used in this file only. Each saves some milliseconds or
+keeps a message from being lost; if a release drops one, the public API is used instead.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def _session(document: Document) -> Any:
 
 
 def _streams(document: Document) -> list[IOStream]:
-    """The streams of this page's websockets; none where the way to them is another one."""
+    """The streams behind this page's websockets; empty if a release keeps them elsewhere."""
     connections = getattr(_session(document), "_subscribed_connections", ())
     sockets = [getattr(getattr(connection, "_socket", None), "ws_connection", None) for connection in connections]
     streams = [getattr(one, "stream", None) for one in sockets]
@@ -31,20 +31,20 @@ def _streams(document: Document) -> list[IOStream]:
 
 
 def has_turn(document: Document) -> bool:
-    """Whether it is known to be the document's turn, in which alone it may be changed.
+    """Whether this is known to be the document's turn, the only time at which it may be changed.
 
-    Bokeh keeps a list of what is to be written while it is. A message can arrive outside of it, while an earlier one's
-    answers are still being written; Bokeh refuses every change then.
+    During a turn Bokeh keeps a list of pending writes. A message can also arrive while answers to an earlier one are
+    still being written; Bokeh then refuses every change.
     """
     session = _session(document)
     return session is None or getattr(session, "_pending_writes", None) is not None
 
 
 def in_its_turn(document: Document, action: Callable[[], None]) -> None:
-    """Do what the page asked for as soon as the document may be changed and the page learns of it.
+    """Run `action` as soon as the document may be changed and the browser will be told of the change.
 
-    A page has its parts, and can ask, before it says that all of them are drawn. Panel throws away what is changed
-    until then, as if the page were still to fetch the document.
+    The browser can send requests before it has reported that all parts are rendered. Until it has, Panel discards
+    changes, as if the document had still to be fetched.
     """
     if not pn.state.loaded:
         pn.state.onload(action)
@@ -55,7 +55,7 @@ def in_its_turn(document: Document, action: Callable[[], None]) -> None:
 
 
 def send_at_once(document: Document) -> None:
-    """Nothing is held back until the browser's system has acknowledged earlier messages, which may take 40 ms."""
+    """Turn off Nagle's algorithm, which can delay a message by 40 ms until earlier ones are acknowledged."""
     for stream in _streams(document):
         stream.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
@@ -64,7 +64,7 @@ def send_at_once(document: Document) -> None:
 def in_one_go(document: Document) -> Iterator[None]:
     """The messages written in this block are handed to the network together when it ends.
 
-    A picture is a score of small messages, and each of them would cost 0.3 ms here and a wake-up in the browser.
+    A picture is about twenty small messages; sent singly, each costs 0.3 ms here and a wake-up in the browser.
     Tornado collects what is written until its buffer is emptied; in the block, emptying waits. Where Tornado empties it
     in another way, each message goes by itself.
     """
@@ -81,13 +81,13 @@ def in_one_go(document: Document) -> Iterator[None]:
 
 
 def _wait() -> None:
-    """What emptying a stream's buffer is while a picture is being written."""
+    """Replaces a stream's `_handle_write` while a picture is being written."""
 
 
 class PromptEvents:
-    """A Panel component whose events skip Panel's busy indicator, 2 ms of 5 for an event: this page does not show it.
+    """A Panel component whose events skip the busy indicator, which this page does not show: it takes 2 of 5 ms.
 
-    Panel calls `_process_bokeh_event`; a release that calls something else goes its own way, indicator and all.
+    Panel calls `_process_bokeh_event`; with a release that calls another method, the indicator comes back.
     """
 
     def _process_bokeh_event(self, doc: Document, event: Event) -> None:

@@ -75,8 +75,9 @@ def read_table(text: str | bytes, expected: Expected) -> Table:
 
 def _lines(text: str | bytes, expected: Expected) -> list[tuple[int, str]]:
     """Numbered lines that are neither empty nor comments."""
-    if len(text) > expected.most_bytes:
-        raise BadInput(f"The file has {len(text)} bytes; at most {expected.most_bytes} are read.")
+    size = len(text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass"))
+    if size > expected.most_bytes:
+        raise BadInput(f"The file has {size} bytes; at most {expected.most_bytes} are read.")
     if isinstance(text, bytes):
         try:
             text = text.decode("utf-8-sig")

@@ -100,7 +100,7 @@ EFFECTS = (
 )
 #: The one effect that is no knob of a scene: it changes nothing in the motion.
 ACCOUNT = Effect("account", "balance", "energy account",
-                 "Work, loss and stored energy are integrated along: the badge shows how well they close.",
+                 "Work, loss and stored energy are integrated alongside; the status line shows how well they balance.",
                  lambda scene: False)
 #: Slots that every scene fills, with what they hold.
 ALWAYS = {"chain": "Hertz contact", "driver": "driver"}

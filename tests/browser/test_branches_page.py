@@ -11,7 +11,7 @@ from playwright.sync_api import Locator, Page, expect
 from started import until
 
 Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile the kernels of branches, on a machine that runs tests.
+#: Long enough for a first visit that has to compile the kernels for branches, on a machine that runs tests.
 COMPILED = 150_000
 #: A short chain whose branch is followed in seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
@@ -46,7 +46,7 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     expect(sheet).to_contain_text("now at")
     page.wait_for_function(f"{SPECIAL}.length > 1 && {ORBITS}.stable.includes(0)", timeout=60_000)
     sheet.get_by_role("button", name="stop").click()
-    expect(sheet).to_contain_text("stopped; what was found stays", timeout=1500)
+    expect(sheet).to_contain_text("stopped; the orbits found so far are kept", timeout=1500)
     arms = page.evaluate(f"{ORBITS}.arm")
     page.wait_for_timeout(700)
     assert page.evaluate(f"{ORBITS}.arm") == arms
@@ -82,7 +82,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
     page.wait_for_function(f"{ORBITS} && {SPECIAL}.includes('period_doubling')"
                            f" && {ORBITS}.stable.filter((one, i) => !one && !{ORBITS}.arm[i]).length > 5", timeout=COMPILED)
     sheet.get_by_role("button", name="stop").click()
-    expect(sheet).to_contain_text("stopped; what was found stays")
+    expect(sheet).to_contain_text("stopped; the orbits found so far are kept")
 
     def at(name: str, row: int) -> tuple[float, float]:
         columns = source(page, "branches", name)
@@ -129,7 +129,7 @@ def test_moved_knobs_grey_the_branch_and_say_so(visit: Visit) -> None:
     field.fill("90")
     field.press("Enter")
     expect(sheet.locator(".stale")).to_be_visible()
-    expect(sheet).to_contain_text("these orbits are another chain's")
+    expect(sheet).to_contain_text("these orbits belong to another chain")
     field.fill("100")
     field.press("Enter")
     expect(sheet.locator(".stale")).to_have_count(0)

@@ -78,7 +78,7 @@ def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
     page.get_by_role("tab", name="effects").click()
     tab = page.locator("#tabs")
     expect(activity(tab, "resonance curve from rest")).to_contain_text("complete", timeout=120_000)
-    expect(activity(tab, "resonance curve sweeping up")).to_contain_text("not asked for")
+    expect(activity(tab, "resonance curve sweeping up")).to_contain_text("not selected")
     expect(activity(tab, "Lyapunov exponent")).to_contain_text("off")
     expect(activity(tab, "live run")).to_contain_text("off")
     page.get_by_label("╌ up").check()

@@ -60,11 +60,11 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
         page.mouse.move(0, 0)
         page.mouse.move(*at, steps=3)
         page.wait_for_timeout(100)
-        return cells["told"][row] in tooltips(page)
+        return cells["tooltip"][row] in tooltips(page)
 
     until(page, told)
     for words in ("Hz", "m: ", "N"):
-        assert words in cells["told"][row]
+        assert words in cells["tooltip"][row]
     before = knob(page, "f").input_value(), knob(page, "A0").input_value()
     page.mouse.click(*at)
     expect(knob(page, "f")).not_to_have_value(before[0], timeout=5000)

@@ -75,7 +75,7 @@ def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Vis
         return "-0.2882" in tooltips(page)
 
     until(page, told)
-    for words in ("0.36", "of the drive frequency", "dies out by e in 0.981 drive periods (2.89 ms)"):
+    for words in ("0.36", "of the drive frequency", "decays by a factor e in 0.981 drive periods (2.89 ms)"):
         assert words in tooltips(page)
     expect(sheet.locator(".told")).to_contain_text("μ = -0.2882")
     expect(sheet.locator("path.swing")).to_have_count(11)
@@ -146,7 +146,7 @@ def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: 
     expect(sheet.locator(".say")).to_contain_text("Unstable: a disturbance grows 1.57-fold")
     until(page, lambda: marks(page, "outside") == 3)
     until(page, lambda: len(section(page, "unstable orbit")["u"]) == 1)
-    sheet.get_by_role("button", name="back to what the chain does").click()
+    sheet.get_by_role("button", name="back to the settled motion").click()
     expect(sheet.locator(".say")).to_contain_text("No multipliers", timeout=20_000)
     expect(sheet.locator(".mine")).to_be_hidden()
 
@@ -155,7 +155,7 @@ def test_a_live_run_has_none(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
     page.get_by_role("button", name="The run goes on").click()
-    expect(sheet.locator(".say")).to_contain_text("A live run is on its way")
+    expect(sheet.locator(".say")).to_contain_text("a live run is under way")
     assert marks(page, "within") == marks(page, "outside") == 0
 
 

@@ -94,5 +94,5 @@ def test_live_stops_when_paused_and_steps_by_one_period(visit: Visit) -> None:
     count = page.evaluate("painted.length")
     page.wait_for_timeout(400)  # nothing to wait for: that nothing comes is the point
     assert page.evaluate("painted.length") == count
-    page.get_by_role("button", name="One drive period on").click()
+    page.get_by_role("button", name="Forward one drive period").click()
     page.wait_for_function(f"painted.length > {count}")

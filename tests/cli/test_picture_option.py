@@ -50,7 +50,7 @@ def test_the_figure_is_in_a_file_that_needs_nothing_else(command: str, tmp_path:
 
 
 def test_what_cannot_be_written_is_said_before_anything_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, words in (("a.png", "is an HTML file; call it"), (str(tmp_path / "none" / "a.html"), "Cannot write")):
+    for name, words in (("a.png", "writes an HTML file; name it a.html, not a.png"), (str(tmp_path / "none" / "a.html"), "Cannot write")):
         assert main(["orbit", *COMMANDS["orbit"], "--picture", name]) == 2
         assert words in capsys.readouterr().err
 

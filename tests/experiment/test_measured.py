@@ -36,6 +36,7 @@ def test_what_is_meant_is_read(text: str | bytes, frequency: list[float], force:
     ("60,1\n70,abc", "Line 2: 'abc'"), ("60,1,2,3", "4 columns"), ("a,b\n1,2", "column 'a'"), ("f,force", "no data"),
     ("0,1", "must be above 0"), ("60,-1", "must not be negative"), ("60,1,-1", "must not be negative"),
     ("f,f\n1,2", "column 'f'"), (b"\xff\xfe\x00", "UTF-8"), ("60,1\n" * 30000, "at most 20000"),
+    ("# " + "µ" * 1_500_000 + "\n60,1", "has 3000007 bytes; at most 2000000"), ("\ud800", "no column separator"),
 ])
 def test_what_does_not_fit_is_refused_with_its_line(text: str | bytes, sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):

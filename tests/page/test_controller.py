@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import Any
 
 import pytest
@@ -12,11 +13,13 @@ from bokeh.document import Document
 from bokeh.events import Tap
 from turns import Turns
 
-from app.page import links_and_files
-from app.page.borders import listed, whole
+from app.page import links_and_files, pictures
 from app.page.controller import Controller
+from app.page.hooks import all_actions
+from app.page.message_checks import listed, whole
 from app.page.session import Session
 from app.serve import server
+from app.serve.compiler import COMPILER, Compiler
 from granchain_core import BadInput, run, scene
 from granchain_core.experiment.measured import MOST_BYTES
 
@@ -100,6 +103,50 @@ def test_a_picture_is_saved_in_the_background(monkeypatch: pytest.MonkeyPatch) -
     (file,) = [message for message in dashboard.told if message["type"] == "file"]
     assert file["name"] == "sec2-340Hz.h5" and file["content"][1:4] == b"HDF"
     assert threads[0].startswith("files")
+
+
+def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Settling would compile what the other process has not finished, inside the server."""
+    waiting, settled = threading.Event(), []
+
+    class Compiling(Compiler):
+        """A compiler that never ends."""
+
+        def has(self, *_: object) -> bool:
+            """Nothing is compiled."""
+            return False
+
+        def ask(self, *_: object) -> Future[None]:
+            """Never done."""
+            waiting.set()
+            return Future()
+
+    monkeypatch.setattr(pictures, "COMPILER", Compiling())
+    monkeypatch.setattr(pictures, "settling", lambda *_, **__: settled.append("began") or iter(()))
+    dashboard = Dashboard()
+    dashboard.pictures.compute()
+    assert waiting.wait(10)
+    dashboard.close(None)
+    dashboard.work_off(lambda: not dashboard.pictures.busy)
+    assert settled == []
+
+
+def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its table shows beside each switch the type in the slot; a list of its own would miss a new effect."""
+    monkeypatch.setattr(COMPILER, "has", lambda *_: False)
+    dashboard = Dashboard()
+    dashboard.received({"do": "effects-visible", "value": True})
+    panel = dashboard.views.tabs.state["panel"]
+    assert sorted([*(one["slot"] for one in panel["effects"]), *panel["always"]]) == sorted(
+        one["slot"] for one in panel["slots"])
+    assert {one["name"]: one["slot"] for one in panel["effects"]}["dashpot"] == "dissipation"
+
+
+def test_an_action_of_two_pages_is_refused_with_both_names() -> None:
+    """One of them would never be called."""
+    with pytest.raises(TypeError, match="the page 'map' and the page 'branches' both have an action 'stop'"):
+        all_actions({"the page 'map'": {"stop": print, "go": print}, "the page 'branches'": {"stop": print}})
+    assert set(all_actions({"one": {"a": print}, "other": {"b": print}})) == {"a", "b"}
 
 
 def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.MonkeyPatch) -> None:

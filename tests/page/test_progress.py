@@ -17,7 +17,7 @@ def test_who_waits_for_a_compiler_is_told_for_how_long(page: str) -> None:
 def test_what_is_over_has_nothing_to_say_unless_it_was_stopped() -> None:
     for status in ("none", "done", "failed"):
         assert progress("accuracy", status) == {"status": status, "progress": "", "running": False}
-    assert progress("branches", "cancelled") == {"status": "cancelled", "progress": "stopped; what was found stays", "running": False}
+    assert progress("branches", "cancelled") == {"status": "cancelled", "progress": "stopped; the orbits found so far are kept", "running": False}
     assert progress("hard", "cancelled")["progress"] == "cancelled"
 
 

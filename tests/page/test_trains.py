@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.page.frames import LiveWindow, settled_frames, with_jumps
+from app.frames import LiveWindow, settled_frames, with_jumps
 from granchain_core import LiveChain, scene, settled
 
 CHAIN = scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-4)

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.format import duration, short_error
 from app.page.active_setting import locate, page_setting
-from app.page.format import duration, short_error
 from app.pages.accuracy.page import measured_for
 from app.pages.accuracy.view import described_reference, described_rows, described_ways, lesson_message
 from app.pictures.theme import THEMES

@@ -42,7 +42,7 @@ def test_without_a_foundation_there_is_nothing_to_say() -> None:
 
 
 def test_a_branch_or_map_in_the_amplitude_is_said() -> None:
-    assert "k stays 32435.6 N/m" in kept_along(RIG, "f", "A0")
+    assert "constant k = 32435.6 N/m" in kept_along(RIG, "f", "A0")
     assert kept_along(RIG, "f", "D") == kept_along(RIG, "kappa", "A0") == ""
 
 

@@ -8,8 +8,8 @@ import threading
 
 import pytest
 
-from app.pages.check.view import described, described_cases, figure_beside, figures, summary
-from app.pages.check.work import CaseProcess, Ended, case_of
+from app.pages.hard_cases.view import described, described_cases, figure_beside, figures, summary
+from app.pages.hard_cases.work import CaseProcess, Ended, case_of
 from granchain_core import Cancelled, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Figure, run_case
 from granchain_core.stop import Stop

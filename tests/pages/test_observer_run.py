@@ -19,7 +19,7 @@ FOUNDED = scene("fig11-founded")
 def test_a_run_measures_what_its_multiplier_predicts() -> None:
     picture = settled(FOUNDED)
     run = ObserverRun(FOUNDED, picture, Stop(), None)
-    assert run.predicted is None and "comes with the settled" in run.sentence
+    assert run.predicted is None and "appears once the picture has settled" in run.sentence
     run.predict(picture)
     steps = [run.step() for _ in range(40)]
     assert steps[0].distance[0] == pytest.approx(NUDGE * np.sqrt(FOUNDED.N))

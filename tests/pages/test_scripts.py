@@ -13,7 +13,7 @@ from tornado.web import HTTPError
 from app import scripts
 from app.page.layout import Views
 from app.parts.component import Component
-from app.parts.drawn import Drawn
+from app.parts.figure_part import FigurePart
 from app.scripts import FILES, address, module
 
 APP = Path(scripts.__file__).parent
@@ -63,7 +63,7 @@ def test_names_are_unique() -> None:
 
 def test_every_component_renders_a_module_of_its_own() -> None:
     assert Views.__name__  # importing it makes every component known
-    parts = {*Component.__subclasses__(), *Drawn.__subclasses__()} - {Drawn}
+    parts = {*Component.__subclasses__(), *FigurePart.__subclasses__()} - {FigurePart}
     rendered = {part._esm for part in parts if part.__module__.startswith("app.")}
     assert rendered == {module(name) for name, path in FILES.items() if "render" in EXPORT.findall(path.read_text(encoding="utf-8"))}
 

@@ -56,9 +56,9 @@ def test_a_stable_orbit_is_told_by_what_is_left_of_a_disturbance() -> None:
 
 
 @pytest.mark.parametrize(("leading", "words"), [
-    ((1.8,), "1.80-fold in one period of the orbit (1 drive period, 2.94 ms) and leaves to one side: a multiplier above +1, as behind a fold."),
-    ((-1.5,), "changes sides each time: a multiplier below −1, as behind a period doubling."),
-    ((1.2j, -1.2j), "turns while it grows: a pair outside the circle, as behind a Neimark–Sacker bifurcation."),
+    ((1.8,), "1.80-fold in one period of the orbit (1 drive period, 2.94 ms) and leaves to one side: a multiplier above +1, as past a fold."),
+    ((-1.5,), "changes sides each time: a multiplier below −1, as past a period doubling."),
+    ((1.2j, -1.2j), "turns while it grows: a pair outside the circle, as past a Neimark–Sacker bifurcation."),
     ((-1.5, 1.2j, -1.2j), "3 multipliers are outside the circle."),
 ])
 def test_an_unstable_orbit_is_told_by_the_way_it_is_left(leading: tuple[complex, ...], words: str) -> None:
@@ -126,7 +126,7 @@ def test_the_sections_points_are_the_computed_ones() -> None:
 def test_multipliers_that_contradict_the_motion_are_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     found = replace(analysis().mode, closure=0.06)
     monkeypatch.setattr(work, "mode", lambda *_: found)
-    with pytest.raises(NumbersFailed, match=r"a small disturbance comes back 0\.06 of itself away from what they say"):
+    with pytest.raises(NumbersFailed, match=r"a small disturbance differs from their prediction by 0\.06 of its size"):
         analyse(analysis().target, False, 0, Stop())
 
 
@@ -140,7 +140,7 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
 class Page:
     """The host of the page: what is asked to be done later is done when the test says so."""
 
-    busy = unsettled = curve_computing = False
+    busy = awaiting_picture = curve_computing = False
 
     def __init__(self, mode: str = "settled") -> None:
         self.session = SimpleNamespace(mode=mode, began=None, scene=scene("sec2"))
@@ -280,7 +280,7 @@ def test_the_followed_orbit_is_not_called_another_one() -> None:
 def test_a_live_run_has_no_multipliers() -> None:
     page = Page(mode="live")
     opened(page)
-    assert "live run is on its way" in page.state["sentence"] and page.marks("within") == 0
+    assert "live run is under way" in page.state["sentence"] and page.marks("within") == 0
 
 
 @pytest.mark.parametrize(("action", "message"), [

@@ -18,7 +18,7 @@ from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 class Dashboard(Turns):
     """A host whose turn comes when the test says so."""
 
-    unsettled = False
+    awaiting_picture = False
 
     def __init__(self) -> None:
         super().__init__()
@@ -67,7 +67,7 @@ def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) ->
 @pytest.mark.parametrize(("error", "sentence", "told"), [
     (NumbersFailed("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
     (BadInput("f must be positive."), "f must be positive.", False),
-    (ZeroDivisionError("1/0"), "The measurement stopped by a fault inside granchain.", True)])
+    (ZeroDivisionError("1/0"), "The measurement failed because of an error in granchain.", True)])
 def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: Dashboard,
                                                           task: Task) -> None:
     task.start(failing(error))
@@ -129,11 +129,11 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: Dashboard) ->
 
 
 def test_work_gives_way_to_a_moving_knob(host: Dashboard, task: Task) -> None:
-    host.unsettled = True
+    host.awaiting_picture = True
     task.start(lambda job: job.give_way())
     time.sleep(0.1)
     assert host.turns == []
-    host.unsettled = False
+    host.awaiting_picture = False
     host.work_off(lambda: not task.running)
 
 

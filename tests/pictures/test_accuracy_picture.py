@@ -26,7 +26,7 @@ def test_what_has_no_finite_error_has_no_point_and_large_errors_stand_at_the_top
     columns = points(ROWS)
     assert columns["dop853"]["ms"] == []
     assert columns["rk4"]["ms"][0] == pytest.approx(1.0) and columns["rk4"]["error"][0] == 1e-5
-    assert columns["rk4"]["told"][0] == "error 1e-05, 1 ms, 7 evaluations"
+    assert columns["rk4"]["tooltip"][0] == "error 1e-05, 1 ms, 7 evaluations"
     assert max(error for one in columns.values() for error in one["error"]) == 10.0
 
 

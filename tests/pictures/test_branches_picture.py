@@ -41,7 +41,7 @@ def test_a_piece_begins_where_the_last_one_ended_and_holds_one_kind_of_orbit(bra
     assert stable["x"][0] + unstable["x"][0][1:] == orbits["x"] and stable["y"][0] + unstable["y"][0][1:] == orbits["y"]
     assert orbits["y"][0] == pytest.approx(1e3 * branch.points[0].max_output_force_elastic)
     assert plot.yaxis[0].axis_label.endswith("(mN)") and plot.select_one({"name": "now"}).location == 250.0
-    assert orbits["told"][0] == "262 Hz, period 1" and orbits["elastic"][0].endswith(" mN")
+    assert orbits["tooltip"][0] == "262 Hz, period 1" and orbits["elastic"][0].endswith(" mN")
     assert orbits["motion"][0].startswith("stable, |μ| 0.") and float(orbits["residual"][0]) < 1e-8
 
 
@@ -50,7 +50,7 @@ def test_special_points_are_told_with_their_uncertainty(branch: Branch) -> None:
     assert told["period_doubling"].startswith("period doubling at 255.") and " ± 0.00" in told["period_doubling"]
     assert "contact 3 has one separation more on one side" in told["grazing"]
     plot = branches([branch], THEMES["light"])
-    assert data(plot, "period_doubling")["told"] == [told["period_doubling"]]
+    assert data(plot, "period_doubling")["tooltip"] == [told["period_doubling"]]
     shown = {item.label.value: item.visible for item in plot.legend[0].items}
     assert shown["period doubling"] and not shown["fold"]  # there is none
 

@@ -50,7 +50,7 @@ def test_only_what_is_computed_is_drawn() -> None:
     failed = filled(4, regime="failed", period=0)
     failed.cells[4]["max_output_force"] = np.nan
     rows = cell_rows(GRID, failed.cells[[4]])
-    assert rows["force"] == [None] and rows["regime"] == ["failed"] and rows["told"] == ["2000 Hz, 1 µm: the numbers failed"]
+    assert rows["force"] == [None] and rows["regime"] == ["failed"] and rows["tooltip"] == ["2000 Hz, 1 µm: the numbers failed"]
 
 
 def test_a_cell_is_told_with_its_error_or_without_a_claim() -> None:

@@ -68,7 +68,7 @@ class Lesson {
     this.steps.replaceChildren(
       ...[...new Set(message.drawn.map((one) => one.steps))].map((n) => new Option(`${n} steps a period`, n)),
     );
-    // What one would naturally take, and of that what goes wrong most visibly.
+    // Preselect the usual 200 steps and, of the methods, the one with the largest error.
     const natural = message.drawn.filter((one) => one.steps === 200);
     this.steps.value = "200";
     this.methods.value = natural.filter((one) => one.row >= 0).sort((a, b) => b.error - a.error)[0]?.method ?? names[0];

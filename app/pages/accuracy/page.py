@@ -13,9 +13,9 @@ from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
+from ...format import duration, short_error
 from ...page.active_setting import locate, page_setting
 from ...page.activities import IDLE, OFF, RUNNING, Activity
-from ...page.format import duration, short_error
 from ...page.hooks import Page
 from ...page.host import Host
 from ...page.progress import progress
@@ -26,7 +26,7 @@ from .view import Accuracy, described_reference, described_ways
 
 
 def measured_for(scene: Scene) -> str:
-    """What a measurement belongs to: the scene without the accuracy asked for, which measures nothing anew."""
+    """Identifies what was measured: the scene without the accuracy asked for, which changes no row."""
     return scene.evolve(accuracy=1e-6).digest
 
 
@@ -56,7 +56,7 @@ class AccuracyPage(Page):
     @property
     def activity(self) -> Activity:
         """Name, state and detail for the list of what is computed now."""
-        words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page was not opened yet"
+        words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page has not been opened"
         return "accuracy of all methods", RUNNING if self.running else IDLE if self.rows else OFF, words
 
     def changed(self) -> None:
@@ -87,7 +87,7 @@ class AccuracyPage(Page):
         self._task.cancel()
 
     def open(self) -> None:
-        """The page or its small version came on the screen: what was never measured is measured now."""
+        """The page or its tab was opened: measure if nothing has been measured yet."""
         self._view.display(ways=described_ways())
         if self.status == "none":
             self._measure()

@@ -12,16 +12,16 @@ from bokeh.embed import json_item
 
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, ways
 
-from ...page.format import prefixed, short_error
+from ...format import prefixed, short_error
 from ...parts.component import text
-from ...parts.drawn import Drawn
+from ...parts.figure_part import FigurePart
 from ...pictures.accuracy import Asked, accuracy, marks, points
 from ...pictures.lesson import lesson
 from ...pictures.theme import Theme
 from ...scripts import module
 
 _LOST = 1e-4
-"""References that differ by more than this belong to a motion that nobody can follow for ten periods."""
+"""References that differ by more than this show a motion too sensitive to be followed for ten periods."""
 
 
 @cache
@@ -31,7 +31,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
             for name, compact in (("page", False), ("small", True))}
 
 
-class Accuracy(Drawn):
+class Accuracy(FigurePart):
     """The page over the pictures. `state` has the text and the figures; what is drawn into them comes as messages."""
 
     _esm = module("accuracy.js")

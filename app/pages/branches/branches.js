@@ -85,7 +85,7 @@ export function render({ model }) {
     warning.textContent =
       state.failure ||
       (state.stale
-        ? "The knobs have moved: these orbits are another chain's. Follow again to see this one's; a click still brings back theirs."
+        ? "The knobs have moved: these orbits belong to another chain. Follow again for the present one; a click on an orbit brings the old one back."
         : "");
     warning.hidden = !warning.textContent;
     root.classList.toggle("stale", Boolean(state.stale));
@@ -95,14 +95,16 @@ export function render({ model }) {
 
   const choose = (source, row) => {
     const columns = grown.rows[source];
-    const [told, place] = [columns.told[row], columns.place[row]];
+    const [tooltip, place] = [columns.tooltip[row], columns.place[row]];
     chosen.hidden = false;
-    chosen.replaceChildren(told);
+    chosen.replaceChildren(tooltip);
     if (source === "orbits") {
       model.send_msg({ do: "branches-orbit", arm: columns.arm[row], place });
       chosen.append(
         `, ${columns.motion[row]}: elastic ${columns.elastic[row]}, output ${columns.output[row]}, input ${columns.input[row]}`,
-        columns.stable[row] ? " — settled on the main page" : " — live on the main page: watch it leave",
+        columns.stable[row]
+          ? " — shown settled on the main page"
+          : " — running live on the main page: watch it leave this orbit",
         " ",
         Object.assign(part("button", { type: "button", textContent: "show" }), { onclick: () => page.cover(null) }),
       );

@@ -13,9 +13,9 @@ from granchain_core import Scene
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
-from ...page.borders import listed, whole
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.message_checks import listed, whole
 from ...page.progress import progress
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task
@@ -62,7 +62,7 @@ class BranchesPage(Page):
         self._view.display(now=now.f, stale=stale)
 
     def cancel(self) -> None:
-        """Stop; what there is stays and can be gone on with."""
+        """Stop; what has been computed stays and can be continued."""
         if self._task.cancel():
             self._say("cancelled")
 
@@ -145,7 +145,7 @@ class BranchesPage(Page):
         self._draw()
 
     def _draw(self) -> None:
-        """Send what has grown since; special points are in their arm before the orbit behind them is."""
+        """Send what is new; an arm gets a special point before the orbit that follows it."""
         with unlocked():
             for number, drawn in enumerate(self._drawn):
                 points = drawn.arm.points[drawn.points :]

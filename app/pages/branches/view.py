@@ -9,12 +9,12 @@ from typing import Any
 from bokeh.embed import json_item
 
 from ...parts.component import text
-from ...parts.drawn import Drawn
+from ...parts.figure_part import FigurePart
 from ...pictures.branches import branches
 from ...pictures.theme import Theme
 from ...scripts import module
 
-#: Drive periods of an orbit that can be asked for here.
+#: Longest period that can be asked for here, in drive periods.
 LONGEST_PERIOD = 8
 
 
@@ -25,7 +25,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
                                                                                         ("small", True))}
 
 
-class Branches(Drawn):
+class Branches(FigurePart):
     """The page over the pictures; the growing branch comes in messages."""
 
     _esm = module("branches.js")

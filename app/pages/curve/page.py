@@ -80,7 +80,7 @@ class Curves:
                 self._figure.redraw("rest", points)
 
     def changed(self, scene: Scene) -> None:
-        """What is shown has changed."""
+        """The scene or the selection has changed: cancel, and start again when the knobs rest."""
         self._task.cancel()
         self._asked = without_frequency(scene)
         self._due += 1
@@ -130,7 +130,7 @@ class Curves:
         for name in DIRECTIONS:
             title = "resonance curve " + ("from rest" if name == "rest" else f"sweeping {name}")
             if not self._wanted[name]:
-                found.append((title, OFF, "not asked for"))
+                found.append((title, OFF, "not selected"))
             elif self._computed.get(name) is not None and self._computed.get(name) == self._key:
                 found.append((title, IDLE, "complete"))
             elif not self._visible:
@@ -151,7 +151,7 @@ class Curves:
         self._figure.measured(measured)
 
     def _begin(self, scene: Scene) -> None:
-        """Compute what is wanted and not there yet; moving f alone makes nothing new."""
+        """Compute the selected directions that are missing; a change of f alone needs no new curve."""
         key = without_frequency(scene)
         missing = [name for name in DIRECTIONS
                    if self._visible and self._wanted[name] and self._computed.get(name) != key]

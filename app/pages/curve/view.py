@@ -14,12 +14,12 @@ from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Feature, Measured
 from granchain_core.steady.resonance import Place, place_of
 
-from ...page.format import prefixed, short_error
-from ...page.frames import round_up
+from ...format import prefixed, short_error
+from ...frames import round_up
 from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
+from ...pictures.curve import DASHES, WORDS
 from ...pictures.regimes import REGIMES, regime_key
 
-_DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 _MARK = "#8a8f98"
 _COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "error")
 
@@ -28,8 +28,8 @@ class Curve:
     """The figure with, for every direction, the curve being computed and the one before it in grey."""
 
     def __init__(self, choose: Callable[[object], None]) -> None:
-        self._points: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
-        self._before: dict[str, list[CurvePoint]] = {name: [] for name in _DASHES}
+        self._points: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
+        self._before: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
         self._scale = (1.0, "")
         self._whole = False
         self._shown: tuple[float, float | None] = (0.0, None)
@@ -38,10 +38,10 @@ class Curve:
         self._measured = ColumnDataSource({"frequency": [], "force": [], "low": [], "high": []})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
         self._measurement: Measured | None = None
-        self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in _DASHES}
+        self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in DASHES}
         self.figure = self._frame(choose)
-        self._old = {name: self._line(name, grey=True) for name in _DASHES}
-        self._new = {name: self._line(name, grey=False) for name in _DASHES}
+        self._old = {name: self._line(name, grey=True) for name in DASHES}
+        self._new = {name: self._line(name, grey=False) for name in DASHES}
         # In the overlay, so that moving f repaints a line and a dot and not the whole curve.
         self._current = Span(dimension="height", line_color=_MARK, line_width=1, level="overlay")
         self.figure.add_layout(self._current)
@@ -61,7 +61,7 @@ class Curve:
     def _line(self, direction: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource({name: [] for name in _COLUMNS})
         line = self.figure.line(
-            "frequency", "force", source=source, line_dash=_DASHES[direction] or "solid",
+            "frequency", "force", source=source, line_dash=DASHES[direction] or "solid",
             line_color=_MARK if grey else OUTPUT, line_width=1.5, line_alpha=0.45 if grey else 0.9)
         self._renderers[direction].append(line)
         if not grey:
@@ -72,7 +72,7 @@ class Curve:
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=[
                 ("f", "@frequency{0.0} Hz"), ("largest output force", "@force{0.000}"),
                 ("its relative error", "@error"), ("regime", "@regime"),
-                ("start", {"rest": "from rest", "up": "sweep up", "down": "sweep down"}[direction])]))
+                ("start", WORDS[direction])]))
         return source
 
     def _marks(self) -> None:
@@ -115,7 +115,7 @@ class Curve:
     def begin(self, directions: list[str]) -> None:
         """New curves will come: the present ones become the grey ones."""
         self._whole = self._whole and "rest" not in directions
-        for name in _DASHES:
+        for name in DASHES:
             if name in directions:
                 self._before[name] = self._points[name] or self._before[name]
                 self._points[name] = []
@@ -153,7 +153,7 @@ class Curve:
     def clear(self) -> None:
         """No curve: another scene was opened."""
         self._whole = False
-        for name in _DASHES:
+        for name in DASHES:
             self._points[name], self._before[name] = [], []
             self._draw(name)
             self._draw_before(name)
@@ -200,7 +200,7 @@ class Curve:
         scale = prefixed(high)
         if scale != self._scale:
             self._scale = scale
-            for name in _DASHES:
+            for name in DASHES:
                 self._draw(name)
                 self._draw_before(name)
             self.now(*self._shown)
@@ -220,7 +220,7 @@ class Curve:
 
     def _columns(self, points: list[CurvePoint]) -> dict[str, Any]:
         points = sorted(points, key=lambda point: point.frequency)
-        styles = [REGIMES[regime_key(point)] for point in points]
+        styles = [REGIMES[regime_key(point.regime.name, point.regime.period)] for point in points]
         return {
             "frequency": [point.frequency for point in points],
             "force": [point.max_output_force / self._scale[0] for point in points],

@@ -15,7 +15,7 @@ const cost = (measured) => {
     `${signed(difference)} ns`,
     part("small", { textContent: ` ± ${spread.toFixed(0)} · ${signed(percent)} %` }),
   );
-  cell.title = `with it ${measured.with.toFixed(1)} ns a step, without ${measured.without.toFixed(1)} ns; medians of runs by turns, spread ± ${spread.toFixed(1)} ns`;
+  cell.title = `${measured.with.toFixed(1)} ns a step with it, ${measured.without.toFixed(1)} ns without; medians of alternating runs, spread ± ${spread.toFixed(1)} ns`;
   return cell;
 };
 
@@ -42,7 +42,6 @@ export function effectsTab(model) {
   const { panel, validity } = model.state;
   if (!panel) return [];
   const { step } = panel;
-  const slotOf = { dashpot: "dissipation", account: "balance" };
   const slots = new Map(panel.slots.map((one) => [one.slot, one]));
   const ns = (value) => (value ? `${value.toFixed(0)} ns` : "–");
   const head = part(
@@ -51,11 +50,11 @@ export function effectsTab(model) {
     part("th", { textContent: "effect and its slot in the kernel" }),
     part("th", {
       textContent: "its code",
-      title: "What its code adds to a plain RK4 step, whose every step does the same arithmetic.",
+      title: "What its code adds to a plain RK4 step, in which the arithmetic is always the same.",
     }),
     part("th", {
       textContent: "in this motion",
-      title: "What it changes of a step of the live method, which also splits steps where contacts open or close.",
+      title: "How it changes the time of a step of the live method, which splits steps where contacts open or close.",
     }),
   );
   const whole = part(
@@ -65,10 +64,10 @@ export function effectsTab(model) {
     part("td", { textContent: ns(step.rk4) }),
     part("td", { textContent: ns(step["rk4-split"]) }),
   );
-  const rows = panel.effects.map((effect) => effectRow(model, effect, slots.get(slotOf[effect.name] ?? effect.name)));
+  const rows = panel.effects.map((effect) => effectRow(model, effect, slots.get(effect.slot)));
   const table = part("table", { className: "costs" }, part("thead", {}, head), part("tbody", {}, ...rows, whole));
   const always = panel.slots
-    .filter((one) => ["chain", "driver"].includes(one.slot))
+    .filter((one) => panel.always.includes(one.slot))
     .map((one) => `${one.title} (${one.type})`)
     .join(", ");
   const doing = part("table", { className: "doing" });
@@ -87,7 +86,7 @@ export function effectsTab(model) {
   return [
     table,
     paragraph(`Always compiled in: ${always}. Kernel: ${panel.structure}.`, "soft"),
-    part("h3", { textContent: "computed now" }),
+    part("h3", { textContent: "being computed now" }),
     doing,
     ...(validity ?? []).map((sentence) => paragraph(sentence, "soft")),
   ];

@@ -10,6 +10,7 @@ from typing import Any
 from granchain_core import BadInput, Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
 from granchain_core.lower import slots_of
+from granchain_core.scene.effects import ALWAYS
 from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
 
 from ...page.activities import IDLE, RUNNING, Activity
@@ -101,7 +102,7 @@ class EffectsPanel(Page):
     def _next(self) -> None:
         """Begin what is to be done next: compile for one effect, or time it."""
         scene = self._host.session.scene
-        busy = self.measuring or self._host.unsettled or self._host.curve_computing
+        busy = self.measuring or self._host.awaiting_picture or self._host.curve_computing
         if busy or time.monotonic() - self._moved < COST_QUIET:
             return
         if not COMPILER.has(scene, LIVE, CERTIFIED, CURVE):  # the picture's own kernels come first
@@ -154,6 +155,7 @@ class EffectsPanel(Page):
             "effects": [self._effect(name, session.scene) for name in EFFECTS],
             "slots": [{"slot": name, "title": title, "type": kind}
                       for name, title, kind in slots_of(session.scene, session.account)],
+            "always": list(ALWAYS),
             "structure": structure(session.scene),
             "step": self._step(session.scene),
             "activities": [{"name": n, "state": s, "detail": d} for n, s, d in self._host.activities()],
@@ -163,7 +165,7 @@ class EffectsPanel(Page):
         effect, costs = EFFECTS[name], self._costs.get(name, {})
         refused = refusal(name, scene)
         return {
-            "name": name, "title": effect.title, "meaning": effect.meaning, "refused": refused,
+            "name": name, "slot": effect.slot, "title": effect.title, "meaning": effect.meaning, "refused": refused,
             "on": present(name, scene, self._host.session.account),
             "code": _words(costs.get(CODE)), "motion": _words(costs.get(MOTION)),
             "state": refused or self._failed.get(name) or (

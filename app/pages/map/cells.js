@@ -56,7 +56,7 @@ export const finest = (rows) => {
   return rows.reduce((best, row) => (spacing[row] < spacing[best] ? row : best));
 };
 
-// The values in SI that a cell is of.
+// The two knobs' values of a cell, in SI.
 export function valuesOf(row) {
   const { x, y } = MAP.head;
   const number = MAP.cells.rows.cells.number[row];

@@ -49,7 +49,7 @@ export function mapTab(model) {
 
   const pick = (row) => {
     if (row < 0) return;
-    said.textContent = MAP.cells.rows.cells.told[row];
+    said.textContent = MAP.cells.rows.cells.tooltip[row];
     send("map-choose", valuesOf(row));
   };
   const figure = new Embedded(host, (one) => {
@@ -66,7 +66,7 @@ export function mapTab(model) {
     const edge = (name) => (row < 0 ? [] : [MAP.cells.rows.cells[name][row]]);
     const data = { left: edge("left"), right: edge("right"), bottom: edge("bottom"), top: edge("top") };
     figure.set("cursor", { data });
-    if (row >= 0) said.textContent = MAP.cells.rows.cells.told[row];
+    if (row >= 0) said.textContent = MAP.cells.rows.cells.tooltip[row];
   };
   host.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] }[event.key];
@@ -102,7 +102,7 @@ export function mapTab(model) {
         part("td", {
           className: "number",
           textContent: one.share_words,
-          title: `${one.starts} starts of all lead here`,
+          title: `${one.starts} of all starts lead here`,
         }),
         part("td", { className: "soft", textContent: one.from.join(", ") }),
         part(
@@ -116,7 +116,7 @@ export function mapTab(model) {
     const head = part(
       "tr",
       {},
-      ...["", "attractor", "random states", "also from", ""].map((textContent) => part("th", { textContent })),
+      ...["", "attractor", "share of random states", "also from", ""].map((textContent) => part("th", { textContent })),
     );
     found.replaceChildren(part("table", { className: "attractors" }, part("thead", {}, head), body));
   };

@@ -15,9 +15,9 @@ from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagr
 from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 
-from ...page.borders import listed
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.message_checks import listed
 from ...page.progress import progress
 from ...page.session import slider_range
 from ...page.task import Job, Task
@@ -28,7 +28,7 @@ from ...serve.delays import CELLS_EVERY, MAP_QUIET
 from ...serve.queues import LONG, Stop
 from .view import cells_message, described, head_message
 
-#: Cells over f and over A0: coarse enough to be there in some ten seconds on one core.
+#: Cells along f and A0: few enough to be computed in about ten seconds on one core.
 COLUMNS, ROWS = 60, 40
 #: Random states from which attractors are looked for.
 _RANDOM_STATES = 64
@@ -148,7 +148,7 @@ class MapTab(Page):
 
     def _in_front(self) -> bool:
         """Whether the picture or the curve is being computed, which come first."""
-        return self._host.unsettled or self._host.curve_computing
+        return self._host.awaiting_picture or self._host.curve_computing
 
     # To the browser
 
@@ -218,7 +218,7 @@ class MapTab(Page):
         self._show_attractors("none")
 
     def _load(self, message: dict[str, Any]) -> None:
-        """Put the chain on one of the attractors; from there knobs move it along."""
+        """Put the chain on an attractor; from then on settled pictures start from the previous state."""
         found = listed("attractor", self._found, message.get("number"))
         self._host.session.set_start("previous")
         self._host.show(found.scene, found.state)

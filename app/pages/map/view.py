@@ -11,11 +11,10 @@ from granchain_core.diagram import Attractor, Grid
 from granchain_core.orbits import response
 from granchain_core.steady.regime import modulus_words
 
-from ...page.format import short_error
-from ...pictures.diagram import CATEGORIES, COLOURS, cell_rows, diagram, nothing, scale_models, shown_models
+from ...format import short_error
+from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models
+from ...pictures.regimes import REGIMES, regime_key
 from ...pictures.theme import Theme
-
-_FIFTH = 5
 
 
 def head_message(grid: Grid, theme: Theme) -> dict[str, Any]:
@@ -35,7 +34,6 @@ def described(attractor: Attractor) -> dict[str, Any]:
     """One attractor for the list: category, words, force, share, and which named starts lead to it."""
     regime = attractor.regime
     period = regime.period
-    name = regime.name if period is None else f"period {period}" if period < _FIFTH else "period 5+"
     error = attractor.error_estimate
     kind = "" if attractor.orbit is None else response(attractor.orbit).sentence
     words = [f"period {period}" if period else regime.name]
@@ -47,7 +45,7 @@ def described(attractor: Attractor) -> dict[str, Any]:
     elif regime.lyapunov is not None:
         words.append(f"Lyapunov exponent {regime.lyapunov[0]:+.3f} ± {regime.lyapunov[1]:.3f} per period")
     return {
-        "colour": COLOURS[CATEGORIES.index(name if name in CATEGORIES else "unsettled")], "words": ", ".join(words),
+        "colour": REGIMES[regime_key(regime.name, period)][1], "words": ", ".join(words),
         "force": f"{attractor.max_output_force:.4g} N" + (f", error {short_error(error)}" if error else ""),
         "share": attractor.share, "share_words": f"{100 * attractor.share:.0f} ± {100 * attractor.share_error:.0f} %",
         "from": [origin.name for origin in attractor.origins if not origin.name.startswith("random")],

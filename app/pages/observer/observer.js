@@ -151,7 +151,7 @@ export function render({ model }) {
   const stage = part(
     "div",
     { className: "chains" },
-    part("div", {}, label("chain x", "driven, as on the page"), above),
+    part("div", {}, label("chain x", "driven, as in the main picture"), above),
     part("div", { className: "between" }, forceLabel, between),
     part("div", {}, label("observer y", "feels F_in and nothing else of x"), below),
   );
@@ -183,7 +183,7 @@ export function render({ model }) {
     said.textContent = state.sentence ?? "";
     status.textContent = state.progress ?? "";
     rates.textContent = state.predicted
-      ? `a drive period: predicted × ${state.predicted.toPrecision(4)}${state.measured ? `, measured × ${state.measured.toPrecision(4)}` : ""}`
+      ? `per drive period: predicted × ${state.predicted.toPrecision(4)}${state.measured ? `, measured × ${state.measured.toPrecision(4)}` : ""}`
       : "";
     slider.value = state.kappa ?? 0;
     shown.textContent = (state.kappa ?? 0) === 0 ? "κ = 0" : `κ = ${Number(state.kappa.toPrecision(3))}`;

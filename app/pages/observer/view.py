@@ -11,10 +11,10 @@ from bokeh.embed import json_item
 
 from granchain_core import Scene
 
-from ...page.format import prefixed
+from ...format import prefixed
 from ...parts.chain import PALETTE
 from ...parts.component import text
-from ...parts.drawn import Drawn
+from ...parts.figure_part import FigurePart
 from ...pictures.observer import observer, prediction
 from ...pictures.theme import Theme
 from ...scripts import module
@@ -31,7 +31,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
             for name, compact in (("page", False), ("small", True))}
 
 
-class Observer(Drawn):
+class Observer(FigurePart):
     """The page over the pictures; every period comes as one message."""
 
     _esm = module("observer.js")

@@ -19,7 +19,7 @@ from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.state import rest
 from granchain_core.stop import Stop
 
-from ...page.frames import samples_for
+from ...frames import samples_for
 
 #: What a nudge moves the observer's beads by, root mean square, as a part of A0.
 NUDGE = 1e-3
@@ -147,14 +147,16 @@ class ObserverRun:
         """What the multiplier predicts, in words."""
         mu, factor = self.leading, self.predicted
         if self.in_step:
-            return "The observer is in step with its chain, to the last digits; nudge it to see it again."
+            return "The observer agrees with its chain to the last digits; nudge it to watch it catch up again."
         if mu is None or factor is None:
-            return self.failure or "What the multiplier predicts comes with the settled, periodic picture."
+            return self.failure or ("The multiplier's prediction appears once the picture has settled to a periodic "
+                                    "motion.")
         told = f"Observer |μ| = {abs(mu):.4g}:"
         if factor < 1.0:
             tenfold = np.log(0.1) / np.log(factor)
-            return f"{told} it synchronises with its chain, ten times nearer every {tenfold:.3g} drive periods."
+            return (f"{told} it synchronises with its chain: the distance falls tenfold every {tenfold:.3g} drive "
+                    "periods.")
         side = ", to the other side each time" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
         if self.drifts:
-            return f"{told} it drifts; an offset of its beads, which nothing pulls back, grows{side}."
+            return f"{told} it drifts: an offset of its beads grows, because nothing pulls them back{side}."
         return f"{told} it leaves its chain{side}."

@@ -84,7 +84,7 @@ export class ModeView {
     this.last = null;
   }
 
-  // Row `a` of the mode, turned as often as its multiplier has turned it.
+  // Displacement of bead i in a row of the mode, rotated by the multiplier's angle so far (cosine c, sine s).
   at(row, i, c, s) {
     const { re, im, beads } = this.mode;
     return c * re[row * beads + i] - s * im[row * beads + i];

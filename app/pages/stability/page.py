@@ -15,9 +15,9 @@ from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
 from ...page.activities import IDLE, OFF, RUNNING, Activity
-from ...page.borders import whole
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.message_checks import whole
 from ...page.progress import progress
 from ...page.task import Job, Task
 from ...pictures.multipliers import plane_state
@@ -35,7 +35,7 @@ from .view import (
 )
 from .work import PHASES, Analysis, Target, analyse, search, section_of, transient
 
-_LIVE = "A live run is on its way, and only a motion that repeats has multipliers: choose “settled” above."
+_LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
 
 class StabilityPage(Page):

@@ -40,7 +40,7 @@ function searchRow(send, longest) {
   const root = part(
     "div",
     { className: "search row" },
-    part("label", {}, "an unstable orbit near here, of period ", period),
+    part("label", {}, "search for an unstable orbit nearby, of period ", period),
     find,
     back,
     said,
@@ -48,7 +48,7 @@ function searchRow(send, longest) {
   const show = ({ status, searched, failure }) => {
     find.disabled = status === "searching" || status === "compiling";
     back.hidden = !(status === "searching" || searched);
-    back.textContent = status === "searching" ? "cancel" : "back to what the chain does";
+    back.textContent = status === "searching" ? "cancel" : "back to the settled motion";
     said.textContent = failure ?? "";
   };
   return { root, show };
@@ -151,7 +151,7 @@ export function render({ model }) {
         : "the fastest to grow";
     motion.querySelector("h3").textContent = mode.mode ? named : "";
     root.classList.toggle("irregular", !mode.mode);
-    turn.textContent = mode.mode ? "exaggerated; begins afresh with every period of the orbit" : "";
+    turn.textContent = mode.mode ? "exaggerated; starts again with every period of the orbit" : "";
   };
   let tab = "",
     seen = true,

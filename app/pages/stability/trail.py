@@ -25,7 +25,7 @@ class Trail:
         self._last = period, found
 
     def before(self, period: int) -> list[np.ndarray]:
-        """What was there before the present set, of orbits of this period."""
+        """Earlier sets of multipliers of orbits of this period, oldest first."""
         return [found for n, found in self._sets if n == period]
 
 

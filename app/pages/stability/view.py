@@ -17,9 +17,9 @@ from granchain_core.orbits.modes import Mode
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD, modulus_words
 
-from ...page.format import duration, prefixed, short_error
+from ...format import duration, prefixed, short_error
 from ...parts.component import text
-from ...parts.drawn import Drawn
+from ...parts.figure_part import FigurePart
 from ...pictures.multipliers import multiplier_words, plane, plane_state
 from ...pictures.section import SectionPoints, close_up, section, section_state
 from ...pictures.theme import Theme
@@ -36,7 +36,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
             "small": json_item(plane(empty, theme, compact=True))}
 
 
-class Stability(Drawn):
+class Stability(FigurePart):
     """The page over the pictures and, through what it shares in the browser, the small version in its tab."""
 
     _esm = module("stability.js")
@@ -81,10 +81,10 @@ def _observed(orbit: Orbit) -> str:
 
 def _leaves(leading: complex) -> str:
     if leading.imag != 0.0:
-        return "turns while it grows: a pair outside the circle, as behind a Neimark–Sacker bifurcation"
+        return "turns while it grows: a pair outside the circle, as past a Neimark–Sacker bifurcation"
     if leading.real > 0.0:
-        return "leaves to one side: a multiplier above +1, as behind a fold"
-    return "changes sides each time: a multiplier below −1, as behind a period doubling"
+        return "leaves to one side: a multiplier above +1, as past a fold"
+    return "changes sides each time: a multiplier below −1, as past a period doubling"
 
 
 def no_multipliers(picture: Settled) -> str:

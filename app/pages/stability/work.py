@@ -24,7 +24,7 @@ _FEWEST, _CLOUD = 24, 1200
 _MODE_VALUES = 60_000
 """Values of one mode; beyond it its samples lie farther apart."""
 _TRUSTED = 1e-4
-"""A mode that comes back farther than this from its multiplier contradicts it; right ones are at some 1e-8."""
+"""A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8."""
 _SAME_ORBIT = 1e-3
 """Newton's method that ends farther than this from a settled motion has found another orbit."""
 
@@ -68,8 +68,8 @@ def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
     samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MODE_VALUES), 8)
     found = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
     if not found.closure <= _TRUSTED * max(1.0, abs(found.multiplier)):
-        raise NumbersFailed(f"No multipliers are shown: a small disturbance comes back {found.closure:.1g} of itself "
-                            f"away from what they say.", "contradicted")
+        raise NumbersFailed("No multipliers are shown: after one orbit a small disturbance differs from their "
+                            f"prediction by {found.closure:.1g} of its size.", "contradicted")
     return Analysis(target, orbit, found, orbit_section(orbit, PHASES, stop), distance, time.perf_counter() - began)
 
 

@@ -1,4 +1,4 @@
-"""The page "Hard cases" of one visitor: what is asked to be measured, what is measured, and what was found."""
+"""The page "Hard cases" of one visitor: what waits, what is being run, and the results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ...serve.queues import MEASUREMENTS
 from .view import Hard, described, summary
 from .work import CaseProcess, Ended, case_of
 
-_FAULT = "The process that measures it ended by a fault inside granchain; run it again, and please report it."
+_FAULT = "The process that ran this case ended unexpectedly; run it again, and please report it."
 
 
 class HardPage(Page):

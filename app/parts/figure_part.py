@@ -1,4 +1,4 @@
-"""The base of a part of the page in which figures of app/pictures stand."""
+"""Base class of components that contain figures of app/pictures."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ..pictures.theme import THEMES, Theme
 from .component import Component
 
 
-class Drawn(Component):
-    """A part with figures: without points at first, sent when they are first needed and again for another theme.
+class FigurePart(Component):
+    """A component with figures. They are sent without data when first needed, and again when the theme changes.
 
-    `figures` are Bokeh's JSON by name. They are no part of `state`, which is sent as a whole with each of its changes.
-    The browser fills in what comes as messages.
+    `figures` are Bokeh's JSON by name, kept out of `state` because each change sends all of that. Data come as
+    messages, and the browser puts them into the figures.
     """
 
     figures = param.Dict(default={})

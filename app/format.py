@@ -1,4 +1,4 @@
-"""Numbers as the page says them: with the prefix of their unit, one figure of an error, three of a duration."""
+"""Numbers in words: with an SI prefix, errors to one significant figure, durations to three."""
 
 from __future__ import annotations
 

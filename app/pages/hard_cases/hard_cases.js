@@ -137,7 +137,7 @@ export function render({ model }) {
     meter.value = done ?? 0;
     said.textContent =
       summary ||
-      "Here solvers of such chains go wrong without saying so. Each case is measured against something that is known, and has a bar.";
+      "Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and must stay below its bar.";
     for (const [name, card] of cards) card.show(results[name]);
     page.hard = { sentence: summary };
     page.emit("hard");

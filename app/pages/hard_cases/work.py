@@ -1,4 +1,4 @@
-"""Hard cases in a process of their own: their oracles are Python, which would hold the page and cannot be stopped."""
+"""Hard cases in their own process: the oracles are plain Python, which would block the server and cannot be stopped."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from granchain_core.hard import CASES, Case, Check, Picture, run_case
 from ...serve.delays import STOP_POLL
 from ...serve.queues import Stop
 
-#: The pictures of the page come first where there are fewer cores than work.
+#: Niceness: the page's pictures come first when cores are scarce.
 _NICE = 5
 
 
@@ -89,5 +89,5 @@ class CaseProcess:
         self._asked, theirs = context.Pipe()
         self._process = context.Process(target=serve_cases, args=(theirs,), name="hard cases", daemon=True)
         self._process.start()
-        theirs.close()  # ours is the only other end: it reads the end of the process
+        theirs.close()  # with only their end in the process, its death ends recv() here
         return self._asked

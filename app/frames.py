@@ -10,15 +10,16 @@ from granchain_core import Run, Scene
 
 _FEWEST, _MOST, _STEP = 96, 384, 48
 _PER_CONTACT_TIME = 1.5
-"""Rows while the contacts' own time 1/φ passes: a pulse stays on a bead for about three of these times."""
+"""Rows per contact time 1/φ; a pulse takes about three such times to pass a bead."""
 _LARGEST = 60_000
 """Values of one quantity in a picture; beyond it rows are left out, because nobody sees them."""
 
-LIVE_PERIODS = 4
-SETTLED_PERIODS, _REPEATED = 4, 4
+PERIODS = 4
+"""Drive periods in a live picture, and in a settled one at least; a longer orbit is shown once."""
+
 
 def round_up(value: float) -> float:
-    """The next of a few steps in every decade: a scale that keeps still while a knob moves."""
+    """Round up to one of ten steps per decade, so that a scale keeps still while a knob moves."""
     if not value > 0.0 or not np.isfinite(value):
         return 1.0
     power = 10.0 ** np.floor(np.log10(value))
@@ -66,7 +67,7 @@ _SERIES = tuple(field.name for field in fields(Frames)
 
 
 def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """A force train as a line whose jumps (J, 2) are vertical: two points more each, at 0 and at the force there."""
+    """A force train as a line with vertical jumps (J, 2): each adds two points, at 0 and at the force reached."""
     places = np.searchsorted(time, jumps[:, 0])
     feet = np.zeros(len(jumps))
     twice = np.repeat(places, 2)
@@ -88,13 +89,13 @@ def samples_for(scene: Scene) -> int:
 
 
 def settled_frames(run: Run) -> Frames:
-    """Whole periods from time 0, the orbit repeated until one sees that it repeats.
+    """Whole periods from time 0, with the orbit repeated often enough to show that it repeats.
 
     What is not periodic does not repeat, and is shown as it was recorded.
     """
     rows = len(run.time)
     periods = max(1, round((rows - 1) / run.samples))
-    copies = max(-(-SETTLED_PERIODS // periods), 2 if periods <= _REPEATED else 1)
+    copies = max(-(-PERIODS // periods), 2 if periods <= PERIODS else 1)
     if run.regime.name != "periodic":
         copies = 1
     values = copies * rows * run.displacement.shape[1]
@@ -111,7 +112,7 @@ def settled_frames(run: Run) -> Frames:
 class LiveWindow:
     """The last few periods of a live run; every row knows how many drive periods ago it was."""
 
-    def __init__(self, samples: int, periods: int = LIVE_PERIODS) -> None:
+    def __init__(self, samples: int, periods: int = PERIODS) -> None:
         self._samples = samples
         self._rows = periods * samples + 1
         self._time = -np.arange(self._rows)[::-1] / samples

@@ -10,7 +10,7 @@ from bokeh.embed import json_item
 
 from granchain_core.hard import CASES, Check, Picture
 
-from ...page.format import duration
+from ...format import duration
 from ...parts.component import Component, text
 from ...pictures.check import check
 from ...pictures.theme import THEMES, Theme
@@ -20,8 +20,8 @@ from ...scripts import module
 class Hard(Component):
     """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
 
-    _esm = module("hard.js")
-    _stylesheets = [text("controls.css"), text("hard.css")]  # noqa: RUF012
+    _esm = module("hard_cases.js")
+    _stylesheets = [text("controls.css"), text("hard_cases.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"cases": described_cases()}, **params)
