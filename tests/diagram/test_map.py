@@ -191,7 +191,7 @@ def test_a_damaged_block_is_computed_again(tmp_path: Path) -> None:
     ("--x", "f=30:3000:x", "must be a whole number"),
     ("--x", "f=a:3000:5", "'a' is not a number"),
     ("--x", "f=30:3000:1", "there are at least two points"),
-    ("--y", "D=0:100:5:log", "need both ends above 0"),
+    ("--y", "D=0:100:5:log", "needs both ends above 0"),
     ("--y", "D=0:100:99999999", "nearest valid value is 4000000"),
     ("--scheduler", "tcp://127.0.0.1:9", "scheduler"),
 ])

@@ -129,7 +129,7 @@ def test_a_branch_that_cannot_be_followed_says_so_with_residuals(monkeypatch: py
     (["--knob", "f", "--from", "2000", "--to", "2100", "--period", "2"], "repeats after 1 already; give period 1"),
     (["--knob", "f", "--from", "2000", "--to", "2100", "--points", "1"], "nearest valid value is 2"),
     (["--knob", "f", "--from", "2000", "--to", "2100", "--set", "tension=cut"], "tension"),
-    (["--knob", "f", "--resume", "b.h5"], "do not go with it"),
+    (["--knob", "f", "--resume", "b.h5"], "cannot be combined with"),
     (["--resume", "missing.h5"], "not a branch written by granchain"),
     (["--knob", "f", "--from", "2000", "--to", "2100", "--out", "/no/such/b.h5"], "Cannot write /no/such/b.h5"),
 ])

@@ -59,7 +59,7 @@ def test_a_multiplier_tells_its_frequency_and_its_decay() -> None:
     assert angle == "0.250: 0.0833 of the drive frequency, 94.2 Hz"
     periods = 3 / np.log(2.0)
     assert decay == f"decays by a factor e in {periods:.3g} drive periods ({1e3 * periods / 1130:.3g} ms)"
-    assert multiplier_words(2.0, third)[3].startswith("grows by e") and multiplier_words(0.0, third)[1] == "0e0"
+    assert multiplier_words(2.0, third)[3].startswith("grows by a factor e") and multiplier_words(0.0, third)[1] == "0e0"
 
 
 def test_a_trail_joins_what_moved_a_little_and_fades() -> None:
