@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from .run.run import run
     from .state import State
     from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
-    from .steady.pictures import Settled, settled, settling
-    from .steady.pictures import settled as settle
     from .steady.regime import Regime
+    from .steady.settled import Settled, settled, settling
+    from .steady.settled import settled as settle
     from .stop import Stop
     from .store import load, save
 
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
     "stop": ("Stop",),
-    "steady.pictures": ("Settled", "settled", "settling"), "steady.regime": ("Regime",),
+    "steady.settled": ("Settled", "settled", "settling"), "steady.regime": ("Regime",),
     "steady.curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"),
     "diagram": ("Attractor", "Diagram", "attractors", "diagram"), "observe": ("Observation", "observe"),

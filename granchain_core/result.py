@@ -92,10 +92,6 @@ class ForceErrors:
         return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
 
 
-#: The stated error of a force is at least this factor times its change: at contact events the order is uneven.
-CAUTION = 2.0
-
-
 def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
     """How much each of three largest forces changed from one computation to a finer one, over the finer one's value.
 

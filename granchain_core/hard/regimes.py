@@ -11,8 +11,8 @@ from ..orbits.flow import StroboscopicMap
 from ..run.run import run
 from ..scene import scene
 from ..steady.curve import CurvePoint, iter_curve
-from ..steady.pictures import settled
 from ..steady.regime import find_period
+from ..steady.settled import settled
 from .case import Figure, Picture, Trace
 from .drafts import observed_apart
 from .oracle import Plain

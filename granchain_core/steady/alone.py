@@ -8,11 +8,9 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import Engine, State
-from ..integrate.methods import jump_errors, typical_error
-from ..result import relative_changes
 from ..scene import Scene
 from ..stop import Stop
-from .orbit_errors import force_distances, orbit_force_errors
+from .orbit_errors import errors_between
 from .regime import Regime
 from .relax import relax
 from .settle import Settling, run_until_settled
@@ -40,10 +38,7 @@ def _on_its_orbit(way: Settling) -> SteadyState:
     finer = Engine(way.scene, engine.setting.finer(), 1, stop=way.stop)
     finer.start(engine.state)
     tops = finer.largest_forces(n)
-    jumps = jump_errors(finer.setting, finer.lowered, 1, finer.jumps, tops)
-    left = force_distances(distance, finer.lowered, finer.tops, finer.y)
-    errors = orbit_force_errors(relative_changes(tops, before), left, way.regime.slowness, jumps,
-                                typical_error(finer.setting))
+    errors = errors_between(finer, before, way.regime.slowness, distance)
     return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
 
 

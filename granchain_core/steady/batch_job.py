@@ -8,18 +8,20 @@ import numpy as np
 
 from ..integrate import Engine, State, live
 from ..integrate.batch import Batch
-from ..integrate.methods import AT_A_JUMP, jump_errors
+from ..integrate.methods import AT_A_JUMP, typical_error
 from ..lower import Lowered
-from ..result import CAUTION, relative_changes
+from ..result import relative_changes
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 from .decide import EXAMINED_AFTER, MOST_PERIODS
-from .orbit_errors import force_distances, orbit_force_errors
+from .orbit_errors import errors_between, force_distances, orbit_force_errors
 from .regime import SLOW_RECORD, Regime, shrinking
 from .settle import MOST_STEPS
 from .steady_state import SteadyState
 
+#: Steps of the finer run of a batch for one of the coarse run.
+FINER = 3
 #: Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
 _LOCATED = live(8)
 #: Periods over which the largest force of an irregular motion is taken.
@@ -71,20 +73,21 @@ class Job:
         assert regime.period is not None and regime.distance is not None
         y, distance = block.state.y[:, lane], float(block.state.seen[lane, 2])
         tops, jumps = block.tops(lane, regime.period), block.jumps(lane, regime.period)
-        change, further = relative_changes(tops, before), np.zeros(3)
+        farther = max(distance, regime.distance)
+        left = force_distances(farther, self.lowered, tops, y)
+        # each of the two runs has come to its own orbit: the change is the difference of these orbits
+        errors = orbit_force_errors(relative_changes(tops, before), left,
+                                    least=typical_error(live(FINER)) / (1.0 - regime.slowness))
         at_jump = np.append(jumps > AT_A_JUMP * tops[:2], False)
         if at_jump.any():
-            located, moved = self._located_tops(y, regime, block.stop)
-            tops, change = np.where(at_jump, located, tops), np.where(at_jump, 0.0, change)
-            further = np.where(at_jump, moved, 0.0)
-        # each of the two runs has come to its own orbit: the change is the difference of these orbits
-        left = force_distances(max(distance, regime.distance), self.lowered, tops, y)
-        errors = orbit_force_errors(change, left, further=further)
+            located, apart = self._located_tops(y, regime, farther, block.stop)
+            tops, errors = np.where(at_jump, located, tops), np.where(at_jump, apart, errors)
         tops = tops * self.lowered.scales.force
         return SteadyState(self.scene, tops, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
                           number=self.number)
 
-    def _located_tops(self, y: np.ndarray, regime: Regime, stop: Stop) -> tuple[np.ndarray, np.ndarray]:
+    def _located_tops(self, y: np.ndarray, regime: Regime, distance: float,
+                      stop: Stop) -> tuple[np.ndarray, np.ndarray]:
         """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
         Lanes take their steps across events: what they see of a jump is off by an order of the step. A second orbit,
@@ -97,9 +100,7 @@ class Job:
         first = engine.largest_forces(regime.period)
         finer = Engine(self.scene, _LOCATED.finer(), 1, stop=stop, lowered=self.lowered)
         finer.start(engine.state)
-        tops = finer.largest_forces(regime.period)
-        change = CAUTION * relative_changes(tops, first) / (1.0 - regime.slowness)
-        return tops, change + jump_errors(finer.setting, self.lowered, 1, finer.jumps, tops)
+        return finer.largest_forces(regime.period), errors_between(finer, first, regime.slowness, distance)
 
 
 def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:

@@ -21,16 +21,13 @@ from ..lower import lower
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
-from .batch_job import Job, Start, draft_result, failed, outcome_of_coarse_run
+from .batch_job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
 from .decide import BLOCK, BLOCKS, EXAMINED_AFTER, MOST_PERIODS
 from .lyapunov import MOST_APART, exponents_in_pairs
 from .nearby_orbit import MOST_BEADS, seen_modulus
 from .regime import agree, clearly_chaotic, find_period, irregular
 from .steady_state import SteadyState
 
-#: Steps of the finer run for one of the coarse run. Twice the change between the two, with the distance left, is stated
-#: (orbit_errors.py).
-_FINER = 3
 #: Periods after which a draft gives up.
 _DRAFT = 300
 #: Decay per orbit above which an orbit found by extrapolation needs its multipliers.
@@ -71,7 +68,7 @@ class _Lanes:
         regime, tops = job.coarse
         assert regime.period is not None
         rate = max(1e-3, regime.slowness)
-        self.block.put_fine(lane, job.lowered, job.y, _FINER, regime.period, rate, tops)
+        self.block.put_fine(lane, job.lowered, job.y, FINER, regime.period, rate, tops)
 
     def step(self) -> SteadyState | None:
         """Run until a lane is due for a check, and check it."""
@@ -85,7 +82,7 @@ class _Lanes:
             self._free(lane)
             return result
         coarse = job.coarse is None
-        outcome = (outcome_of_coarse_run(job, self.block, lane) if coarse else job.fine_result(self.block, lane))
+        outcome = outcome_of_coarse_run(job, self.block, lane) if coarse else job.fine_result(self.block, lane)
         if outcome is None:
             return None
         self._free(lane)

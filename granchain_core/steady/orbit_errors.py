@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..integrate import Engine
+from ..integrate.methods import jump_errors, typical_error
 from ..lower import Lowered
-from ..result import CAUTION
+from ..result import relative_changes
 
+#: The stated error of a force is at least this factor times its change: at contact events the order is uneven.
+CAUTION = 2.0
 #: F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
 _FORCE_PER_OVERLAP = 1.5
 
@@ -14,7 +18,7 @@ _FORCE_PER_OVERLAP = 1.5
 def force_distances(distance: float, lowered: Lowered, tops: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Relative changes (3,) of the largest forces over a relative `distance` of states.
 
-    The distance is relative to the largest displacement of the scaled state y, a force follows its overlap: where a
+    The distance is relative to the largest displacement of the scaled state y, but a force follows its overlap. Where a
     contact of the first or last bead overlaps less than that, as in the stop band, the same distance changes its force
     by a larger part.
     `tops` are the scaled forces.
@@ -38,3 +42,13 @@ def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float,
     are added. `least` is the typical error of the finer computation: two may agree by chance.
     """
     return np.asarray(np.maximum(CAUTION * change, least) / (1.0 - slowness) + distance + further)
+
+
+def errors_between(finer: Engine, before: np.ndarray, slowness: float, distance: float) -> np.ndarray:
+    """Relative errors (3,) of the largest forces that `finer` found in one orbit; a coarser run found `before`.
+
+    Both began at the relative `distance` from the orbit; `slowness` is the part of it that is left after an orbit.
+    """
+    jumps = jump_errors(finer.setting, finer.lowered, finer.samples, finer.jumps, finer.tops)
+    left = force_distances(distance, finer.lowered, finer.tops, finer.y)
+    return orbit_force_errors(relative_changes(finer.tops, before), left, slowness, jumps, typical_error(finer.setting))

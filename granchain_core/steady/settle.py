@@ -1,7 +1,7 @@
 """Bringing a chain to its steady state, and deciding whether it is there.
 
 The live method runs from the start until the distance bound is small (regime.py) or the regime is decided otherwise
-(decide.py). A periodic orbit is then computed again with finer steps (relax.py); pictures.py records what was reached.
+(decide.py). A periodic orbit is then computed again with finer steps (relax.py); settled.py records what was reached.
 """
 
 from __future__ import annotations

@@ -26,7 +26,8 @@ import numba
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate.methods import LIVE
+from ..integrate.batch import can_share_batch
+from ..integrate.methods import CERTIFIED, LIVE
 from ..quantities import QUANTITIES
 from ..result import Cost, ForceErrors, Jumps, Run
 from ..scene import Scene
@@ -118,9 +119,12 @@ def _save_jumps(group: h5py.Group, jumps: Jumps) -> None:
 def save_curve(curve: Curve, path: str | Path) -> Path:
     """Write a resonance curve to `path`; returns the path. Raises `BadInput` where it cannot be written."""
 
+    single = f"{LIVE} or {CERTIFIED} point by point"
+    method = f"rk4 in batches, {single}" if can_share_batch(curve.scene) else single
+
     def write(file: h5py.File) -> None:
         reached = [p.error_estimate for p in curve.points if p.error_estimate is not None]
-        _provenance(file, curve.scene, f"rk4 in batches, {LIVE} for single points", max(reached) if reached else None)
+        _provenance(file, curve.scene, method, max(reached) if reached else None)
         file.attrs["start"], file.attrs["wall_s"] = curve.start, curve.wall_s
         group = file.create_group("curve")
         _scale(group, "frequency", curve.column("frequency"), "Hz", "drive frequency")

@@ -17,7 +17,8 @@ from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, ways
 from granchain_core.accuracy.naive import lesson
 from granchain_core.integrate import METHODS, Setting
-from granchain_core.steady import pictures, relax, settle
+from granchain_core.steady import relax, settle
+from granchain_core.steady import settled as settled_module
 from granchain_core.stop import Stop
 
 
@@ -25,13 +26,13 @@ from granchain_core.stop import Stop
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """The rule in app/page/active_setting.py is the one of steady/relax.py: the finest engine of a certified picture."""
     used: list[Setting] = []
-    engine = pictures.Engine
+    engine = settled_module.Engine
 
     def noting(shown: Any, setting: Setting, *rest: Any, **options: Any) -> Any:
         used.append(setting)
         return engine(shown, setting, *rest, **options)
 
-    for module in (settle, relax, pictures):
+    for module in (settle, relax, settled_module):
         monkeypatch.setattr(module, "Engine", noting)
     shown = scene("sec2").evolve(accuracy=accuracy)
     picture = settled(shown)

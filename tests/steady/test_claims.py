@@ -10,7 +10,8 @@ import pytest
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting, certified
 from granchain_core.kernels.strobes import periodicity as section
-from granchain_core.steady import alone, pictures, regime, relax, settle
+from granchain_core.steady import alone, regime, relax, settle
+from granchain_core.steady import settled as settled_module
 
 
 def turning(rate: float, count: int = 420) -> np.ndarray:
@@ -81,11 +82,11 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     way = settle.run_until_settled(scene("sec2"), None, None)
     engine = Engine(way.scene, Setting("rk4-split"), 16)
     engine.start(way.engine.state)
-    monkeypatch.setattr(pictures, "relax", lambda *words: (engine, 0.0))
+    monkeypatch.setattr(settled_module, "relax", lambda *words: (engine, 0.0))
     stated = []
     for decay in (0.1, 0.9):
         monkeypatch.setattr(regime.Regime, "slowness", decay)
-        stated.append(pictures.orbit_picture(way, 16, 0.0, "rest").run.error_estimate)
+        stated.append(settled_module.orbit_picture(way, 16, 0.0, "rest").run.error_estimate)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/pictures.py"
+_SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settled.py"
 _RUN, _STATED, _METHODS = "run/run.py", "run/stated.py", "integrate/methods.py"
 
 STEADY = (
@@ -26,7 +26,7 @@ STEADY = (
            "a section that never comes back is called a closed curve", k.CLAIMS),
     Mutant("settled-error-without-distance", _PICTURES, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",
            "a settled picture states no error of its integration", k.SETTLED),
-    Mutant("settled-error-not-amplified", _PICTURES, "    integration *= still\n", "",
+    Mutant("settled-error-not-amplified", _PICTURES, "    integration /= 1.0 - way.regime.slowness\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
     Mutant("relaxed-by-change", "steady/relax.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
            "the certified orbit is left too early", k.CLAIMS_SETTLED),

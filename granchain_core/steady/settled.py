@@ -12,11 +12,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..integrate import Engine, State
-from ..integrate.methods import jump_errors, typical_error
-from ..result import Cost, Run, relative_changes, run_from
+from ..result import Cost, Run, run_from
 from ..scene import Scene
 from ..stop import Stop
-from .orbit_errors import force_distances, orbit_force_errors
+from .orbit_errors import errors_between
 from .regime import Regime
 from .relax import relax
 from .settle import Settling, run_until_settled
@@ -115,7 +114,7 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
     """The steady state that a chain reaches. Also called `settle`.
 
     The live method runs until the distance to the orbit is bounded or the regime is decided otherwise; a periodic orbit
-    is then computed by the certified method (docs/design.md, "Settled is a bound").
+    is then computed again with a setting fine enough for the accuracy asked for (docs/design.md, "Settled is a bound").
 
     Parameters
     ----------
@@ -190,11 +189,7 @@ def orbit_picture(way: Settling, samples: int, began: float, origin: str) -> Set
     fine.counts.array += way.engine.counts.array + engine.counts.array + coarse.counts.array
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(way.regime, distance=distance)
-    still = 1.0 / (1.0 - way.regime.slowness)
-    integration *= still
-    jumps = jump_errors(fine.setting, fine.lowered, samples, fine.jumps, fine.tops)
-    left = force_distances(distance, fine.lowered, fine.tops, fine.y)
-    forces = orbit_force_errors(relative_changes(fine.tops, coarse.tops), left, way.regime.slowness, jumps,
-                                typical_error(fine.setting))
+    integration /= 1.0 - way.regime.slowness
+    forces = errors_between(fine, coarse.tops, way.regime.slowness, distance)
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces)
     return Settled(run, regime, start, origin, False, True)
