@@ -56,6 +56,8 @@ FIXED = (
            "primitive_power(law, speed) * h * h", "the path's excess has the wrong power of the step", k.STEP_EVENTS),
     Mutant("fixed-step-over-touch", _EVENTS, "if away >= 0.0 or back <= 0.0:", "if away >= -1e300:",
            "a touch inside a fixed step is found and then not split at", k.STEP_EVENTS),
+    Mutant("jump-read-at-the-cubics-root", _EVENTS, "        if 0.0 < nearer < most:", "        if 0.0 < nearer < -most:",
+           "a jump is read where the cubic has its root, not where the overlap vanishes", k.JUMPS_LOCATED),
     Mutant("touching-beads-stay-open", _EVENTS, "if s0 > 0.0 and d1 > 0.0:", "if s0 > 1e300:",
            "beads that touch at rest are pushed together without an event", k.STEP_EVENTS),
     Mutant("later-event-first", _EVENTS, "if root < first:", "if root < 2.0:",

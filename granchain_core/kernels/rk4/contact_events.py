@@ -89,6 +89,29 @@ def first_event(ends, contacts, h):
     return first, contact
 
 
+@by_slot
+def nearer_event(law, ends, c, last, part, most, h):
+    """Fraction of a step of size h, below `most`, at which contact c really opens or closes; it was stepped to `part`.
+
+    The cubic's end may lie behind a kink of the velocity: its root is off by h², and so is the rate there. That matters
+    where a force jumps with the rate and is recorded. Absent, and elsewhere: `part`.
+    """
+    return part
+
+
+@nearer_event.of(*JUMP_LAWS)
+def _(law, ends, c, last, part, most, h):
+    rate = ends[RATE, c]
+    if rate > 0.0 and (c == 0 or c == last):
+        nearer = part - ends[GAP, c] / (h * rate)
+        if 0.0 < nearer < most:
+            return nearer
+    return part
+
+
+nearer_event.absent_for(*SMOOTH_LAWS)
+
+
 @internal
 def reset_corrections(ends):
     """Reset the accumulated quadrature errors."""

@@ -27,6 +27,7 @@ from .contact_events import (
     RATE_END,
     add_quadrature_errors,
     first_event,
+    nearer_event,
     reset_corrections,
 )
 
@@ -205,31 +206,38 @@ def split(trajectory, j, u_end, v_end, out):
     """
     slots, drive, y, stages = trajectory
     ends, end, k, h, dtheta = stages.ends, stages.end, stages.k, drive.h, drive.dtheta
-    theta, done = j * dtheta, 0.0
+    theta, done, last = j * dtheta, 0.0, slots.chain.stiffness.size - 1
     reset_corrections(ends)
     keep_overlaps(slots, y, k[0], ends, GAP, RATE)
     for _ in range(MOST_SPLITS):
         keep_overlaps(slots, end, k[3], ends, GAP_END, RATE_END)
-        first, contact = first_event(ends, slots.chain.stiffness.size, h * (1.0 - done))
+        first, contact = first_event(ends, last + 1, h * (1.0 - done))
         if first > 1.0:
             break
         part = first * (1.0 - done)
-        middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
-        u, v = driver_displacement(slots.driver, there), driver_velocity(slots.driver, there)
-        rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
-            u, v, h * part, y, stages)
+        for _ in range(2):
+            stepped = part
+            middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
+            u, v = driver_displacement(slots.driver, there), driver_velocity(slots.driver, there)
+            rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
+                u, v, h * part, y, stages)
+            motion(slots, u, v, end, k[3], stages.forces)
+            keep_overlaps(slots, end, k[3], ends, GAP, RATE)
+            out.counts[EVALUATIONS] += 4
+            part = nearer_event(slots.dissipation, ends, contact, last, part, 1.0 - done, h)
+            if part == stepped:
+                break
+        done += stepped
         copy(end, y)
-        motion(slots, u, v, y, k[0], stages.forces)
-        done += part
-        keep_overlaps(slots, y, k[0], ends, GAP, RATE)
+        copy(k[3], k[0])
         # before add_quadrature_errors, which overwrites the overlap with a sign
-        watch_event(slots, y, k[0], stages.forces.e, h * part, contact, there, out.log)
+        watch_event(slots, y, k[0], stages.forces.e, h * stepped, contact, there, out.log)
         add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
             u_end, v_end, h * (1.0 - done), y, stages)
         correct_state(slots, ends, v_end, end)
         motion(slots, u_end, v_end, end, k[3], stages.forces)
-        out.counts[EVALUATIONS] += 8
+        out.counts[EVALUATIONS] += 4
         out.counts[EVENTS] += 1
     return h * (1.0 - done)
