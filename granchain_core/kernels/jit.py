@@ -24,14 +24,16 @@ from numba import types
 from numba.core import event
 from numba.extending import overload
 
+from .link_only import compiler_options
+
 #: Kernels allocate nothing, so arrays in them are not counted, and they are never passed as function pointers, so they
 #: need no C entry: that is less code to compile and to run.
 _OPTIONS: Any = {"fastmath": {"nsz", "arcp", "contract", "reassoc"}, "error_model": "numpy", "_nrt": False,
                  "no_cfunc_wrapper": True}
 
 
-#: Code that only kernels call needs no entry for Python either, which would take another fifth of the compiler's time.
-_INTERNAL = _OPTIONS | {"no_cpython_wrapper": True}
+#: Code that only kernels call needs no entry for Python either, nor machine code of its own.
+_INTERNAL = _OPTIONS | compiler_options()
 
 
 class _CollectorPause(event.Listener):
@@ -119,8 +121,8 @@ def kernel(function):
 
 
 def internal(function):
-    """Decorator for parts of kernels, compiled and cached for themselves."""
-    return Internal(_cached(function, _INTERNAL))
+    """Decorator for parts of kernels, compiled for themselves and linked into the kernels that call them."""
+    return Internal(numba.njit(nogil=True, **_INTERNAL)(function))
 
 
 def inline_llvm(function):

@@ -93,7 +93,7 @@ def _wait_until_alive(process: subprocess.Popen[bytes], address: str, log: Path)
 
 def launch(playwright: Playwright) -> Browser:
     """The system's Chromium, or the one playwright installed; without one this fails, it never skips."""
-    names = ("chromium", "chromium-browser", "google-chrome")
+    names = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
     system = next((path for name in names if (path := shutil.which(name))), None)
     if system is None and not Path(playwright.chromium.executable_path).exists():
         raise RuntimeError("The browser tests need Chromium: install the system's chromium package, "

@@ -1,0 +1,57 @@
+"""Parts of kernels are linked into their callers and are not translated by themselves; without that all still works."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numba
+import pytest
+
+from granchain_core.kernels.jit import Internal
+from granchain_core.kernels.link_only import compiler_options
+
+
+class AnotherLibrary:
+    """A class of Numba's for compiled code that lacks what link_only.py uses."""
+
+
+def sum_of_squares(options: dict[str, Any]) -> tuple[Any, Any]:
+    """A kernel, and the part of it that is compiled with these options."""
+
+    @Internal
+    @numba.njit(error_model="numpy", **options)
+    def square(x):
+        return x * x
+
+    @numba.njit
+    def kernel(x, y):
+        return square(x) + square(y)
+
+    return kernel, square
+
+
+@pytest.mark.parametrize("options", [compiler_options(), compiler_options(AnotherLibrary)], ids=["linked", "translated"])
+def test_a_kernel_is_right_with_parts_of_either_kind(options: dict[str, Any]) -> None:
+    kernel, square = sum_of_squares(options)
+    assert kernel(3.0, 4.0) == 25.0
+    assert kernel(3, 4) == 25
+    assert square(5.0) == 25.0, "called from Python it runs uncompiled"
+
+
+def test_only_the_kernel_is_translated() -> None:
+    assert "pipeline_class" in compiler_options(), "this version of Numba has not what link_only.py uses"
+    kernel, square = sum_of_squares(compiler_options())
+    kernel(3.0, 4.0)
+    (whole,), (part,) = kernel.overloads.values(), square.dispatcher.overloads.values()
+    name = part.fndesc.llvm_func_name
+    assert whole.library.get_pointer_to_function(whole.fndesc.llvm_cpython_wrapper_name) != 0
+    assert part.library.get_pointer_to_function(name) == 0
+    assert name in part.library.get_llvm_str()
+
+
+def test_where_numba_is_another_every_function_is_translated() -> None:
+    assert "pipeline_class" not in compiler_options(AnotherLibrary)
+    kernel, square = sum_of_squares(compiler_options(AnotherLibrary))
+    kernel(3.0, 4.0)
+    (part,) = square.dispatcher.overloads.values()
+    assert part.library.get_pointer_to_function(part.fndesc.llvm_func_name) != 0
