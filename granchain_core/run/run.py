@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import Counts, Engine, Setting, State, live, method_for
+from ..integrate.caution import RUN_FORCES, RUN_FORCES_THAT_JUMP
 from ..integrate.methods import jump_errors, setting_of, typical_error
 from ..kernels.samples import Samples
 from ..result import Cost, Run, relative_changes, residual, run_from
@@ -39,9 +40,6 @@ _CLOSES = 10.0
 _KEPT = 420
 #: Time of the next finer computation over that of the last.
 _TWICE = 2.0
-#: Factors on the changes of largest forces before those of stated.py, where no force jumps and where some do: caution
-#: found by trial (`python -m tests.numerics.forces run`). At jumps the error is uneven from one step size to the next.
-_FORCES, _FORCES_THAT_JUMP = 1.5, 3.0
 #: Fewest periods after which multipliers or a Lyapunov exponent are computed; a shorter run is judged by its strobes.
 _ENOUGH = 40
 
@@ -205,7 +203,7 @@ def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
 
     The differences of forces are taken with a factor for caution.
     """
-    factor = _FORCES_THAT_JUMP if now.engine.lowered.scene.forces_jump else _FORCES
+    factor = RUN_FORCES_THAT_JUMP if now.engine.lowered.scene.forces_jump else RUN_FORCES
     return np.array([_difference(now, before), *(factor * relative_changes(now.engine.tops, before.engine.tops))])
 
 

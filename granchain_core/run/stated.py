@@ -6,11 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..integrate.caution import EVEN, UNEVEN
 from ..integrate.methods import METHODS, Setting, typical_error
 
-#: What the difference of two computations is multiplied by for a method whose order is even across contact events,
-#: and for others.
-_CAUTION, _UNEVEN = 1.5, 3.0
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
 #: the rounding seen as a rule; few random scenes exceed it.
 _ROUNDINGS = 32.0
@@ -55,7 +53,7 @@ class Computations:
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
         even = METHODS[setting.method].even and not self.cuts_tension
-        self.stated = np.maximum((_CAUTION if even else _UNEVEN) * seen, np.maximum(least, self.rounding))
+        self.stated = np.maximum((EVEN if even else UNEVEN) * seen, np.maximum(least, self.rounding))
         self._before = differences
         self.settings.append(setting)
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine
+from ..integrate.caution import ORBIT_FORCES
 from ..integrate.methods import jump_errors, typical_error
 from ..lower import Lowered
 from ..result import relative_changes
 
-#: The stated error of a force is at least this factor times its change: at contact events the order is uneven.
-CAUTION = 2.0
 #: F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
 _FORCE_PER_OVERLAP = 1.5
 
@@ -41,7 +40,7 @@ def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float,
     it is 0. `distance` (3,) is what the way left changes (`force_distances`), and `further` errors (3,), as of jumps,
     are added. `least` is the typical error of the finer computation: two may agree by chance.
     """
-    return np.asarray(np.maximum(CAUTION * change, least) / (1.0 - slowness) + distance + further)
+    return np.asarray(np.maximum(ORBIT_FORCES * change, least) / (1.0 - slowness) + distance + further)
 
 
 def errors_between(finer: Engine, before: np.ndarray, slowness: float, distance: float) -> np.ndarray:

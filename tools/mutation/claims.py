@@ -35,7 +35,7 @@ STEADY = (
 )
 
 STATED = (
-    Mutant("error-factor", _STATED, "_CAUTION, _UNEVEN = 1.5, 3.0", "_CAUTION, _UNEVEN = 0.015, 0.03",
+    Mutant("error-factor", "integrate/caution.py", "EVEN, UNEVEN = 1.5, 3.0", "EVEN, UNEVEN = 0.015, 0.03",
            "the stated error is a hundredth of what was seen", k.HONESTY),
     Mutant("same-steps-compared", _METHODS,
            "while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):",
@@ -87,7 +87,7 @@ OBSERVED = (
            "between samples a measured force is above both, or below 0", k.SAMPLING),
     Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.rate ** np.arange(4)", "/ scales.rate ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observe/observation.py", "_UNEVEN = 3.0", "_UNEVEN = 0.003",
+    Mutant("loss-between-samples", "observe/observation.py", "=UNEVEN * _difference(", "=1e-3 * UNEVEN * _difference(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 
