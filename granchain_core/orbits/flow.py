@@ -48,7 +48,7 @@ def refuse_cut(scene: Scene) -> None:
 
 
 class StroboscopicMap:
-    """x → the state n drive periods later, for scaled x = (u, w) at phase 0.
+    """x → the state n drive periods later with its derivative by the tangent flow, for scaled x = (u, w) at phase 0.
 
     Raises `BadInput` for a scene that cuts tension: only open and pressed contacts are implemented.
     """

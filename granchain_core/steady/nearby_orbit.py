@@ -17,8 +17,8 @@ from ..errors import NumbersFailed
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scene import Scene
 from ..stop import Stop
+from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point, sizes
 from .regime import changes
-from .strobe_map import FixedPoint, StrobeMap, fixed_point, sizes
 
 #: Beads up to which the derivative of the map is computed.
 MOST_BEADS = 100
@@ -53,7 +53,7 @@ _BACK = 1e-6
 class NearbyOrbit:
     """An orbit of `period` drive periods beside a motion at x (2N,), scaled; `modulus` is its largest |μ|."""
 
-    strobe: StrobeMap
+    strobe: FiniteDifferenceMap
     point: FixedPoint
     x: np.ndarray
     modulus: float
@@ -135,12 +135,12 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
     """The orbit of `period` drive periods, or of a part of them, that Newton's method leads to from x; if any."""
-    strobe = StrobeMap(scene, period, stop)
+    strobe = FiniteDifferenceMap(scene, period, stop)
     found = fixed_point(strobe, x)
     if found is None:
         return None
     for shorter in (n for n in range(1, period) if period % n == 0):
-        part = StrobeMap(scene, shorter, stop)
+        part = FiniteDifferenceMap(scene, shorter, stop)
         if float(np.abs((part(found.x) - found.x) / sizes(found.x)).max()) < _BACK:
             again = fixed_point(part, found.x)
             if again is not None:
@@ -150,7 +150,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
     """Largest |μ| at a settled state by one-sided differences: quick, good to about 1e-4."""
-    matrix = StrobeMap(scene, period, stop, refine).derivative(x, central=False)
+    matrix = FiniteDifferenceMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
 
