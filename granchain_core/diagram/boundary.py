@@ -30,7 +30,7 @@ from ..stop import Stop
 from .grid import KNOBS
 
 KINDS = ("fold", "period_doubling", "neimark_sacker")
-#: The condition on the critical multiplier is met to this; the map's own tangents are good to about 1e-7.
+#: How exactly the critical multiplier meets its condition; the map's own tangents are good to about 1e-7.
 _MET = 1e-6
 #: Residual at which an orbit is found.
 _CONVERGED = 1e-10

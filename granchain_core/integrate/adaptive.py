@@ -83,7 +83,7 @@ class Adaptive:
         return None
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
-        """Bead: stage by stage, each of which spreads to the next beads only."""
+        """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
         row = self.lowered.row
         first = next((bead for bead in (not_finite(slope, row) for slope in self.work.k) if bead), 0)
         return first or max(1, not_finite(y, row)), None

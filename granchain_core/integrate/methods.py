@@ -89,7 +89,7 @@ class Method:
 
     `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
     for, `order_with_cut` where tension is cut: only the certified method ends its steps at the force's kink, F = 0. All
-    are measured, the least of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
+    are measured, the smallest of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
     With `events` steps end at contact events or are split there; with `adaptive` an error control sets them;
     `symplectic` holds without damping. `stepper` makes what the engine steps with. `usual_error` is the relative error
     at the live step, or over the tolerance, 0 where none is known. `even`: the error falls by the method's order at
@@ -119,7 +119,7 @@ class Method:
 
 
 def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, Lowered, int], Stepper]:
-    """Makes the stepper of a method with fixed steps in (u, w)."""
+    """What makes the stepper of a method with fixed steps in (u, w)."""
     return lambda setting, lowered, samples: FixedStep(kind(setting.steps_per_period(lowered, samples)), lowered,
                                                        samples, simd)
 
@@ -171,7 +171,8 @@ METHODS: dict[str, Method] = {
 
 #: A largest force stands at a jump if the largest jump is at least this part of it.
 AT_A_JUMP = 0.95
-#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step behind an onset, for several contacts.
+#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step behind an onset, with room for several
+#: contacts.
 _JUMP = 0.01
 #: Smallest refinement: steps twice as long as the live method's own.
 _COARSEST = 0.5

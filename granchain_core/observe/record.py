@@ -67,7 +67,7 @@ class ForceRecord:
 
 
 def force_record(time: object, force: object, output: object = None) -> ForceRecord:
-    """A record from arrays in SI, or `BadInput` naming the first sample that cannot be."""
+    """A record from arrays in SI, or `BadInput` naming the first sample that cannot be used."""
     arrays = [_array(name, values) for name, values in (("time", time), ("force", force))]
     given = None if output is None else _array("output", output)
     lengths = {len(a) for a in (*arrays, *(() if given is None else (given,)))}

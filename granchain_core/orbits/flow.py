@@ -78,7 +78,7 @@ class StroboscopicMap:
         return Flow(self.inner(self.engine.y), _columns(tangent, start.shape[1]), trace, self.changes)
 
     def second_route(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
-        """The derivative (2N, 2N) by tangents in (u, v) with their jumps at contact events, as one of (u, w).
+        """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
 
         Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests ask for it. Its
         kernels are in the package all the same: compiled code is kept on disk with its types, and every process that

@@ -81,7 +81,7 @@ class Stopwatch:
 
 @functools.cache
 def slowness() -> float:
-    """Time of 4096 square roots over that on the machine of the figures; takes about a millisecond, once."""
+    """Time of 4096 square roots over that where step costs were measured; takes about a millisecond, once."""
     values, out, best = np.linspace(1.0, 2.0, 4096), np.empty(4096), np.inf
     for _ in range(100):
         began = time.perf_counter()
@@ -139,7 +139,7 @@ def check_budget(scene: Scene, setting: Setting, periods: int, record: int, samp
 
 
 def _what_fits(scene: Scene, total: int, part: float) -> list[str]:
-    """Requests that would fit, where a part of the run does."""
+    """Smaller runs that would fit, given that the fraction `part` of this run does."""
     found, periods, beads = [], int(total * part), int(scene.N * part)
     if periods >= 1:
         found.append(f"{periods} period{'s' if periods > 1 else ''} in all")

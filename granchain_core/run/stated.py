@@ -10,7 +10,7 @@ from ..integrate.caution import EVEN, UNEVEN
 from ..integrate.methods import METHODS, Setting, typical_error
 
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
-#: the rounding seen as a rule; few random scenes exceed it.
+#: the rounding usually seen, which few random scenes exceed.
 _ROUNDINGS = 32.0
 #: Where the typical error of the steps is above this, rounding is no part of the difference.
 _SMOOTH = 1e-10
@@ -74,7 +74,7 @@ class Computations:
             self._growth = max(self._growth, difference / typical)
 
     def _falls(self, coarser: Setting, finer: Setting) -> float:
-        """How many times smaller the finer one's error is by the method's order."""
+        """The factor by which the finer one's error is smaller by the method's order."""
         method = METHODS[finer.method]
         if method.adaptive:
             return coarser.tolerance / finer.tolerance

@@ -24,7 +24,8 @@ from .regime import changes
 MOST_BEADS = 100
 #: |μ| is not known better than this.
 UNSURE = 1e-5
-#: A motion that changes by more over n periods is not beside an orbit of n; nor is one so far from the orbit found.
+#: A motion that changes by more over n periods is not beside an orbit of period n, nor is one this far from the orbit
+#: that was found.
 _BESIDE = 0.1
 #: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _AS_SMALL = 3.0
@@ -35,7 +36,7 @@ _CLOSER = 0.4
 _SMALLEST = 1e-5
 #: Part of a distance that must decay according to the multipliers: it sets the number of orbits.
 _TAKEN = 0.2
-#: Orbits for that at most.
+#: Most orbits for that.
 _MOST_ORBITS = 3000
 #: Fraction of the predicted decay that must be observed.
 _PART = 0.3
@@ -109,9 +110,9 @@ class NearbyOrbit:
         return now, later
 
     def drawn_out(self) -> np.ndarray | None:
-        """A later state of a motion that leaves this orbit: its part along the growing directions, enlarged.
+        """A later state of a motion that leaves this orbit, with its part along the growing directions enlarged.
 
-        None where it is that far already.
+        None if it is that far away already.
         """
         values, right = np.linalg.eig(self.point.derivative)
         grows = np.abs(values) > 1.0
