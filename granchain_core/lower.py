@@ -21,7 +21,7 @@ from .kernels.effects.dissipation import exponent
 from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
-from .kernels.effects.tension import no_tension
+from .kernels.effects.tension import new_tension_cut
 from .kernels.equations.motion import Forces, Slots, place
 from .laws import LAWS, require_complete
 from .scene import Scene
@@ -91,7 +91,7 @@ class Lowered:
         """A copy with its own flags of slack contacts, if there are any: an engine writes into them."""
         if self.slots.tension is None:
             return self
-        return replace(self, slots=self.slots._replace(tension=no_tension(self.row - 1)))
+        return replace(self, slots=self.slots._replace(tension=new_tension_cut(self.row - 1)))
 
     def forces(self) -> Forces:
         """A workspace for one evaluation."""
@@ -177,7 +177,7 @@ def _dissipation(scene: Scene, scales: Scales) -> Any:
 #: The values in scaled units with which the slot of each effect is filled.
 _FILLED: dict[str, Callable[[Scene, Scales], Any]] = {
     "dissipation": _dissipation,
-    "tension": lambda scene, scales: no_tension(scene.N + 1),
+    "tension": lambda scene, scales: new_tension_cut(scene.N + 1),
     "foundation": lambda scene, scales: Foundation(scene.kappa),
     "preload": lambda scene, scales: Preload(scene.static_overlap() / scales.length),
 }

@@ -32,7 +32,7 @@ class Adaptive:
         self.grid = samples
         self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
                          slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
-                         clock=np.array([min(_FIRST_STEP, largest)]), forces=lowered.forces())
+                         next_step=np.array([min(_FIRST_STEP, largest)]), forces=lowered.forces())
 
     def use(self, lowered: Lowered) -> None:
         """Go on with other values in the same slots, or with other effects."""

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from ..kernels.equations.motion import Trajectory, place
-from ..kernels.equations.velocity_form import naive_motion
 from ..kernels.forces.largest import new_log
 from ..kernels.jit import all_in_simd_kernels
+from ..kernels.naive import naive_motion
 from ..kernels.rk4.contact_events import ENDS
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import Kept, run_steps
@@ -101,7 +101,7 @@ class FixedStep:
         return grid_index
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
-        """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps behind it."""
+        """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it."""
         n, row = self.grid, self.lowered.row
         if start is None:
             return max(1, not_finite(y, row)), None

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import unknown_name
-from ..kernels.equations.velocity_form import Rk4Naive, VerletNaive
+from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
 from ..lower import Lowered
 from .adaptive import Adaptive
@@ -171,7 +171,7 @@ METHODS: dict[str, Method] = {
 
 #: A largest force stands at a jump if the largest jump is at least this part of it.
 AT_A_JUMP = 0.95
-#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step behind an onset, with room for several
+#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step after an onset, with room for several
 #: contacts.
 _JUMP = 0.01
 #: Smallest refinement: steps twice as long as the live method's own.
@@ -206,7 +206,7 @@ def typical_error(setting: Setting) -> float:
 def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndarray, tops: np.ndarray) -> np.ndarray:
     """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,) [scaled].
 
-    The quadrature error behind an onset is subtracted at the end of the split step and of the next two steps. If
+    The quadrature error after an onset is subtracted at the end of the split step and of the next two steps. If
     another contact closes in between, its momentum is off by a part of K v^{3/2} h^{5/2} (contact_events.py), hence its
     rate v, relatively, by a part of K √v h^{5/2}/m. The sign changes with the step size, so the difference of two
     computations does not bound it.

@@ -140,7 +140,7 @@ def _offset(record: ForceRecord, offset: float | str) -> float:
 
 
 def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
-    """Samples with their gaps treated; a gap of zero force ends one usual spacing beside its two neighbours."""
+    """Samples with their gaps treated; zero force ends one usual spacing beside a gap's two neighbours."""
     steps, usual = np.diff(record.time), record.spacing
     gaps = np.flatnonzero(steps > GAP * usual)
     if not len(gaps):

@@ -188,7 +188,7 @@ def observer_start(scene: Scene, chain: State, perturbation: float | State) -> S
 
 
 def linear_window(distance: np.ndarray) -> tuple[int, int]:
-    """First strobe and one behind the last of the longest run of linear distances, without its transient."""
+    """First strobe and one past the last of the longest run of linear distances, without its transient."""
     beyond = np.flatnonzero((distance > LINEAR) | (distance < ROUNDING))
     edges = np.concatenate([[-1], beyond, [len(distance)]])
     longest = int(np.argmax(np.diff(edges)))

@@ -12,7 +12,7 @@ from ..integrate.methods import METHODS, Setting, typical_error
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
 #: the rounding usually seen, which few random scenes exceed.
 _ROUNDINGS = 32.0
-#: Where the typical error of the steps is above this, rounding is no part of the difference.
+#: If the typical error of the steps is above this, rounding contributes nothing to the difference.
 _SMOOTH = 1e-10
 #: Stated relative error above which the result is worth nothing.
 _WORTHLESS = 0.05

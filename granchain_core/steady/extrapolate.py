@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kernels.batch.period_end import LONGEST_JUMP
+from ..kernels.batch.period_end import FARTHEST_EXTRAPOLATION
 from ..kernels.strobes import extrapolation as approach
 from ..kernels.strobes.extrapolation import ORBITS
 
@@ -30,4 +30,4 @@ def within_reach(here: np.ndarray, there: np.ndarray, change: float, rate: float
     """Whether `there` is no further from `here` than the decay predicts."""
     if not np.isfinite(there).all() or not 0.0 < rate < 1.0:
         return False
-    return float(np.abs(there - here).max()) <= LONGEST_JUMP * change / (1.0 - rate)
+    return float(np.abs(there - here).max()) <= FARTHEST_EXTRAPOLATION * change / (1.0 - rate)

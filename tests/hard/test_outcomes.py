@@ -124,7 +124,7 @@ def test_step_too_small() -> None:
     engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
     engine.record(1)
     engine.lowered.slots.chain.stiffness[:] = 1e30
-    engine.stepper.work.clock[0] = 1e-14
+    engine.stepper.work.next_step[0] = 1e-14
     with pytest.raises(NumbersFailed, match="shrank to nothing") as caught:
         engine.record(8)
     assert caught.value.status == "step-too-small"

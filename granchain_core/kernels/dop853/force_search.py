@@ -30,7 +30,7 @@ from .tableau import STAGES
 _SECTIONS = 24
 #: A step whose ends are below this part of the largest force so far is not searched.
 _FAINT = 0.3
-#: A maximum that the cubic through values and slopes at both ends estimates below this part of it is not searched.
+#: A maximum is not searched if the cubic through values and slopes at both ends puts it below this part of that force.
 _WORTH = 0.98
 
 
