@@ -54,12 +54,12 @@ class Adaptive:
         place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
-        """Advance from sample `first`, filling the samples; status and number of rows filled."""
+        """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
         return self._run(y, first, len(samples.displacement) - 1, 1, samples, out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
-        """Advance whole periods, filling strobes and, with `watch`, largest forces; status and periods done."""
+        """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
         keep, row = empty_samples(self.lowered, 2), self.lowered.row
         strobes[0] = y[:row], self.work.k[0, :row]
         for p in range(len(tops)):

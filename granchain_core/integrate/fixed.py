@@ -84,12 +84,12 @@ class FixedStep:
         place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
-        """Advance from step `first`, filling the samples; status and number of rows filled."""
+        """Advance from step `first`, filling the samples; returns status and number of rows filled."""
         return self._run(y, first, self._every, Kept(samples, *self._no_periods), out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
-        """Advance whole periods, filling strobes and largest forces, which cost nothing; status and periods done."""
+        """Advance whole periods, filling strobes and largest forces (at no cost); returns status and periods done."""
         return self._run(y, 0, self.grid, Kept(self._no_samples, strobes, tops), out)
 
     def _run(self, y: np.ndarray, first: int, stride: int, kept: Kept, out: Output) -> tuple[int, int]:

@@ -64,7 +64,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
 
 
 def move_to_limit(engine: Engine, states: np.ndarray, change: float, rate: float) -> bool:
-    """Put the engine where successive states (k, 2, N) lead, if that is within reach; whether it was."""
+    """Put the engine where successive states (k, 2, N) lead, if that is within reach; returns whether it was."""
     there = reduced_rank(states)
     largest = np.abs(states).max(axis=(0, 2))[:, None]
     if not within_reach(states[-1] / largest, there / largest, change, rate):

@@ -57,7 +57,7 @@ class Settling:
                 return
 
     def run(self, seconds: float) -> bool:
-        """Run until a decision is due, which may need other kernels, or for `seconds`; whether one is due."""
+        """Run until a decision is due, which may need other kernels, or for `seconds`; returns whether one is due."""
         end, per_period = time.perf_counter() + seconds, 0.0
         while not self._finished:
             left = end - time.perf_counter()

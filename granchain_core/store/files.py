@@ -100,7 +100,7 @@ def save(result: Run, path: str | Path) -> Path:
 
 
 def _save_numbers(file: h5py.File, result: Run) -> None:
-    """What a run has one of: status, warnings, cost, regime, largest forces and their errors."""
+    """Write what a run has one of as attributes: status, warnings, cost, regime, largest forces and their errors."""
     file.attrs["status"], file.attrs["start"] = result.status, result.start
     file.attrs["warnings"] = json.dumps(overlap_warnings(result.scene, result.overlap.max(axis=0)))
     file.attrs["energy_residual"] = _or_nan(result.energy_residual)

@@ -206,7 +206,7 @@ def _second_judge(verdict: Verdict, found: Run, seconds: float) -> None:
 
 
 def _others(verdict: Verdict, chosen: Scene, true: np.ndarray, seconds: float) -> None:
-    """What naive RK4 at the steps of our own fixed-step method and LSODA as it comes would have given."""
+    """The answers of naive RK4, at the steps of our own fixed-step method, and of LSODA as a user would call it."""
     refine = 2.0 * method_for(max(chosen.accuracy, 1e-9)).refine
 
     def naive() -> np.ndarray:

@@ -59,7 +59,7 @@ PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
 
 @internal
 def keep_member_strobe(state, lane):
-    """Append the state to the strobes, dropping the oldest half if they are full; whether the state is finite."""
+    """Append the state to the strobes, the oldest half of which goes if they are full; returns whether it is finite."""
     strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
     if state.kept[lane] == strobes.shape[1]:
         half = strobes.shape[1] // 2
@@ -91,7 +91,7 @@ def place_member(state, lane, where):
 
 @internal
 def follow(state, lane, n, rate, change):
-    """Put a lane into the limit of its last strobes, n periods apart, if that is within reach; whether it was."""
+    """Put a lane into the limit of its last strobes, n periods apart; returns whether that was within reach."""
     kept = state.kept[lane]
     if kept < ORBITS * n + 1 or not 0.0 < rate < 1.0:
         return False
@@ -231,7 +231,7 @@ def check_fine(state, lane):
 
 @internal
 def end_period(state, lane):
-    """Keep strobe and largest forces of a member and restart its phase exactly; whether it is due for a check."""
+    """Keep a member's strobe and largest forces, restart its phase exactly; returns whether it is due for a check."""
     state.periods[lane] += 1
     periods = state.periods[lane]
     finite = keep_member_strobe(state, lane)

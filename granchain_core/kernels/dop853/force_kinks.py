@@ -78,7 +78,7 @@ def _(tension, trajectory, t):
 
 @by_slot
 def leave_force_free(tension, trajectory):
-    """At a step's end no contact is slack: velocities stay, w and the account use the law's own G again.
+    """End a step's slack contacts: velocities stay, w and the account use the law's own G again.
 
     Returns whether anything changed, and the slope with it. Absent: no contact is slack.
     """

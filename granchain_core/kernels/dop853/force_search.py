@@ -100,7 +100,7 @@ def is_monotone(f0, s0, f1, s1, h):
 
 @internal
 def follow_step(step, ready, peaks, counts):
-    """Raise the largest forces to those in the accepted step; whether its dense output is prepared now.
+    """Raise the largest forces to those in the accepted step; returns whether its dense output is prepared now.
 
     work.k[0] and work.k[12] are its slopes at both ends. A force that rises or falls throughout is largest at an end.
     """

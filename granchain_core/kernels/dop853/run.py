@@ -148,7 +148,7 @@ def locate_event(method, step, limit, c, counts):
 
 @inline_numba
 def accepted_step(method, trajectory, t, h, counts):
-    """Shrink a step from t until its error is tolerable: (status, size, factor by which the next one may grow)."""
+    """Shrink a step from t until its error is tolerable; returns (status, size, factor for the next one)."""
     while True:
         error = attempt(method, Step(trajectory, t, h))
         counts[EVALUATIONS] += STAGES
@@ -234,7 +234,7 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
 
 @inline_numba
 def accept(trajectory):
-    """Make the step's end the state, and its slope the next step's first; whether the slope must be evaluated anew."""
+    """Make the step's end the state; returns whether its slope must be evaluated anew."""
     slots, _, y, work = trajectory
     lost = slack_loss(slots.balance, slots, y, work.end)
     copy(work.end, y)
