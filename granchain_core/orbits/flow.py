@@ -111,7 +111,7 @@ class StroboscopicMap:
     def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent | None) -> float:
         engine = self.engine
         engine.start_scaled(x)
-        self._work.clock[0] = min(0.1, engine.lowered.period / STAGES)
+        self._work.next_step[0] = min(0.1, engine.lowered.period / STAGES)
         trajectory = engine.stepper.trajectory(engine.y)._replace(work=self._work)
         status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._path, tangent), self.periods,
                                        engine.counts.array, engine.stop.flag)
