@@ -151,12 +151,12 @@ METHODS: dict[str, Method] = {
             reference="Kutta 1901; w-variables and events: docs/model.md", stepper=_fixed(Rk4Split, simd=True),
             cost=StepCost(450e-9, 45e-9), usual_error=_LIVE_ERROR, even=True),
         Method(
-            name="rk4-naive", title="RK4 in (u, v), as one would write it first", order_smooth=4.0, order=1.0,
+            name="rk4-naive", title="RK4 in (u, v), the obvious first attempt", order_smooth=4.0, order=1.0,
             events=False, adaptive=False, symplectic=False,
             restrictions="no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
             reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv"),
         Method(
-            name="verlet-naive", title="velocity Verlet in (u, v), as one would write it first", order_smooth=1.0,
+            name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt", order_smooth=1.0,
             order=1.0, events=False, adaptive=False, symplectic=True,
             restrictions="no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),

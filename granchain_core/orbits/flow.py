@@ -43,7 +43,7 @@ class Flow:
 def refuse_cut(scene: Scene) -> None:
     """`BadInput` for a scene that cuts tension."""
     if scene.cuts_tension:
-        raise BadInput("tension = cut lets contacts touch without force, a state the flow of orbits does not have, so "
+        raise BadInput("tension = cut lets contacts touch without force, which the flow of orbits does not model, so "
                        "orbits and multipliers are not computed; the nearest valid value is tension = allowed.")
 
 

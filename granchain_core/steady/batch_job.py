@@ -39,7 +39,7 @@ class Start:
 
 @dataclass(eq=False)
 class Job:
-    """A scene on its way, from the scaled state y at phase 0, after `run` periods before.
+    """A scene that is being settled, from the scaled state y at phase 0, `run` periods after its start.
 
     `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record, its
     forces [N] and a first measurement of its Lyapunov exponent.

@@ -183,7 +183,7 @@ def irregular(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
 
     Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
     errors or 5e-4, the section comes back near itself as it does on a closed curve, and the record is long enough to
-    show that it is neither shrinking nor growing. Anything else is on its way, however slowly.
+    show that it is neither shrinking nor growing. Anything else is transient, however slow.
     """
     mean = float(exponents.mean())
     error = float(exponents.std(ddof=1) / math.sqrt(len(exponents)))

@@ -121,7 +121,7 @@ def place_words(pushed: tuple[int, int] | None, place: Place | None) -> str:
         return ""
     ratio = f"{pushed[0]}:{pushed[1]}"
     if place is None:
-        return f"{ratio} motion (the curve is on its way)"
+        return f"{ratio} motion (the curve is being computed)"
     if place.kind == "peak":
         return f"{ratio} resonance" if pushed[0] == 1 else f"{ratio} motion, on a peak"
     if place.kind == "valley":

@@ -23,7 +23,7 @@ MOST_STEPS = 100_000_000
 
 
 class Settling:
-    """The live method on its way to the steady state, chunk by chunk, until the regime is decided."""
+    """Runs a chain by the live method towards its steady state, chunk by chunk, until the regime is decided."""
 
     def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
         self.scene = scene
