@@ -1,8 +1,6 @@
 """`run`: a chain from its start through discarded and recorded periods, to the accuracy asked for.
 
-The motion is computed twice, the second time finer; their largest difference is the starting point of the stated error
-(stated.py). While that is above the accuracy asked for, a still finer one is computed: every accuracy is reached by
-comparison, none by trust in a tolerance.
+Every accuracy is reached by comparing two computations, none by trust in a tolerance.
 """
 
 from __future__ import annotations
@@ -58,8 +56,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         progress: Callable[[float], None] | None = None, budget: float = BUDGET) -> Run:
     """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
 
-    The motion is computed twice, the second time finer; their largest difference is the starting point of the stated
-    error (stated.py). While that is above the accuracy asked for, a still finer one follows (docs/design.md, "Accuracy
+    The motion is computed twice, the second time finer; the stated error starts from their largest difference
+    (stated.py). While it is above the accuracy asked for, a still finer computation follows (docs/design.md, "Accuracy
     is measured, not trusted").
 
     Parameters

@@ -24,7 +24,7 @@ _ALL = 2.0
 class Computations:
     """The errors of several computations of one motion, for several quantities at once.
 
-    Two computations may agree by chance, and a search that stops at agreement favours such chances. The stated error is
+    Two computations may agree by chance (docs/design.md, "Accuracy is measured, not trusted"). So the stated error is
     the largest of
       - the difference of the last two, times a factor;
       - the previous difference, reduced by the method's order;
