@@ -21,7 +21,7 @@ from .kernels.effects.dissipation import exponent
 from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
-from .kernels.effects.tension import no_tension
+from .kernels.effects.tension import new_tension_cut
 from .kernels.equations.motion import Forces, Slots, place
 from .laws import LAWS, require_complete
 from .scene import Scene
@@ -33,7 +33,7 @@ from .state import State
 _STEP = 0.2
 #: The same for the oscillation of a bead on its foundation, in radians of phase.
 _FOUNDATION_STEP = 0.1
-#: RK4's stability limit on the negative real axis is 2.78; half of it for the fastest dashpot mode 4λ/m.
+#: Half of RK4's stability limit on the negative real axis, 2.78, for the fastest dashpot mode, 4λ/m.
 _DASHPOT_LIMIT = 1.39
 #: More steps than this in one drive period are refused: one period would take a good part of a minute.
 MOST_STEPS = 50_000_000
@@ -69,7 +69,7 @@ class Lowered:
 
     @property
     def beads(self) -> int:
-        """Number of bodies that move: N, for a chain with its observer those of both and the wall between."""
+        """Number of bodies that move: N; for a chain with its observer, the beads of both and the wall between them."""
         return self.row - 2
 
     @property
@@ -88,10 +88,10 @@ class Lowered:
         return 2 * self.row + (2 if self.slots.balance is not None else 0)
 
     def own(self) -> Lowered:
-        """A copy whose flags of slack contacts, where there are any, are its own: an engine writes into them."""
+        """A copy with its own flags of slack contacts, if there are any: an engine writes into them."""
         if self.slots.tension is None:
             return self
-        return replace(self, slots=self.slots._replace(tension=no_tension(self.row - 1)))
+        return replace(self, slots=self.slots._replace(tension=new_tension_cut(self.row - 1)))
 
     def forces(self) -> Forces:
         """A workspace for one evaluation."""
@@ -174,10 +174,10 @@ def _dissipation(scene: Scene, scales: Scales) -> Any:
     return law.slot(strength * (scales.length / scene.reference_overlap) ** law.exponent)
 
 
-#: How each effect's slot is filled where it is present: its values in scaled units.
+#: The values in scaled units with which the slot of each effect is filled.
 _FILLED: dict[str, Callable[[Scene, Scales], Any]] = {
     "dissipation": _dissipation,
-    "tension": lambda scene, scales: no_tension(scene.N + 1),
+    "tension": lambda scene, scales: new_tension_cut(scene.N + 1),
     "foundation": lambda scene, scales: Foundation(scene.kappa),
     "preload": lambda scene, scales: Preload(scene.static_overlap() / scales.length),
 }

@@ -82,7 +82,7 @@ class ForceErrors:
 
     @classmethod
     def of(cls, errors: np.ndarray | None) -> ForceErrors:
-        """From an array (3,) in that order; of a force that is zero no relative error is claimed."""
+        """From an array (3,) in that order; a force that is zero has no relative error."""
         return cls() if errors is None else cls(*(float(e) if np.isfinite(e) else None for e in errors))
 
     @property
@@ -93,7 +93,7 @@ class ForceErrors:
 
 
 def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """How much each of three largest forces changed from one computation to a finer one, over the finer one's value.
+    """Relative changes of the three largest forces from one computation to a finer one, over the finer one's values.
 
     Infinite where the finer one is zero and the other is not.
     """
@@ -126,7 +126,7 @@ class Run:
     overlap : numpy.ndarray, shape (T, N + 1)
         Overlap of every contact, negative where there is a gap [m].
     max_input_force, max_output_force, max_output_force_elastic : float
-        Suprema over the recorded time [N]: what is between the samples counts, and the right limits of `jumps`.
+        Suprema over the recorded time [N], between the samples too, with the right limits at `jumps`.
     force_errors : ForceErrors
         Stated relative errors of these three suprema, `input`, `output`, `elastic`: numerical error only, an empirical
         bound (docs/design.md), not a proof; None where none is claimed.

@@ -71,7 +71,7 @@ def _engine(setting: Setting) -> Callable[[Scene], None]:
 
 
 def _curve(short: Scene) -> None:
-    """A curve: the shadow for irregular motions, the batch where the scene can use it, located jumps."""
+    """A curve: located jumps, the shadow of irregular motions, and the batch if the scene can use it."""
     if short.forces_jump:
         Engine(short, live(), 1).record(1)
     exponents(Engine(short, live(), 1), 1, 1)
@@ -141,7 +141,7 @@ def _marker(name: str, piece: str) -> Path:
 
 @functools.cache
 def _sources_stamp() -> str:
-    """What Numba tells its compiled code apart by, beside the content of the sources: their place and their times.
+    """Hash of what, besides their content, distinguishes the sources for Numba: their paths and times.
 
     The same sources in another clone, or after a checkout that touched them, are compiled once more.
     """

@@ -31,7 +31,7 @@ class Solver:
     reference: str
 
 
-_ACROSS = "steps across contact events; its tolerance is per step and says nothing about the end"
+_ACROSS = "steps across contact events; its tolerance is per step and does not bound the error at the end"
 
 SOLVERS: dict[str, Solver] = {
     s.name: s

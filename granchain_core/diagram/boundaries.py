@@ -18,7 +18,7 @@ from ..stop import Stop
 from .boundary import BoundaryPoint, boundary_curves, boundary_point
 from .cells import REGIMES, Diagram
 
-#: Steps from a cell to its neighbour in which its orbit is carried.
+#: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
 #: A point this many cells outside the pair of cells between which it was looked for belongs to another boundary.
 _OUTSIDE = 1.0
@@ -129,7 +129,7 @@ def _away(orbit: Orbit, kind: str) -> float:
 
 
 def _lies_on(found: Diagram, point: BoundaryPoint, pair: _Pair, curve: BoundaryCurve) -> bool:
-    """Whether a point is on a curve that is there already."""
+    """Whether a point is on a curve found before."""
     if (curve.kind, curve.period) != (pair.kind, pair.period):
         return False
     values = found.grid.x.values

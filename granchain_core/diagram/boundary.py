@@ -30,7 +30,7 @@ from ..stop import Stop
 from .grid import KNOBS
 
 KINDS = ("fold", "period_doubling", "neimark_sacker")
-#: The condition on the critical multiplier is met to this; the map's own tangents are good to about 1e-7.
+#: How exactly the critical multiplier meets its condition; the map's own tangents are good to about 1e-7.
 _MET = 1e-6
 #: Residual at which an orbit is found.
 _CONVERGED = 1e-10
@@ -208,7 +208,7 @@ def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: 
     """The curve of `kind` through the point near the orbit `state` of `scene`, at the `values` of knob y.
 
     It is followed to both sides of the scene's own y, as far as it goes: where the branch or the critical multiplier is
-    lost the curve ends, and points behind that are left out. Points come back in ascending y, that at the scene's own y
+    lost the curve ends, and points beyond that are left out. Points come back in ascending y, that at the scene's own y
     included. Raises `BadInput`, `Cancelled`, and `NumbersFailed` where there is no such point to begin with.
     """
     first = boundary_point(scene, kind, state, period, x, y, stop)

@@ -13,9 +13,9 @@ from .grid import Grid
 
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
 REGIMES = ("periodic", "quasi-periodic", "chaotic", "unsettled", "failed")
-#: One cell. Forces in N, NaN where the numbers failed; error estimates are relative, that without a name of the output
-#: force, NaN where none is claimed; `period` in drive periods, 0 where not periodic; `decay` per orbit, `multiplier`
-#: (the largest |μ|) and `lyapunov` (per drive period) NaN where not seen or not computed.
+#: One cell. Forces in N, NaN where the numbers failed; error estimates are relative, `error_estimate` that of the
+#: output force, NaN where none is claimed; `period` in drive periods, 0 where not periodic; `decay` per orbit,
+#: `multiplier` (the largest |μ|) and `lyapunov` (per drive period) NaN where not seen or not computed.
 CELL = np.dtype([
     ("number", "<i4"), ("regime", "i1"), ("period", "<i2"), ("periods_run", "<i4"), ("max_input_force", "<f8"),
     ("max_output_force", "<f8"), ("max_output_force_elastic", "<f8"), ("error_estimate_input", "<f8"),

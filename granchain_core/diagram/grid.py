@@ -99,7 +99,7 @@ class Grid:
         return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:16]
 
     def spacing(self) -> np.ndarray:
-        """Step of the coarsest net each cell belongs to, (cells,): it stands for so many cells in both directions."""
+        """Step of the coarsest net each cell belongs to, (cells,): it stands for that many cells in both directions."""
         i, j = np.divmod(np.arange(self.size), self.shape[1])
         return np.asarray(1 << np.minimum(_level(i), _level(j)))
 
@@ -116,7 +116,7 @@ class Grid:
 
 
 def _level(index: np.ndarray) -> np.ndarray:
-    """How often an index is divisible by two; 0 always is, as often as counts."""
+    """How often an index is divisible by two; for 0 the largest number that counts."""
     most = 1
     while 1 << most <= int(index.max(initial=1)):
         most += 1

@@ -146,7 +146,7 @@ def _value(plain: str) -> float | None:
 
 
 def _unit_of(place: int, meanings: list[str], names: list[str], expected: Expected) -> str:
-    """A column's unit behind a number: the one its header word ends in, else its usual one."""
+    """A column's unit after a number: the one its header word ends in, else its usual one."""
     known = expected.units.get(meanings[place], ()) if place < len(meanings) else ()
     last = names[place].rsplit("_", 1)[-1] if place < len(names) else ""
     return next((f" {unit}" for unit in known if unit.lower() == last), f" {known[0]}" if known else "")

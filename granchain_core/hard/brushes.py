@@ -62,7 +62,7 @@ def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore
         if not driven:
             y[1], y[4] = np.sin(start), rate * np.cos(start)
         t, end = start / rate, pi / rate
-        work.clock[0] = method.largest_step * cases[n, FIRST]
+        work.next_step[0] = method.largest_step * cases[n, FIRST]
         work.scale[0], work.scale[1] = 1.0, rate
         evaluate(slots, rate, t, y, work.k[0], work.forces)
         trajectory = Trajectory(slots, Cycle(rate, period), y, work)
@@ -97,7 +97,7 @@ def workspace(row: int) -> Work:
     """Arrays of the certified method for a chain of `row` bodies."""
     return Work(k=np.zeros((ALL_STAGES, 2 * row)), stage=np.zeros(2 * row), end=np.zeros(2 * row),
                 probe=np.zeros(2 * row), slope=np.zeros(2 * row), dense=np.zeros((7, 2 * row)), scale=np.zeros(2),
-                clock=np.zeros(1), forces=Forces(np.zeros(row - 1), None))
+                next_step=np.zeros(1), forces=Forces(np.zeros(row - 1), None))
 
 
 def missed(cases: np.ndarray, found: np.ndarray) -> np.ndarray:

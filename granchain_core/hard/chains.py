@@ -14,7 +14,7 @@ from ..kernels.effects.contact import Chain
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.preload import Preload
-from ..kernels.effects.tension import no_tension
+from ..kernels.effects.tension import new_tension_cut
 from ..kernels.samples import Samples
 from ..scene import Scene, scene
 
@@ -53,7 +53,7 @@ class Bench:
         slots = lowered.slots._replace(
             chain=Chain(masses, springs), dissipation=LinearDashpot(0.0) if law is None else law,
             driver=Harmonic(0.0, lowered.beta) if ends[0] > 0.0 else None,
-            tension=no_tension(beads + 1) if cut else None,
+            tension=new_tension_cut(beads + 1) if cut else None,
             preload=None if static is None else Preload(np.array(static, dtype=float)))
         self.engine.use(replace(lowered, slots=slots))
         self.masses = 1.0 / masses[1:-1]

@@ -167,7 +167,7 @@ def switched(steps: list[tuple[float, float, int]], phase: float, beads: int = 4
 
 
 def jump_push() -> float:
-    """Momentum of a chain at rest behind a jump of its driver by A0, less the dashpot's D·A0, over the latter."""
+    """Momentum of a chain at rest after a jump of its driver by A0, less the dashpot's D·A0, over the latter."""
     chosen = scene("sec2").evolve(N=4)
     engine = Engine(chosen, certified(1e-12), 4)
     engine.grid_index = engine.grid // 4
@@ -177,12 +177,12 @@ def jump_push() -> float:
 
 
 def switched_drives(quick: bool) -> list[Figure]:
-    """The push of a jump; impulse balance behind a jump, of a ramp, a chirp and a stop."""
+    """The push of a jump; impulse balance after a jump, of a ramp, a chirp and a stop."""
     half, whole, bar = _SWITCHED // 2, _SWITCHED, 1e-9
     count = 6 if quick else 40
     return [
         Figure("the jump's own push, against D times the jump", jump_push(), 1e-12),
-        Figure("behind a jump", switched([(340.0, 1.0, whole)], 0.25), bar),
+        Figure("after a jump", switched([(340.0, 1.0, whole)], 0.25), bar),
         Figure("ramp", switched([(340.0, (i + 1) / count, half) for i in range(count)], 0.0), bar),
         Figure("chirp", switched([(200.0 * 1.1**i, 1.0, half) for i in range(count)], 0.0), bar),
         Figure("stop", switched([(340.0, 1.0, whole), (340.0, 0.0, whole)], 0.0), bar),

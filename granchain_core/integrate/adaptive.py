@@ -32,7 +32,7 @@ class Adaptive:
         self.grid = samples
         self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
                          slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
-                         clock=np.array([min(_FIRST_STEP, largest)]), forces=lowered.forces())
+                         next_step=np.array([min(_FIRST_STEP, largest)]), forces=lowered.forces())
 
     def use(self, lowered: Lowered) -> None:
         """Go on with other values in the same slots, or with other effects."""
@@ -54,12 +54,12 @@ class Adaptive:
         place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
-        """Advance from sample `first`, filling the samples; status and number of rows filled."""
+        """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
         return self._run(y, first, len(samples.displacement) - 1, 1, samples, out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
-        """Advance whole periods, filling strobes and, with `watch`, largest forces; status and periods done."""
+        """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
         keep, row = empty_samples(self.lowered, 2), self.lowered.row
         strobes[0] = y[:row], self.work.k[0, :row]
         for p in range(len(tops)):
@@ -83,7 +83,7 @@ class Adaptive:
         return None
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
-        """Bead: stage by stage, each of which spreads to the next beads only."""
+        """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
         row = self.lowered.row
         first = next((bead for bead in (not_finite(slope, row) for slope in self.work.k) if bead), 0)
         return first or max(1, not_finite(y, row)), None

@@ -61,7 +61,7 @@ class Batch:
         self.state = kernels.BatchState(
             y=aligned(rows), gaps=aligned(n + 1), ends=aligned(4), phase=aligned(2), peaks=aligned(PEAKS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
-            wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], jumped=parts[1],
+            wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], unproved=parts[1],
             before=np.zeros((LANES, 2, n + 2)),
             fine=np.zeros((LANES, FINE)), strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
             tops=np.zeros((LANES, REMEMBERED, 5)), seen=np.zeros((LANES, 3)), scale=np.zeros(2),
@@ -96,7 +96,7 @@ class Batch:
         state.ends[:, lane] = 1.0  # counts as closed, so that no closing is recorded here
         state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
         state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
-        state.ready[lane], state.wait[lane], state.slowest[lane], state.jumped[lane] = 0, _WAIT, 0.0, 0.0
+        state.ready[lane], state.wait[lane], state.slowest[lane], state.unproved[lane] = 0, _WAIT, 0.0, 0.0
         state.fine[lane], state.testing[lane] = 0.0, 0
 
     def put_fine(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, period: int, rate: float,

@@ -63,7 +63,7 @@ def checkpoint(engine: Engine) -> Checkpoint:
     if adaptive and engine.grid_index != 0:
         raise BadInput(f"{engine.setting.method} can be stopped at whole drive periods only; the nearest is "
                        f"{engine.grid - engine.grid_index} of {engine.grid} grid points ahead.")
-    control = np.array([*engine.stepper.work.clock, *engine.stepper.work.scale]) if adaptive else np.zeros(0)
+    control = np.array([*engine.stepper.work.next_step, *engine.stepper.work.scale]) if adaptive else np.zeros(0)
     setting = engine.setting
     return Checkpoint(engine.lowered.scene.digest, setting.method, float(setting.refine), setting.tolerance,
                       engine.samples, engine.y.copy(), engine.stepper.work.k[0].copy(), control, engine.grid_index,
@@ -80,6 +80,6 @@ def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:
                     balance=len(kept.y) > 2 * row, stop=stop)
     engine.y[:], engine.stepper.work.k[0] = kept.y, kept.slope
     if len(kept.control):
-        engine.stepper.work.clock[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]
+        engine.stepper.work.next_step[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]
     engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed
     return engine

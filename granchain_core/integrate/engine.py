@@ -25,7 +25,7 @@ _CLOSINGS = 4
 
 
 class Engine:
-    """Carries a state of `scene` through time; all arrays are allocated before, none in a kernel.
+    """Carries a state of `scene` through time; all arrays are allocated beforehand, none in a kernel.
 
     `samples` is the number of recorded samples a period. `stop` ends a call from another thread. `lowered` may be
     given where more than the scene's own chain moves. What depends on the method is in `stepper`.
@@ -147,12 +147,12 @@ class Engine:
 
     @property
     def tops(self) -> np.ndarray:
-        """The largest input, output and elastic output force since then, in scaled units."""
+        """The largest input, output and elastic output force since they were last reset, in scaled units."""
         return self.log.peaks[:MEMORY:ROWS].copy()
 
     @property
     def jumps(self) -> np.ndarray:
-        """The largest jumps of input and output force since then (2,), in scaled units."""
+        """The largest jumps of input and output force (2,) in the same time, in scaled units."""
         return self.log.peaks[MEMORY:].copy()
 
     @property

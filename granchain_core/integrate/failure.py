@@ -29,7 +29,7 @@ class Failure:
 
     @property
     def error(self) -> Cancelled | NumbersFailed:
-        """The outcome as something to raise. `ValueError` for a status that is no failure."""
+        """The outcome as something to raise. `ValueError` for a status that is not a failure."""
         if self.status == CANCELLED:
             return Cancelled()
         time = self.periods * self.scene.period

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from ..kernels.equations.motion import Trajectory, place
-from ..kernels.equations.velocity_form import naive_motion
 from ..kernels.forces.largest import new_log
 from ..kernels.jit import all_in_simd_kernels
+from ..kernels.naive import naive_motion
 from ..kernels.rk4.contact_events import ENDS
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import Kept, run_steps
@@ -84,12 +84,12 @@ class FixedStep:
         place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
-        """Advance from step `first`, filling the samples; status and number of rows filled."""
+        """Advance from step `first`, filling the samples; returns status and number of rows filled."""
         return self._run(y, first, self._every, Kept(samples, *self._no_periods), out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
-        """Advance whole periods, filling strobes and largest forces, which cost nothing; status and periods done."""
+        """Advance whole periods, filling strobes and largest forces (at no cost); returns status and periods done."""
         return self._run(y, 0, self.grid, Kept(self._no_samples, strobes, tops), out)
 
     def _run(self, y: np.ndarray, first: int, stride: int, kept: Kept, out: Output) -> tuple[int, int]:
@@ -101,7 +101,7 @@ class FixedStep:
         return grid_index
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
-        """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps behind it."""
+        """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it."""
         n, row = self.grid, self.lowered.row
         if start is None:
             return max(1, not_finite(y, row)), None

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import unknown_name
-from ..kernels.equations.velocity_form import Rk4Naive, VerletNaive
+from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
 from ..lower import Lowered
 from .adaptive import Adaptive
@@ -89,7 +89,7 @@ class Method:
 
     `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
     for, `order_with_cut` where tension is cut: only the certified method ends its steps at the force's kink, F = 0. All
-    are measured, the least of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
+    are measured, the smallest of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
     With `events` steps end at contact events or are split there; with `adaptive` an error control sets them;
     `symplectic` holds without damping. `stepper` makes what the engine steps with. `usual_error` is the relative error
     at the live step, or over the tolerance, 0 where none is known. `even`: the error falls by the method's order at
@@ -119,7 +119,7 @@ class Method:
 
 
 def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, Lowered, int], Stepper]:
-    """Makes the stepper of a method with fixed steps in (u, w)."""
+    """What makes the stepper of a method with fixed steps in (u, w)."""
     return lambda setting, lowered, samples: FixedStep(kind(setting.steps_per_period(lowered, samples)), lowered,
                                                        samples, simd)
 
@@ -151,12 +151,12 @@ METHODS: dict[str, Method] = {
             reference="Kutta 1901; w-variables and events: docs/model.md", stepper=_fixed(Rk4Split, simd=True),
             cost=StepCost(450e-9, 45e-9), usual_error=_LIVE_ERROR, even=True),
         Method(
-            name="rk4-naive", title="RK4 in (u, v), as one would write it first", order_smooth=4.0, order=1.0,
+            name="rk4-naive", title="RK4 in (u, v), the obvious first attempt", order_smooth=4.0, order=1.0,
             events=False, adaptive=False, symplectic=False,
             restrictions="no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
             reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv"),
         Method(
-            name="verlet-naive", title="velocity Verlet in (u, v), as one would write it first", order_smooth=1.0,
+            name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt", order_smooth=1.0,
             order=1.0, events=False, adaptive=False, symplectic=True,
             restrictions="no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
@@ -171,7 +171,8 @@ METHODS: dict[str, Method] = {
 
 #: A largest force stands at a jump if the largest jump is at least this part of it.
 AT_A_JUMP = 0.95
-#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step behind an onset, for several contacts.
+#: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step after an onset, with room for several
+#: contacts.
 _JUMP = 0.01
 #: Smallest refinement: steps twice as long as the live method's own.
 _COARSEST = 0.5
@@ -205,7 +206,7 @@ def typical_error(setting: Setting) -> float:
 def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndarray, tops: np.ndarray) -> np.ndarray:
     """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,) [scaled].
 
-    The quadrature error behind an onset is subtracted at the end of the split step and of the next two steps. If
+    The quadrature error after an onset is subtracted at the end of the split step and of the next two steps. If
     another contact closes in between, its momentum is off by a part of K v^{3/2} h^{5/2} (contact_events.py), hence its
     rate v, relatively, by a part of K √v h^{5/2}/m. The sign changes with the step size, so the difference of two
     computations does not bound it.

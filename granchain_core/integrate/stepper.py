@@ -34,11 +34,11 @@ class Stepper(Protocol):
         """Put the driver and the slope in step with y at drive phase `theta`."""
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
-        """Advance from grid index `first`, filling the samples; status and number of rows filled."""
+        """Advance from grid index `first`, filling the samples; returns status and number of rows filled."""
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
-        """Advance whole periods, filling strobes and, with `watch`, largest forces; status and periods done."""
+        """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
 
     def step_at(self, grid_index: int) -> int | None:
         """Number of the step in its period that begins there; None where steps are not counted."""

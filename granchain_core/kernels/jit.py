@@ -1,6 +1,6 @@
 """The one place that decides how kernels are compiled and where the compiled code is kept.
 
-* `nogil`, so that a pool of threads really runs kernels side by side.
+* `nogil`, so that threads really run kernels side by side.
 * No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`, which let an absent effect's
   neutral elements fold away and sums be vectorised.
 * Numba does not notice edits in *imported* kernels, so the cache folder is named by a hash of all sources in
@@ -37,8 +37,8 @@ _INTERNAL = _OPTIONS | compiler_options()
 
 
 class _CollectorPause(event.Listener):
-    """No garbage collection while Numba compiles: it makes millions of objects that live until it is done, and looking
-    through them again and again takes a sixth of the time. Compilations are nested, and one thread compiles at a time.
+    """No garbage collection while Numba compiles: millions of objects live until it is done, and searching them
+    again and again takes a sixth of the time. Compilations are nested, and one thread compiles at a time.
     """
 
     def __init__(self) -> None:
@@ -53,7 +53,7 @@ class _CollectorPause(event.Listener):
         self._depth += 1
 
     def on_end(self, event: Any) -> None:
-        """Collect again behind the outermost one."""
+        """Resume after the outermost one."""
         self._depth -= 1
         if self._depth == 0 and self._was_on:
             gc.enable()
@@ -126,7 +126,7 @@ def internal(function):
 
 
 def inline_llvm(function):
-    """Decorator for what belongs into its caller's code: values that stay in registers."""
+    """Decorator for code that becomes part of its caller's, so that values stay in registers."""
     return Internal(numba.njit(nogil=True, forceinline=True, **_INTERNAL)(function))
 
 
@@ -188,14 +188,14 @@ def by_slot(absent, forceinline=False):
 
 
 def by_slot_inlined(absent):
-    """A term that becomes part of its caller's code: for one that takes many arguments and is called at each step."""
+    """`by_slot` for a term that becomes part of its caller's code: one with many arguments, called at each step."""
     return by_slot(absent, forceinline=True)
 
 
 def by_type(declared, forceinline=False):
-    """The same for what is never absent, as a method: the decorated function is a name and a docstring only.
+    """`by_slot` for what is never absent, such as a method: the decorated function is only a name and a docstring.
 
-    It is no term of an effect.
+    It does not count as a term of an effect.
     """
     function = by_slot(declared, forceinline)
     _TERMS.remove(function)
@@ -204,7 +204,7 @@ def by_type(declared, forceinline=False):
 
 
 def by_type_inlined(declared):
-    """Such a function that becomes part of its caller's code."""
+    """`by_type` for a function that becomes part of its caller's code."""
     return by_type(declared, forceinline=True)
 
 

@@ -1,4 +1,4 @@
-"""What is kept of a motion: samples, states a period apart, forces and costs, the first number that is not finite."""
+"""What is kept of a motion: samples, states a period apart, forces, costs, and the first number not finite."""
 
 from __future__ import annotations
 

@@ -16,12 +16,12 @@ CHATTER = 4
 EVENTS_PER_CONTACT = 2000
 #: A period took more steps than are worth waiting for.
 TOO_MANY_STEPS = 5
-#: What is kept of a run did not fit into the places for it.
+#: The arrays in which a run is kept are full.
 FULL = 6
-#: A release was aimed at where the contact does not open; the step is taken in another way.
+#: A step was aimed at a release, but the contact does not open there; the step is taken in another way.
 LOST = -1
 
-#: Fixed steps after which the stop flag is asked at the latest; with error control it is asked after each.
+#: Most fixed steps between two readings of the stop flag; with error control it is read after every step.
 STEPS_BETWEEN_STOP_CHECKS = 4096
 
 #: Places in an array of counts (4,): accepted steps, evaluations of the equations, contact events, rejected steps.

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import State
+from ..integrate.caution import EVEN, UNEVEN
 from ..integrate.methods import LIVE
 from ..result import Cost
 from ..scene import Scene
@@ -28,10 +29,6 @@ from .record import ForceRecord, force_record, prepared
 
 #: Most values recorded of one kind: samples times beads.
 MOST_VALUES = 50_000_000
-#: Factor on the difference of two computations; the finer one's error is a sixteenth of it where the order is 4.
-_CAUTION = 1.5
-#: The same for the loss between samples, which is of order 1 and uneven.
-_UNEVEN = 3.0
 #: Most halvings of the steps: beyond it rounding and the error of the events dominate.
 _MOST_HALVINGS = 7
 
@@ -188,7 +185,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     while True:
         halvings += 1
         now = chain.run(begin, halvings)
-        integration = _CAUTION * _difference(now.displacement, before.displacement)
+        integration = EVEN * _difference(now.displacement, before.displacement)
         if progress is not None:
             progress(halvings / (_MOST_HALVINGS + 1))
         if integration <= scene.accuracy or halvings == _MOST_HALVINGS:
@@ -208,7 +205,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         scene=scene, record=record, displacement=displacement, velocity=now.velocity * scales.velocity, force=forces,
         max_output_force=float(tops[1]) * scales.force, max_output_force_elastic=float(tops[2]) * scales.force,
         integration_error=integration,
-        interpolation_error=_UNEVEN * _difference(now.displacement[kept], coarse.displacement),
+        interpolation_error=UNEVEN * _difference(now.displacement[kept], coarse.displacement),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",
         cost=Cost.of(clock.perf_counter() - began, chain.counts, LIVE),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),

@@ -75,7 +75,7 @@ def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: 
 
 
 def _unit(table: Table, meaning: str, known: dict[str, float], asked: str | None, usual: str) -> tuple[float, str]:
-    """A column's unit in SI and its name: from the header, else as asked, else the usual one; both may only agree."""
+    """A column's unit in SI and its name: the header's or the one asked for, which must agree, else the usual one."""
     named = None
     if table.header:
         last = table.header[table.order.index(meaning)].rsplit("_", 1)[-1]
@@ -119,7 +119,7 @@ def _group(file: h5py.File, path: Path) -> h5py.Group:
 
 
 def _plain(group: h5py.Group, name: str, path: Path) -> np.ndarray | None:
-    """One row of numbers that stand in this very file: links and outside storage could name any file."""
+    """One row of numbers stored in this very file: links and external storage could lead to any file."""
     if name not in group:
         return None
     if not isinstance(group.get(name, getlink=True), h5py.HardLink) or not isinstance(group[name], h5py.Dataset):

@@ -67,7 +67,7 @@ class ForceRecord:
 
 
 def force_record(time: object, force: object, output: object = None) -> ForceRecord:
-    """A record from arrays in SI, or `BadInput` naming the first sample that cannot be."""
+    """A record from arrays in SI, or `BadInput` naming the first sample that cannot be used."""
     arrays = [_array(name, values) for name, values in (("time", time), ("force", force))]
     given = None if output is None else _array("output", output)
     lengths = {len(a) for a in (*arrays, *(() if given is None else (given,)))}
@@ -140,7 +140,7 @@ def _offset(record: ForceRecord, offset: float | str) -> float:
 
 
 def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
-    """Samples with their gaps treated; a gap of zero force ends one usual spacing beside its two neighbours."""
+    """Samples with their gaps treated; zero force ends one usual spacing beside a gap's two neighbours."""
     steps, usual = np.diff(record.time), record.spacing
     gaps = np.flatnonzero(steps > GAP * usual)
     if not len(gaps):

@@ -99,11 +99,11 @@ class Twin:
 
     @property
     def sentence(self) -> str:
-        """What happened, for a reader."""
+        """The outcome in words."""
         if self.verdict == "neither yet":
             return "The distance between observer and chain shows no clear rate; give more periods."
         every = "period" if self.period == 1 else f"{self.period} periods"
-        factor = f"the distance goes with {self.rate:.4g} every {every}"
+        factor = f"the distance is multiplied by {self.rate:.4g} every {every}"
         if self.verdict == "synchronises":
             return f"The observer synchronises: {factor}."
         side = ""
@@ -188,7 +188,7 @@ def observer_start(scene: Scene, chain: State, perturbation: float | State) -> S
 
 
 def linear_window(distance: np.ndarray) -> tuple[int, int]:
-    """First strobe and one behind the last of the longest run of linear distances, without its transient."""
+    """First strobe and one past the last of the longest run of linear distances, without its transient."""
     beyond = np.flatnonzero((distance > LINEAR) | (distance < ROUNDING))
     edges = np.concatenate([[-1], beyond, [len(distance)]])
     longest = int(np.argmax(np.diff(edges)))

@@ -43,12 +43,12 @@ class Flow:
 def refuse_cut(scene: Scene) -> None:
     """`BadInput` for a scene that cuts tension."""
     if scene.cuts_tension:
-        raise BadInput("tension = cut lets contacts touch without force, a state the flow of orbits does not have, so "
+        raise BadInput("tension = cut lets contacts touch without force, which the flow of orbits does not model, so "
                        "orbits and multipliers are not computed; the nearest valid value is tension = allowed.")
 
 
 class StroboscopicMap:
-    """x → the state n drive periods later, for scaled x = (u, w) at phase 0.
+    """x → the state n drive periods later with its derivative by the tangent flow, for scaled x = (u, w) at phase 0.
 
     Raises `BadInput` for a scene that cuts tension: only open and pressed contacts are implemented.
     """
@@ -78,7 +78,7 @@ class StroboscopicMap:
         return Flow(self.inner(self.engine.y), _columns(tangent, start.shape[1]), trace, self.changes)
 
     def second_route(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
-        """The derivative (2N, 2N) by tangents in (u, v) with their jumps at contact events, as one of (u, w).
+        """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
 
         Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests ask for it. Its
         kernels are in the package all the same: compiled code is kept on disk with its types, and every process that
@@ -111,7 +111,7 @@ class StroboscopicMap:
     def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent | None) -> float:
         engine = self.engine
         engine.start_scaled(x)
-        self._work.clock[0] = min(0.1, engine.lowered.period / STAGES)
+        self._work.next_step[0] = min(0.1, engine.lowered.period / STAGES)
         trajectory = engine.stepper.trajectory(engine.y)._replace(work=self._work)
         status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._path, tangent), self.periods,
                                        engine.counts.array, engine.stop.flag)

@@ -12,7 +12,7 @@ rule       one strong push in n ≥ 2 periods is a 1:n resonance. One push a per
            chain is in its stop band and the response is neither.
 
 The drive's phase at contact alone does not distinguish the two: for section 2 it is 343° at the 1:1 peak and 355° in
-the valley behind it.
+the valley after it.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def _phase(sample: int) -> float:
 
 
 def _begin(force: np.ndarray, peak: int) -> int | None:
-    """The sample at which the push around `peak` begins; the orbit is closed, so it may lie behind the peak's index."""
+    """The sample at which the push around `peak` begins; the orbit is closed, so it may lie after the peak's index."""
     quiet = np.flatnonzero(np.roll(force, -peak) < ENDED * force[peak])
     return None if len(quiet) == 0 else int((peak + quiet[-1] + 1) % len(force))
 

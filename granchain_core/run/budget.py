@@ -11,16 +11,18 @@ from __future__ import annotations
 import functools
 import threading
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numba.core import event
 
 from ..errors import OverBudget
-from ..integrate import METHODS, Setting
+from ..integrate import METHODS, Setting, method_for
 from ..lower import Lowered, lower
 from ..scene import Scene
 
+#: The accuracy that is offered if the run would fit with it.
+_COARSE_ACCURACY = "1e-4"
 #: Default budget of a run [s].
 BUDGET = 86_400.0
 #: Time of one recorded sample [s], and of each bead in it [s].
@@ -79,7 +81,7 @@ class Stopwatch:
 
 @functools.cache
 def slowness() -> float:
-    """Time of 4096 square roots over that on the machine of the figures; takes about a millisecond, once."""
+    """Time of 4096 square roots over that where step costs were measured; takes about a millisecond, once."""
     values, out, best = np.linspace(1.0, 2.0, 4096), np.empty(4096), np.inf
     for _ in range(100):
         began = time.perf_counter()
@@ -127,16 +129,17 @@ def check_budget(scene: Scene, setting: Setting, periods: int, record: int, samp
     if found.seconds <= budget:
         return found
     fit = _what_fits(scene, total, budget / found.seconds)
-    if not METHODS[setting.method].adaptive:
-        coarse = _estimate(lowered, replace(setting, refine=0.5), total, samples, record)
-        fit += ["an accuracy of 1e-4"] if coarse.seconds <= budget else []
+    if setting == method_for(scene.accuracy, scene.cuts_tension):  # the steps of a method asked for by name stay
+        coarse = method_for(float(_COARSE_ACCURACY), scene.cuts_tension)
+        fits = _estimate(lowered, coarse, total, samples, record).seconds <= budget
+        fit += [f"an accuracy of {_COARSE_ACCURACY}"] if fits else []
     remedy = f"{', or '.join(fit)} would fit" if fit else "a higher frequency or fewer beads are needed"
     raise OverBudget(f"This run would take about {_in_words(found.seconds)} ({found.steps:.1e} steps of "
                      f"{setting.method}), the budget is {_in_words(budget)}: {remedy}.", found.seconds, budget)
 
 
 def _what_fits(scene: Scene, total: int, part: float) -> list[str]:
-    """Requests that would fit, where a part of the run does."""
+    """Smaller runs that would fit, given that the fraction `part` of this run does."""
     found, periods, beads = [], int(total * part), int(scene.N * part)
     if periods >= 1:
         found.append(f"{periods} period{'s' if periods > 1 else ''} in all")

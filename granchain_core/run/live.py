@@ -1,4 +1,4 @@
-"""The chain that goes on while its knobs are moved."""
+"""The chain that runs on while its knobs are moved."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _NOT_ASKED = Regime.unsettled(0)
 
 
 class LiveChain:
-    """A chain that goes on while its knobs are moved, by the live method.
+    """A chain that runs on while its knobs are moved, by the live method.
 
-    D, k, the laws and the frequency act at the next sample: the drive phase goes on from where it is, so the driver
-    never jumps. A new amplitude waits for the driver's next passage through its middle position, where u_0 is
+    New values of D, k, the laws and the frequency act from the next sample on; the drive phase continues, so the
+    driver never jumps. A new amplitude waits for the driver's next passage through its middle position, where u_0 is
     continuous for every A0.
 
     Parameters
@@ -77,7 +77,7 @@ class LiveChain:
         return self._engine.state
 
     def change(self, scene: Scene) -> None:
-        """Use other knobs from the right instant of the drive on; another number of beads starts from rest."""
+        """Use other knobs as soon as the drive allows it; another number of beads starts from rest."""
         if scene.N != self.scene.N:
             self.scene = scene
             self.reset()
@@ -95,7 +95,7 @@ class LiveChain:
         self._engine = self._new_engine(self.scene, rest(self.scene))
 
     def advance(self, count: int) -> Run:
-        """Go on by `count` samples: count + 1 rows, the present state first; `time` goes on from call to call.
+        """Advance by `count` samples: count + 1 rows, the present state first; `time` continues from call to call.
 
         The largest forces are those of this stretch. Raises `NumbersFailed`, `Cancelled`.
         """

@@ -1,8 +1,6 @@
 """`run`: a chain from its start through discarded and recorded periods, to the accuracy asked for.
 
-The motion is computed twice, the second time finer; their largest difference is the starting point of the stated error
-(stated.py). While that is above the accuracy asked for, a still finer one is computed: every accuracy is reached by
-comparison, none by trust in a tolerance.
+Every accuracy is reached by comparing two computations, none by trust in a tolerance.
 """
 
 from __future__ import annotations
@@ -15,6 +13,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import Counts, Engine, Setting, State, live, method_for
+from ..integrate.caution import RUN_FORCES, RUN_FORCES_THAT_JUMP
 from ..integrate.methods import jump_errors, setting_of, typical_error
 from ..kernels.samples import Samples
 from ..result import Cost, Run, relative_changes, residual, run_from
@@ -39,9 +38,6 @@ _CLOSES = 10.0
 _KEPT = 420
 #: Time of the next finer computation over that of the last.
 _TWICE = 2.0
-#: Factors on the changes of largest forces before those of stated.py, where no force jumps and where some do: caution
-#: found by trial (`python -m tests.numerics.forces run`). At jumps the error is uneven from one step size to the next.
-_FORCES, _FORCES_THAT_JUMP = 1.5, 3.0
 #: Fewest periods after which multipliers or a Lyapunov exponent are computed; a shorter run is judged by its strobes.
 _ENOUGH = 40
 
@@ -60,8 +56,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         progress: Callable[[float], None] | None = None, budget: float = BUDGET) -> Run:
     """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
 
-    The motion is computed twice, the second time finer; their largest difference is the starting point of the stated
-    error (stated.py). While that is above the accuracy asked for, a still finer one follows (docs/design.md, "Accuracy
+    The motion is computed twice, the second time finer; the stated error starts from their largest difference
+    (stated.py). While it is above the accuracy asked for, a still finer computation follows (docs/design.md, "Accuracy
     is measured, not trusted").
 
     Parameters
@@ -114,34 +110,46 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     True
     """
     _check_sizes(scene, periods, record, samples)
-    began, spent = time.perf_counter(), Stopwatch()
+    began, total = time.perf_counter(), Counts()
     stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else start
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     check_budget(scene, setting, periods, record, samples, budget)
-    total, status, shown = Counts(), "accuracy-not-reached", Computations(scene.cuts_tension)
-    shown.begin(setting)
-    before = _attempt(scene, setting, begin, (periods, record, samples), stop, progress, total)
-    while True:
-        setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
-        now = _attempt(scene, setting, begin, (periods, record, samples), stop, progress, total)
-        shown.add(setting, now.engine.counts.steps, _differences(now, before), _least(now, setting))
-        error = float(shown.stated[0])
-        lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
-        if error <= scene.accuracy or setting.finest or shown.rounded or lost:
-            break
-        if spent.seconds + _TWICE * lap.seconds > budget:
-            status = "over-budget"
-            break
-        before = now
-    regime = _regime(scene, now, periods + record, stop)
-    if error <= scene.accuracy:
-        status = "done"
-    error, *forces = shown.final(status == "done")
+
+    def attempt(finer: Setting) -> _Attempt:
+        return _attempt(scene, finer, begin, (periods, record, samples), stop, progress, total)
+
+    last, status, (error, *forces) = _refined(attempt, scene, setting, samples, budget)
+    regime = _regime(scene, last, periods + record, stop)
     cost = Cost.of(time.perf_counter() - began, total, setting.method)
     first = periods * samples + round(begin.phase * samples)
-    result = run_from(now.engine, now.samples, first, regime, float(error), cost, status, np.array(forces))
+    result = run_from(last.engine, last.samples, first, regime, float(error), cost, status, np.array(forces))
     return replace(result, start=_origin(scene, start))
+
+
+def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Setting, samples: int,
+             budget: float) -> tuple[_Attempt, str, np.ndarray]:
+    """Compute the motion with `setting`, then ever finer: the last computation, the run's status, the errors (4,).
+
+    It ends where the error is as small as asked for, where finer steps would not help, or before a computation that
+    would exceed `budget` seconds.
+    """
+    spent, shown = Stopwatch(), Computations(scene.cuts_tension)
+    shown.begin(setting)
+    before = attempt(setting)
+    while True:
+        setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
+        now = attempt(setting)
+        shown.add(setting, now.engine.counts.steps, _differences(now, before), _least(now, setting))
+        error = float(shown.stated[0])
+        if error <= scene.accuracy:
+            return now, "done", shown.final(done=True)
+        lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
+        if setting.finest or shown.rounded or lost:
+            return now, "accuracy-not-reached", shown.final(done=False)
+        if spent.seconds + _TWICE * lap.seconds > budget:
+            return now, "over-budget", shown.final(done=False)
+        before = now
 
 
 def _origin(scene: Scene, start: State | None) -> str:
@@ -205,7 +213,7 @@ def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
 
     The differences of forces are taken with a factor for caution.
     """
-    factor = _FORCES_THAT_JUMP if now.engine.lowered.scene.forces_jump else _FORCES
+    factor = RUN_FORCES_THAT_JUMP if now.engine.lowered.scene.forces_jump else RUN_FORCES
     return np.array([_difference(now, before), *(factor * relative_changes(now.engine.tops, before.engine.tops))])
 
 

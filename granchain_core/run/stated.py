@@ -6,15 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..integrate.caution import EVEN, UNEVEN
 from ..integrate.methods import METHODS, Setting, typical_error
 
-#: What the difference of two computations is multiplied by for a method whose order is even across contact events,
-#: and for others.
-_CAUTION, _UNEVEN = 1.5, 3.0
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
-#: the rounding seen as a rule; few random scenes exceed it.
+#: the rounding usually seen, which few random scenes exceed.
 _ROUNDINGS = 32.0
-#: Where the typical error of the steps is above this, rounding is no part of the difference.
+#: If the typical error of the steps is above this, rounding contributes nothing to the difference.
 _SMOOTH = 1e-10
 #: Stated relative error above which the result is worth nothing.
 _WORTHLESS = 0.05
@@ -26,7 +24,7 @@ _ALL = 2.0
 class Computations:
     """The errors of several computations of one motion, for several quantities at once.
 
-    Two computations may agree by chance, and a search that stops at agreement favours such chances. The stated error is
+    Two computations may agree by chance (docs/design.md, "Accuracy is measured, not trusted"). So the stated error is
     the largest of
       - the difference of the last two, times a factor;
       - the previous difference, reduced by the method's order;
@@ -55,7 +53,7 @@ class Computations:
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
         even = METHODS[setting.method].even and not self.cuts_tension
-        self.stated = np.maximum((_CAUTION if even else _UNEVEN) * seen, np.maximum(least, self.rounding))
+        self.stated = np.maximum((EVEN if even else UNEVEN) * seen, np.maximum(least, self.rounding))
         self._before = differences
         self.settings.append(setting)
 
@@ -76,7 +74,7 @@ class Computations:
             self._growth = max(self._growth, difference / typical)
 
     def _falls(self, coarser: Setting, finer: Setting) -> float:
-        """How many times smaller the finer one's error is by the method's order."""
+        """The factor by which the finer one's error is smaller by the method's order."""
         method = METHODS[finer.method]
         if method.adaptive:
             return coarser.tolerance / finer.tolerance

@@ -82,7 +82,7 @@ def _pressed(equation: Equation, scene: Description) -> Equation:
     return replace(equation, overlap=equation.overlap + r" + (F_0/" + equation.stiffness + ")^{2/3}")
 
 
-#: In the order in which their terms enter the equation: the cut is one of the damped force.
+#: In the order in which their terms enter the equation: the cut acts on the damped force.
 EFFECTS = (
     Effect("dashpot", "dissipation", "contact damping", "A contact loses energy while it is pressed.",
            lambda scene: scene.has_dissipation, _damped, ("dissipation", "D"), {"dissipation": "none"},
@@ -98,7 +98,7 @@ EFFECTS = (
            "A static force presses the chain together; without it: sonic vacuum.",
            lambda scene: scene.F0 > 0.0, _pressed, ("F0",), {"F0": 0.0}, {"F0": 1.0}),
 )
-#: The one effect that is no knob of a scene: it changes nothing in the motion.
+#: The one effect that is not a knob of a scene: it does not change the motion.
 ACCOUNT = Effect("account", "balance", "energy account",
                  "Work, loss and stored energy are integrated alongside; the status line shows how well they balance.",
                  lambda scene: False)

@@ -104,7 +104,7 @@ def scene(name: str) -> Scene:
         ranges=tuple((knob, float(low), float(high)) for knob, (low, high) in data["ranges"].items()),
         **{"k": 0.0, **knobs},
     )
-    new = new.evolve(**{n: v for n, v in new.knobs.items() if n != "kappa"})  # every preset passes the border too
+    new = new.evolve(**{n: v for n, v in new.knobs.items() if n != "kappa"})  # presets are checked like user input
     if kappa is not None:
         new = new.evolve(kappa=kappa)
     return replace(new, preset=tuple((n, new.knobs[n]) for n in QUANTITIES))

@@ -8,7 +8,7 @@ import numpy as np
 
 from .description import Description
 
-#: Hertz's theory assumes a contact patch that is small against the sphere; at an overlap of 1 % of the radius the
+#: Hertz's theory assumes a contact patch that is small compared with the sphere; at an overlap of 1 % of the radius the
 #: patch radius √(Rδ/2) is already 7 % of R.
 LARGEST_OVERLAP_FRACTION = 0.01
 #: Spheres with ν = 0.3 begin to yield, below the surface, at a peak pressure of 1.6 Y (Johnson, Contact
@@ -22,8 +22,8 @@ YIELD_STRESS = 2.28e9
 def contact_geometry(scene: Description) -> tuple[np.ndarray, np.ndarray]:
     """E* [Pa] and R* [m] of every contact (N+1,); the driver is a bead like bead 1.
 
-    The wall is flat where it is called so, and a rigid one has no compliance of its own; a wall that is a number times
-    K counts as a bead.
+    The walls "same-material" and "rigid" are flat, and a rigid one has no compliance of its own; a wall that is a
+    number times K counts as a bead.
     """
     beads = (scene.beads[0], *scene.beads, scene.beads[-1])
     modulus = np.array([1.0 / ((1 - a.poisson**2) / a.young + (1 - b.poisson**2) / b.young)

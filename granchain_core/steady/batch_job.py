@@ -39,7 +39,7 @@ class Start:
 
 @dataclass(eq=False)
 class Job:
-    """A scene on its way, from the scaled state y at phase 0, after `run` periods before.
+    """A scene that is being settled, from the scaled state y at phase 0, `run` periods after its start.
 
     `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record, its
     forces [N] and a first measurement of its Lyapunov exponent.
@@ -90,9 +90,9 @@ class Job:
                       stop: Stop) -> tuple[np.ndarray, np.ndarray]:
         """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
-        Lanes take their steps across events: what they see of a jump is off by an order of the step. A second orbit,
-        with half the step, shows both by how much the forces still change on the way from the lanes' orbit to this
-        method's and what the step does at a jump, where its order is uneven.
+        Lanes step across events, so the jumps they see have an error of the order of the step. A second orbit with
+        half the step shows how much the forces still change on the way from the lanes' orbit to this method's, and how
+        much they depend on the step at a jump, where the order is uneven.
         """
         assert regime.period is not None
         engine = Engine(self.scene, _LOCATED, 1, stop=stop, lowered=self.lowered)

@@ -60,7 +60,7 @@ class _Lanes:
                     self._start(lane, job)
 
     def _start(self, lane: int, job: Job) -> None:
-        """The coarse run is checked once it may have settled, the finer one once its start has decayed."""
+        """The coarse run is checked once it may have settled, the finer one once the difference has decayed."""
         if job.coarse is None:
             look = min(_DRAFT if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
             self.block.put(lane, job.lowered, job.y, 1, look)
@@ -97,7 +97,7 @@ class _Lanes:
         self.block.put(lane, job.lowered, np.zeros_like(job.y), 1, NEVER, NEVER)
 
     def undecided(self) -> list[Job]:
-        """Up to four doubtful jobs with about as many steps a period; fewer than four only if nothing else is to do."""
+        """Up to four doubtful jobs of similar steps a period; fewer only if there is nothing else to do."""
         jobs = sorted(self.doubtful, key=_steps)
         for i in range(len(jobs) - _PAIRS + 1):
             if _steps(jobs[i + _PAIRS - 1]) <= MOST_APART * _steps(jobs[i]):

@@ -29,7 +29,7 @@ BLOCK = 20
 REMEMBERED = 420
 #: Measurements of the Lyapunov exponent for a motion that is not followed any further.
 _MEASUREMENTS = 3
-#: Beads up to which every claim of `settled` is confirmed by multipliers; of longer chains those in doubt.
+#: Beads up to which multipliers confirm every claim of `settled`; for longer chains only claims in doubt.
 _ALWAYS = 30
 #: A claim is in doubt if the decay per drive period is above this: a slowly unstable orbit may look like it.
 CLEAR_DECAY = 0.9
@@ -122,7 +122,7 @@ class Decisions:
 
 
 def as_it_stands(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """The regime of a motion that is not followed to where it goes: nothing is claimed that it only approaches.
+    """The regime of a motion that is not followed any further: an orbit that it only approaches is not claimed.
 
     `engine` is a live one where the strobes (P, 2, N) end; it goes on where a Lyapunov exponent is measured.
     """

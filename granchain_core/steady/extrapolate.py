@@ -2,15 +2,15 @@
 
 Near its orbit the stroboscopic map is linear, x_{k+1} − x* = M (x_k − x*). Reduced rank extrapolation (Eddy 1979;
 Sidi, Vector Extrapolation Methods, 2017, chapter 2) takes out the slowest modes from a few successive states. It is
-used only where changes are already small and shrinking, and a jump is accepted only if the change there is really
-smaller and the jump no longer than the decay predicts: so the orbit is the one that the chain approaches.
+used only where changes are already small and shrinking. An extrapolation is accepted only if the change after it is
+smaller and if it goes no further than the decay predicts: so the orbit is the one that the chain approaches.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..kernels.batch.period_end import LONGEST_JUMP
+from ..kernels.batch.period_end import FARTHEST_EXTRAPOLATION
 from ..kernels.strobes import extrapolation as approach
 from ..kernels.strobes.extrapolation import ORBITS
 
@@ -27,7 +27,7 @@ def reduced_rank(states: np.ndarray) -> np.ndarray:
 
 
 def within_reach(here: np.ndarray, there: np.ndarray, change: float, rate: float) -> bool:
-    """Whether a jump from `here` to `there` is no longer than the decay predicts."""
+    """Whether `there` is no further from `here` than the decay predicts."""
     if not np.isfinite(there).all() or not 0.0 < rate < 1.0:
         return False
-    return float(np.abs(there - here).max()) <= LONGEST_JUMP * change / (1.0 - rate)
+    return float(np.abs(there - here).max()) <= FARTHEST_EXTRAPOLATION * change / (1.0 - rate)

@@ -25,9 +25,9 @@ def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, bl
                        stop: Stop) -> list[tuple[np.ndarray, ...]]:
     """`exponents` of up to four scenes side by side in lanes, each from its scaled state (2(N+2),) at phase 0.
 
-    Of each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its last periods
-    (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. The result
-    for one does not depend on the others; their steps a period may differ by a factor `MOST_APART`.
+    Returns for each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its
+    last periods (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. The
+    result for one does not depend on the others; their steps a period may differ by a factor `MOST_APART`.
     """
     steps = [lowered.steps_per_period() for lowered, _ in scenes]
     if max(steps) > MOST_APART * min(steps):

@@ -17,14 +17,15 @@ from ..errors import NumbersFailed
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scene import Scene
 from ..stop import Stop
+from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point, sizes
 from .regime import changes
-from .strobe_map import FixedPoint, StrobeMap, fixed_point, sizes
 
 #: Beads up to which the derivative of the map is computed.
 MOST_BEADS = 100
 #: |μ| is not known better than this.
 UNSURE = 1e-5
-#: A motion that changes by more over n periods is not beside an orbit of n; nor is one so far from the orbit found.
+#: A motion that changes by more over n periods is not beside an orbit of period n, nor is one this far from the orbit
+#: that was found.
 _BESIDE = 0.1
 #: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _AS_SMALL = 3.0
@@ -35,7 +36,7 @@ _CLOSER = 0.4
 _SMALLEST = 1e-5
 #: Part of a distance that must decay according to the multipliers: it sets the number of orbits.
 _TAKEN = 0.2
-#: Orbits for that at most.
+#: Most orbits for that.
 _MOST_ORBITS = 3000
 #: Fraction of the predicted decay that must be observed.
 _PART = 0.3
@@ -53,7 +54,7 @@ _BACK = 1e-6
 class NearbyOrbit:
     """An orbit of `period` drive periods beside a motion at x (2N,), scaled; `modulus` is its largest |μ|."""
 
-    strobe: StrobeMap
+    strobe: FiniteDifferenceMap
     point: FixedPoint
     x: np.ndarray
     modulus: float
@@ -109,9 +110,9 @@ class NearbyOrbit:
         return now, later
 
     def drawn_out(self) -> np.ndarray | None:
-        """A later state of a motion that leaves this orbit: its part along the growing directions, enlarged.
+        """A later state of a motion that leaves this orbit, with its part along the growing directions enlarged.
 
-        None where it is that far already.
+        None if it is that far away already.
         """
         values, right = np.linalg.eig(self.point.derivative)
         grows = np.abs(values) > 1.0
@@ -135,12 +136,12 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
     """The orbit of `period` drive periods, or of a part of them, that Newton's method leads to from x; if any."""
-    strobe = StrobeMap(scene, period, stop)
+    strobe = FiniteDifferenceMap(scene, period, stop)
     found = fixed_point(strobe, x)
     if found is None:
         return None
     for shorter in (n for n in range(1, period) if period % n == 0):
-        part = StrobeMap(scene, shorter, stop)
+        part = FiniteDifferenceMap(scene, shorter, stop)
         if float(np.abs((part(found.x) - found.x) / sizes(found.x)).max()) < _BACK:
             again = fixed_point(part, found.x)
             if again is not None:
@@ -150,7 +151,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:
     """Largest |μ| at a settled state by one-sided differences: quick, good to about 1e-4."""
-    matrix = StrobeMap(scene, period, stop, refine).derivative(x, central=False)
+    matrix = FiniteDifferenceMap(scene, period, stop, refine).derivative(x, central=False)
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
 

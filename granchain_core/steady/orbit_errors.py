@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine
+from ..integrate.caution import ORBIT_FORCES
 from ..integrate.methods import jump_errors, typical_error
 from ..lower import Lowered
 from ..result import relative_changes
 
-#: The stated error of a force is at least this factor times its change: at contact events the order is uneven.
-CAUTION = 2.0
 #: F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
 _FORCE_PER_OVERLAP = 1.5
 
@@ -18,10 +17,9 @@ _FORCE_PER_OVERLAP = 1.5
 def force_distances(distance: float, lowered: Lowered, tops: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Relative changes (3,) of the largest forces over a relative `distance` of states.
 
-    The distance is relative to the largest displacement of the scaled state y, but a force follows its overlap. Where a
-    contact of the first or last bead overlaps less than that, as in the stop band, the same distance changes its force
-    by a larger part.
-    `tops` are the scaled forces.
+    The distance is relative to the largest displacement of the scaled state y, but a force depends on its overlap.
+    Where a contact of the first or last bead overlaps less than that, as in the stop band, the same distance changes
+    its force by a larger part. `tops` are the scaled forces.
     """
     stiffness = lowered.slots.chain.stiffness[[0, -1, -1]]
     overlaps = (tops / stiffness) ** (1.0 / _FORCE_PER_OVERLAP)
@@ -33,15 +31,15 @@ def force_distances(distance: float, lowered: Lowered, tops: np.ndarray, y: np.n
 
 def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float, slowness: float = 0.0,
                        further: np.ndarray | float = 0.0, least: float = 0.0) -> np.ndarray:
-    """Relative errors of the three largest forces on an orbit: of its integration, and of the way left to it.
+    """Relative errors of the three largest forces on an orbit: of its integration, and of the distance left to it.
 
-    `change` (3,) is the relative change of the forces from one computation to a finer one. Where both began in the same
+    `change` (3,) is the relative change of the forces from one computation to a finer one. If both began in the same
     state, `slowness` is the part of a distance that is left after an orbit (|μ|, or else the decay seen): an error e of
-    the n-period map moves its fixed point by e/(1 − slowness), and the forces with it. Where each ran on its own orbit
-    it is 0. `distance` (3,) is what the way left changes (`force_distances`), and `further` errors (3,), as of jumps,
-    are added. `least` is the typical error of the finer computation: two may agree by chance.
+    the n-period map moves its fixed point by e/(1 − slowness), and the forces with it. If each ran on its own orbit, it
+    is 0. `distance` (3,) is what the distance left contributes (`force_distances`), and `further` errors (3,), such as
+    those at jumps, are added. `least` is the typical error of the finer computation: two may agree by chance.
     """
-    return np.asarray(np.maximum(CAUTION * change, least) / (1.0 - slowness) + distance + further)
+    return np.asarray(np.maximum(ORBIT_FORCES * change, least) / (1.0 - slowness) + distance + further)
 
 
 def errors_between(finer: Engine, before: np.ndarray, slowness: float, distance: float) -> np.ndarray:

@@ -17,12 +17,12 @@ from ..kernels.strobes import periodicity as section
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 
 #: Mean exponents per period above which a motion may be chaotic, and within which it may be quasi-periodic, however
-#: small the standard error: what a finite record leaves dies as 1/periods.
+#: small the standard error: the error that a finite record leaves falls as 1/periods.
 _CHAOTIC, _NEUTRAL = 0.01, 5e-4
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
 _SLOW_WINDOW, _SHRINKS = 100, 0.98
-#: A departure is small where changes are, relative to the largest displacement and velocity.
+#: Largest changes of a departure that is still small, relative to the largest displacement and velocity.
 _SMALL = 0.1
 #: Lyapunov exponent per period that no departure from an orbit sustains over the periods in which a motion may settle.
 CLEAR_GROWTH = 0.05
@@ -183,7 +183,7 @@ def irregular(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
 
     Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
     errors or 5e-4, the section comes back near itself as it does on a closed curve, and the record is long enough to
-    show that it is neither shrinking nor growing. Anything else is on its way, however slowly.
+    show that it is neither shrinking nor growing. Anything else is transient, however slow.
     """
     mean = float(exponents.mean())
     error = float(exponents.std(ddof=1) / math.sqrt(len(exponents)))
@@ -269,7 +269,7 @@ def returns_near(strobes: np.ndarray) -> bool:
     """Whether late states of the section have close neighbours among early ones, as on a closed curve.
 
     On a curve filled evenly by P points neighbours lie about 2π/P apart; a section that drifts or spreads does not
-    come back so near. Five times that is asked for.
+    come back so near. The limit is five times that.
     """
     half = len(strobes) // 2
     nearest = np.zeros(len(strobes) - half)

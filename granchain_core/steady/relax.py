@@ -10,7 +10,7 @@ from .extrapolate import ORDER, reduced_rank, within_reach
 from .regime import changes
 from .settle import Settling
 
-#: At most so many rounds, each of as many orbits as one extrapolation uses.
+#: Most rounds; each has as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 
 
@@ -27,8 +27,8 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
 
     The orbit of the live method differs from the true one by its error; a few more periods remove it. With r the
     slowness of the regime (|μ| where it was computed, else the decay) and `change` from one n-period map to the next,
-    the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; one after
-    which they are not smaller is undone.
+    the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; if these
+    are not smaller, the extrapolation is undone.
     """
     scene, n = way.scene, way.regime.period
     assert n is not None
@@ -64,7 +64,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
 
 
 def move_to_limit(engine: Engine, states: np.ndarray, change: float, rate: float) -> bool:
-    """Put the engine where successive states (k, 2, N) lead, if that is within reach; whether it was."""
+    """Put the engine where successive states (k, 2, N) lead, if that is within reach; returns whether it was."""
     there = reduced_rank(states)
     largest = np.abs(states).max(axis=(0, 2))[:, None]
     if not within_reach(states[-1] / largest, there / largest, change, rate):

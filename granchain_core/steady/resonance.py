@@ -67,7 +67,7 @@ def pushes(run: Run) -> tuple[int, int] | None:
 
 def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | np.ndarray,
              periods: Sequence[int | None], at: float, output: float, transmission: float) -> Place:
-    """Where a state of largest output force `output` lies at the frequency `at` on a curve, ascending.
+    """The place of a state with largest output force `output` at frequency `at` on a curve in ascending frequency.
 
     `periods` are those of the curve's points, None where not periodic; `transmission` is the state's largest output
     force over its largest input force.
@@ -121,7 +121,7 @@ def place_words(pushed: tuple[int, int] | None, place: Place | None) -> str:
         return ""
     ratio = f"{pushed[0]}:{pushed[1]}"
     if place is None:
-        return f"{ratio} motion (the curve is on its way)"
+        return f"{ratio} motion (the curve is being computed)"
     if place.kind == "peak":
         return f"{ratio} resonance" if pushed[0] == 1 else f"{ratio} motion, on a peak"
     if place.kind == "valley":

@@ -23,7 +23,7 @@ MOST_STEPS = 100_000_000
 
 
 class Settling:
-    """The live method on its way to the steady state, chunk by chunk, until the regime is decided."""
+    """Runs a chain by the live method towards its steady state, chunk by chunk, until the regime is decided."""
 
     def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
         self.scene = scene
@@ -57,7 +57,7 @@ class Settling:
                 return
 
     def run(self, seconds: float) -> bool:
-        """Run until something is to be decided, which may need other kernels, or for that time; whether it is."""
+        """Run until a decision is due, which may need other kernels, or for `seconds`; returns whether one is due."""
         end, per_period = time.perf_counter() + seconds, 0.0
         while not self._finished:
             left = end - time.perf_counter()

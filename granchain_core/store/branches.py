@@ -5,7 +5,7 @@
                  multiplier_imag (point, component); tangent (point, coordinate); closings (point, contact)
 /special         kind, knob, knob_low, knob_high, multiplier_real, multiplier_imag, contact, event, arm (special)
 /special_before, /special_after   the two orbits around each special point, as in /branch
-/turns           overlap's turning points of each arm's last orbit, which the next step is compared with
+/turns           turning points of the overlaps on each arm's last orbit, with which the next step is compared
 Components are the beads' displacements, then their w, scaled by the chain's own A0 and A0·φ (docs/model.md).
 """
 

@@ -30,7 +30,7 @@ _COLUMNS = {  # name: (unit, meaning)
     "regime": ("", "what the motion is"),
     "period": ("1", "period in drive periods, 0 where not periodic"),
     "periods_run": ("1", "drive periods run until that was decided"),
-    "decay": ("1", "what changes shrank to per orbit, NaN where not seen"),
+    "decay": ("1", "factor by which changes shrank per orbit, NaN where not seen"),
     "multiplier": ("1", "modulus of the leading multiplier, NaN where not computed"),
     "lyapunov": ("1", "largest Lyapunov exponent per drive period, NaN where not measured"),
     "lyapunov_error": ("1", "standard error of the Lyapunov exponent"),

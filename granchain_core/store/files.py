@@ -87,16 +87,7 @@ def save(result: Run, path: str | Path) -> Path:
 
     def write(file: h5py.File) -> None:
         _provenance(file, result.scene, result.cost.method, result.error_estimate)
-        file.attrs["status"], file.attrs["start"] = result.status, result.start
-        file.attrs["warnings"] = json.dumps(overlap_warnings(result.scene, result.overlap.max(axis=0)))
-        file.attrs["energy_residual"] = _or_nan(result.energy_residual)
-        file.attrs["samples_per_period"] = result.samples
-        file.attrs["cost"] = json.dumps(asdict(result.cost))
-        file.attrs["regime"] = json.dumps(asdict(result.regime))
-        for name in _MAXIMA:
-            file.attrs[name] = getattr(result, name)
-        for name, value in zip(_ERRORS, result.force_errors.row, strict=True):
-            file.attrs[name] = value
+        _save_numbers(file, result)
         group = file.create_group("run")
         _scale(group, "time", result.time, "s", "time since the start, at drive phase 0")
         _scale(group, "bead", np.arange(1, result.scene.N + 1), "1", "bead number from the driver")
@@ -106,6 +97,20 @@ def save(result: Run, path: str | Path) -> Path:
         _save_jumps(group, result.jumps)
 
     return _write(path, write)
+
+
+def _save_numbers(file: h5py.File, result: Run) -> None:
+    """Write what a run has one of as attributes: status, warnings, cost, regime, largest forces and their errors."""
+    file.attrs["status"], file.attrs["start"] = result.status, result.start
+    file.attrs["warnings"] = json.dumps(overlap_warnings(result.scene, result.overlap.max(axis=0)))
+    file.attrs["energy_residual"] = _or_nan(result.energy_residual)
+    file.attrs["samples_per_period"] = result.samples
+    file.attrs["cost"] = json.dumps(asdict(result.cost))
+    file.attrs["regime"] = json.dumps(asdict(result.regime))
+    for name in _MAXIMA:
+        file.attrs[name] = getattr(result, name)
+    for name, value in zip(_ERRORS, result.force_errors.row, strict=True):
+        file.attrs[name] = value
 
 
 def _save_jumps(group: h5py.Group, jumps: Jumps) -> None:

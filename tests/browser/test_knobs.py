@@ -70,7 +70,7 @@ def test_a_click_on_the_curve_sets_the_frequency(visit: Visit) -> None:
 def test_wrong_values_get_their_sentence(visit: Visit, value: str) -> None:
     page = visit()
     settled(page)
-    expect(page.locator("#foot b")).not_to_contain_text("the curve is on its way", timeout=60_000)
+    expect(page.locator("#foot b")).not_to_contain_text("the curve is being computed", timeout=60_000)
     regime = page.locator("#foot b").inner_text()
     page.evaluate("value => { window.forged = value; }", value)
     page.locator('[data-knob="f"] input[type="range"]').press("ArrowRight")

@@ -35,6 +35,15 @@ def test_links_and_named_files_exist(page: Path):
         assert name in made or (ROOT / name).exists(), name
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_named_in_short_exist(page: Path):
+    """Where a page names a file without the top folder, it is one of the core or of the app; a bare name is one there."""
+    for name in re.findall(r"`([\w./-]+\.(?:py|js|css))`", page.read_text(encoding="utf-8")):
+        if not re.match(f"{_FOLDERS}/", name):
+            tops = [ROOT / "granchain_core", ROOT / "app"]
+            assert [top for top in tops if (any(top.rglob(name)) if "/" not in name else (top / name).exists())], name
+
+
 def test_files_named_in_the_source_exist():
     """A docstring or comment that names a file of the project leads somewhere."""
     lost = [f"{path.relative_to(ROOT)}: {name}" for folder in ("granchain_core", "app", "tests", "tools")

@@ -65,6 +65,20 @@ def test_what_would_fit_fits() -> None:
     assert estimate(chosen, method_for(chosen.accuracy), periods, 8, 1).seconds <= 2.0
 
 
+@pytest.mark.parametrize("accuracy", [1e-6, 1e-11])
+def test_a_coarser_accuracy_is_offered_where_the_run_would_fit_with_it(accuracy: float) -> None:
+    """The estimate is that of the method chosen for 1e-4, a little finer than the coarsest; a method asked for by name
+    takes the same steps at any accuracy."""
+    chosen = scene("sec2").evolve(f=1.0, accuracy=accuracy)
+    needed = estimate(chosen, method_for(1e-4), 100, 8, 1).seconds
+    with pytest.raises(OverBudget, match=r"or an accuracy of 1e-4 would fit"):
+        run(chosen, periods=99, record=1, samples=8, budget=1.001 * needed)
+    for method, budget in ((None, 0.999 * needed), ("rk4-split", 1.001 * needed)):
+        with pytest.raises(OverBudget) as caught:
+            run(chosen.evolve(accuracy=1e-6), periods=99, record=1, samples=8, method=method, budget=budget)
+        assert "accuracy" not in str(caught.value)
+
+
 @pytest.mark.parametrize("knobs", [{}, {"f": 50.0}, {"f": 2.0}, {"N": 1}, {"N": 40}, {"N": 200, "f": 900.0}, {"F0": 5.0}, {"D": 2e4},
                                    {"accuracy": 1e-9}, {"accuracy": 1e-3}, {"kappa": 0.001, "wall": "rigid"}])
 def test_the_steps_of_a_run_are_estimated_within_a_factor_of_two(knobs: dict[str, float]) -> None:
@@ -110,7 +124,7 @@ def test_step_too_small() -> None:
     engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
     engine.record(1)
     engine.lowered.slots.chain.stiffness[:] = 1e30
-    engine.stepper.work.clock[0] = 1e-14
+    engine.stepper.work.next_step[0] = 1e-14
     with pytest.raises(NumbersFailed, match="shrank to nothing") as caught:
         engine.record(8)
     assert caught.value.status == "step-too-small"

@@ -8,9 +8,9 @@ import pytest
 from granchain_core import resonance_curve, run, scene, settled
 from granchain_core.lower import lower
 from granchain_core.orbits import periodic_orbit
+from granchain_core.steady.finite_difference_map import FiniteDifferenceMap, fixed_point, sizes
 from granchain_core.steady.nearby_orbit import NearbyOrbit, orbit_of
 from granchain_core.steady.settle import run_until_settled
-from granchain_core.steady.strobe_map import StrobeMap, fixed_point, sizes
 from granchain_core.stop import Stop
 from tests.numerics.label_honesty import judged
 
@@ -28,7 +28,7 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
     """The orbit found from a state so far away from the exact one, relative."""
     chain = scene("sec2").evolve(f=f, **knobs)
     exact = periodic_orbit(chain, period)
-    x = StrobeMap(chain, period).inner(lower(chain).scaled(exact.state))
+    x = FiniteDifferenceMap(chain, period).inner(lower(chain).scaled(exact.state))
     shape = np.random.default_rng(1).standard_normal(len(x))
     found = orbit_of(chain, period, x + offset * sizes(x) * shape, Stop())
     assert found is not None
@@ -45,7 +45,7 @@ def test_differences_give_the_multipliers_of_the_tangent_flow(f: float, period: 
 def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
     """The fixed point of the map by steps of a quarter is the orbit to the map's error over 1 − |μ|."""
     chain = scene("sec2").evolve(f=340.0)
-    strobe = StrobeMap(chain, 1)
+    strobe = FiniteDifferenceMap(chain, 1)
     exact = strobe.inner(lower(chain).scaled(periodic_orbit(chain, 1).state))
     found = fixed_point(strobe, exact + 1e-3 * sizes(exact))
     assert found is not None and found.residual <= 1e-9
@@ -55,7 +55,7 @@ def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
 def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
     """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period."""
     chain = scene("sec2").evolve(f=340.0)
-    x = StrobeMap(chain, 4).inner(lower(chain).scaled(settled(chain).state))
+    x = FiniteDifferenceMap(chain, 4).inner(lower(chain).scaled(settled(chain).state))
     found = orbit_of(chain, 4, x, Stop())
     assert found is not None and found.period == 1 and found.modulus == pytest.approx(0.361, abs=1e-3)
 

@@ -45,7 +45,7 @@ def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
     end = 0.5 * pi / rate
     y[:] = 0.0
     y[5], y[6] = -rate, rate
-    work.clock[0], work.scale[0], work.scale[1], t = 0.1 * end, 1.0, rate, 0.0
+    work.next_step[0], work.scale[0], work.scale[1], t = 0.1 * end, 1.0, rate, 0.0
     evaluate(slots, rate, t, y, work.k[0], work.forces)
     trajectory = Trajectory(slots, Cycle(rate, 4.0 * end), y, work)
     while t < end * (1.0 - 1e-12):

@@ -40,8 +40,8 @@ def test_a_valley_is_a_fifth_below_both_peaks(depth: float, is_one: bool) -> Non
 
 
 def test_nothing_is_claimed_while_there_is_no_curve_or_off_it() -> None:
-    """The curve on its way, another branch at the same frequency, a frequency beside the curve, and its ends."""
-    assert place_words((1, 1), None) == "1:1 motion (the curve is on its way)"
+    """The curve unfinished, another branch at the same frequency, a frequency beside the curve, and its ends."""
+    assert place_words((1, 1), None) == "1:1 motion (the curve is being computed)"
     assert place(1130.0, output=0.2) == Place("")
     assert place_of(F, FORCE, PERIODS, 4000.0, 0.05, 0.5) == Place("")
     assert place(2900.0).kind != "valley", "a curve's end is no valley: nobody knows how it goes on"

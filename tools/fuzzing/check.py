@@ -1,4 +1,4 @@
-"""One drawn scene, and the verdict: an outcome with a sentence or a motion, and everything that did not hold."""
+"""The verdict on one drawn scene: a motion or an outcome with a sentence, and everything that did not hold."""
 
 from __future__ import annotations
 
@@ -22,26 +22,27 @@ from .properties import SAMPLES, distance
 from .scenes import Draw
 
 PERIODS = 2
-#: Seconds a run may take; beyond twice that and the floor it hangs, and its stop flag is raised.
+#: Seconds a run may take. After twice that plus the floor it counts as hung, and its stop flag is raised.
 BUDGET, FLOOR = 5.0, 5.0
-#: A wrong displacement that matters, relative.
+#: Relative error of a displacement that matters.
 SILENT = 1e-3
 #: What rounding alone may change, and how far it may be magnified beyond what a change of tolerance shows.
 _ROUNDING, _MAGNIFIED = 1e-10, 1e3
-#: An account is a quadrature along the way: it was seen to close to 17 times the error of the displacements.
+#: An energy account is a quadrature along the motion: it was seen to close to 17 times the error of the displacements.
 _ENERGY = 50.0
-#: Seconds SciPy takes, in both its runs, for one step of the certified method: a scene it has no time for is not begun.
+#: Seconds SciPy takes, in both its runs, for one step of the certified method: a scene that would take too long is not
+#: begun.
 _SCIPY_STEP = 2.5e-4
-#: A motion less well known than this is chaos: nothing but outcome, time and symmetries is judged.
+#: A motion that is known less well than this is chaotic: only outcome, time and symmetries are judged.
 _CHAOS = 1e-4
 
 
 @dataclass
 class Verdict:
-    """What came of a draw. Errors are relative to the largest displacement; `known` is how well the truth is, `steps`
-    how many the certified method took.
+    """The result of a draw. Errors are relative to the largest displacement; `known` is the error of the truth itself,
+    `steps` how many the certified method took.
 
-    `faults` are (name, figure) of what did not hold. `others` are error and refusal of what a user would have had.
+    `faults` are (name, figure) of what did not hold. `others` are outcomes and errors of the naive solvers.
     """
 
     draw: Draw
@@ -66,16 +67,16 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
           budget: float = BUDGET) -> Verdict:
     """The verdict on one draw; `compute` takes the place of `run`.
 
-    For at most `scipy` seconds each the independent solver of oracle.py is a second judge (where tension is cut `run`
-    itself is certified, and it is the only independent one), and for at most `others` seconds each naive RK4 and
-    LSODA are judged too.
+    The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds; where tension is cut, `run`
+    itself is certified, and that solver is the only independent one. Naive RK4 and LSODA are judged too, for at most
+    `others` seconds each.
     """
     try:
         chosen = draw.scene()
     except BadInput as refusal:
         fault = [] if draw.spoiled and str(refusal).endswith(".") else [("refused without need or sentence", 1.0)]
         return Verdict(draw, "refused: BadInput", str(refusal), faults=fault)
-    except Exception as problem:  # any other is a failure without a type: the very thing looked for
+    except Exception as problem:  # any other failure has no type, and is what the fuzzer looks for
         return Verdict(draw, "untyped", repr(problem), faults=[("untyped failure", 1.0)])
     verdict, found = _outcome(draw, chosen, compute, budget)
     if draw.spoiled:
@@ -87,7 +88,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
         with limit(2.0 * budget) as stop:
             truth = _judge(verdict, found, stop)
             _properties(verdict, chosen, stop)
-    except Cancelled:  # the certified method at its finest takes longer than the run: not judged, and counted so
+    except Cancelled:  # the certified method at its finest takes longer than the run: counted as not judged
         return verdict
     except NumbersFailed as problem:
         verdict.sentence = f"the judge failed: {problem}"
@@ -101,7 +102,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
 
 @contextlib.contextmanager
 def limit(seconds: float) -> Iterator[np.ndarray]:
-    """A stop flag that is raised after so many seconds."""
+    """A stop flag that is raised after `seconds`."""
     stop = Stop()
 
     def over() -> None:
@@ -149,7 +150,7 @@ def _finite(verdict: Verdict, found: Run) -> None:
 
 
 def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
-    """Hold the run against the certified method at its finest, and its energy; returns the true displacements [m]."""
+    """Compare the run with the certified method at its finest, check its energy; returns the true displacements [m]."""
     chosen, kept = found.scene, []
     for tolerance in (3e-14, 3e-15):
         engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, balance=True, stop=stop)
@@ -173,7 +174,7 @@ def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
 
 
 def _bounded(verdict: Verdict, by: str, error: float, known: float) -> None:
-    """Faults where the stated error is below the true one; a silent one where by more than what matters."""
+    """Note a fault if the stated error is below the true one, a silent one if the error matters."""
     sure = error - 3.0 * known
     if not sure <= verdict.stated:
         verdict.faults.append((f"bound{by}", error / (verdict.stated + 3.0 * known)))
@@ -194,7 +195,7 @@ def _properties(verdict: Verdict, chosen: Scene, stop: Stop) -> None:
 
 
 def _second_judge(verdict: Verdict, found: Run, seconds: float) -> None:
-    """Hold the run against SciPy's DOP853 in (u, v), started anew at every event, as far as it is sure of itself."""
+    """Compare the run with SciPy's DOP853 in (u, v), restarted at every event, within the error of that."""
     try:
         nearly, true = (oracle.located(found.scene, PERIODS, SAMPLES, rtol, seconds) for rtol in (1e-9, 1e-11))
     except (oracle.TooLong, NumbersFailed):
@@ -206,7 +207,7 @@ def _second_judge(verdict: Verdict, found: Run, seconds: float) -> None:
 
 
 def _others(verdict: Verdict, chosen: Scene, true: np.ndarray, seconds: float) -> None:
-    """What naive RK4 at the steps of our own fixed-step method and LSODA as it comes would have given."""
+    """The answers of naive RK4, at the steps of our own fixed-step method, and of LSODA as a user would call it."""
     refine = 2.0 * method_for(max(chosen.accuracy, 1e-9)).refine
 
     def naive() -> np.ndarray:

@@ -16,7 +16,7 @@ _EVERY_SCIPY, _EVERY_OTHERS = 3, 16
 
 
 def warm(structures: list[tuple[str, str, bool, bool]]) -> None:
-    """Compile everything a check needs, so that no run's time is a compiler's."""
+    """Compile everything a check needs, so that no run is timed with a compiler at work."""
     for law, tension, founded, pressed in structures:
         knobs = {"N": 2, "f": 3000.0, "accuracy": 1e-4, "dissipation": law, "tension": tension,
                  **({"kappa": 0.001} if founded else {}), **({"F0": 1.0} if pressed else {})}
@@ -24,7 +24,7 @@ def warm(structures: list[tuple[str, str, bool, bool]]) -> None:
 
 
 def verdict_on(seed: int, index: int, structures: list[tuple[str, str, bool, bool]]) -> Verdict:
-    """The verdict on draw `index`, with the judges its number says."""
+    """The verdict on draw `index`, whose number decides which judges are asked."""
     return check(draw(seed, index, structures), scipy=0.0 if index % _EVERY_SCIPY else SCIPY,
                  others=0.0 if index % _EVERY_OTHERS else OTHERS)
 

@@ -1,7 +1,7 @@
 """Two ways to the same motion that share nothing with the kernels: the paper's equations in (u, v) and SciPy.
 
-`located` is the careful one: SciPy's DOP853, started anew wherever a contact opens or closes. `as_a_user` is what one
-would write first: SI units, LSODA, the contact asked by `overlap > 0`, absolute tolerance left as it is.
+`located` is the careful one: SciPy's DOP853, started anew wherever a contact opens or closes. `as_a_user` is the
+obvious first attempt: SI units, LSODA, a contact closed if `overlap > 0`, the default absolute tolerance.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What must hold for a scene whatever its motion is: each returns by how much it does not, in largest displacements."""
+"""Invariants of every scene; each function returns the violation, relative to the largest displacement."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def distance(one: np.ndarray, two: np.ndarray) -> float:
 
 
 def energy(lowered: Lowered, kept: Samples) -> float:
-    """How far work − lost is from the energy by the book, ½mv² + ⅖Kδ^{5/2} + ½ku², over the largest of the three."""
+    """How far work − lost is from the stored energy, ½mv² + ⅖Kδ^{5/2} + ½ku², over the largest of the three."""
     slots = lowered.slots
     masses, theta = 1.0 / slots.chain.inverse_mass[1:-1], 2.0 * np.pi * np.arange(len(kept.velocity)) / SAMPLES
     ends = np.zeros((len(theta), 1))
@@ -60,7 +60,7 @@ def _period(scene: Scene, start: State, stop: Stop) -> np.ndarray:
 
 
 def shifted(scene: Scene, stop: Stop) -> float:
-    """The second period gone on with, against the second period started from the state after the first."""
+    """The second period of a run, against a run started from the state after the first."""
     engine = Engine(scene, _FIXED, SAMPLES, balance=True, stop=stop)
     engine.start(rest(scene))
     engine.record(SAMPLES)

@@ -14,7 +14,7 @@ from granchain_core import Scene, scene
 RANGES = {"f": (1.5, 4.0), "A0": (-9.0, -5.0), "D": (-0.5, 3.0), "kappa": (-4.0, -0.5), "F0": (-3.0, 2.0),
           "accuracy": (-9.0, -3.0), "wall": (-1.0, 1.0), "thrown": (-1.0, 1.0), "size": (-0.4, 0.4)}
 MOST_BEADS = 40
-#: Law, tension, foundation, preload: each is a set of kernels of its own.
+#: Law, tension, foundation, preload: each combination has its own set of kernels.
 STRUCTURES = [("linear", "allowed", False, False), ("tsuji", "allowed", False, False), ("linear", "cut", False, False),
               ("kuwabara-kono", "allowed", False, False), ("linear", "allowed", True, True),
               ("none", "allowed", True, False), ("tsuji", "cut", True, True)]

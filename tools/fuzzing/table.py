@@ -1,4 +1,4 @@
-"""Many verdicts as one table, with what naive RK4 and LSODA would have given on the same scenes beside it."""
+"""Many verdicts as one table, beside the answers of naive RK4 and LSODA for the same scenes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from .check import SILENT, Verdict
 
-#: A truth that is known to less than this is no judge of an error of 1e-3.
+#: A truth that is known less well than this cannot judge an error of 1e-3.
 _KNOWN = 1e-4
 
 
@@ -19,7 +19,7 @@ def known(verdicts: Iterable[Verdict]) -> list[Verdict]:
 
 
 def silent(verdict: Verdict) -> bool:
-    """Whether the run returned an error above 1e-3 that it does not say."""
+    """Whether the run has an error above 1e-3 that it does not state."""
     return any(name.startswith(("silent", "displacement is not")) for name, _ in verdict.faults)
 
 
@@ -30,7 +30,7 @@ def silent_other(verdict: Verdict, name: str) -> bool:
 
 
 def table(verdicts: list[Verdict]) -> str:
-    """Counts by outcome, errors nobody said, and faults by name, as Markdown."""
+    """Counts by outcome, errors that were not stated, and faults by name, as Markdown."""
     compared = [v for v in verdicts if v.others]
     names = ["naive RK4", "LSODA"]
     outcomes = {n: Counter(v.others[n][0] for v in compared) for n in names}
@@ -65,7 +65,7 @@ def _said(verdicts: list[Verdict]) -> int:
 
 
 def describe(verdict: Verdict) -> str:
-    """One line: which draw, what came of it, what did not hold."""
+    """One line: the draw, its outcome, what did not hold."""
     faults = ", ".join(f"{name} ({figure:.3g})" for name, figure in verdict.faults) or "all held"
     return (f"seed {verdict.draw.seed} index {verdict.draw.index}: {verdict.outcome}, {verdict.seconds:.2f} s, true {verdict.error:.2e} "
             f"stated {verdict.stated:.2e} known {verdict.known:.0e}: {faults} {verdict.sentence}\n"

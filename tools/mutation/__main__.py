@@ -3,7 +3,7 @@
     python -m tools.mutation [--only PART_OF_A_NAME ...] [--list | --check] [--minutes M] [--seed S]
                              [--work FOLDER] [--named]
 
-The tests named in the table are run unchanged first, once each list; then with each mutant. One that survives them is
+The tests named in the table are first run on the unchanged core, then with each mutant. One that survives them is
 run against all tests of the core before it counts as survived. With --seed the order is drawn, so that --minutes gives
 a sample of the table. --check runs nothing and lists the entries that no longer fit the source; where there are any,
 nothing else is begun either. --work keeps the copy and the compiled kernels of the unchanged core for the next time.

@@ -36,7 +36,7 @@ sys.exit(pytest.main(sys.argv[1:]))
 class Outcome:
     """How a run of tests ended: "passed", "failed", "timed out", "crashed" or "stillborn"; the first test that failed.
 
-    A stillborn mutant is one that Numba refuses to compile: that no test is needed for, and it does not count.
+    A stillborn mutant is one that Numba refuses to compile: no test is needed for it, and it does not count.
     """
 
     verdict: str
@@ -46,7 +46,7 @@ class Outcome:
 
 
 class Bench:
-    """The copy, its kernel caches and the interpreter; a context manager that takes them away again.
+    """The copy, its kernel caches and the interpreter; a context manager that removes them.
 
     Compiled kernels of the unchanged core are kept in `plain` and serve mutants that change no kernel.
     """

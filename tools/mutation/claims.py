@@ -35,7 +35,7 @@ STEADY = (
 )
 
 STATED = (
-    Mutant("error-factor", _STATED, "_CAUTION, _UNEVEN = 1.5, 3.0", "_CAUTION, _UNEVEN = 0.015, 0.03",
+    Mutant("error-factor", "integrate/caution.py", "EVEN, UNEVEN = 1.5, 3.0", "EVEN, UNEVEN = 0.015, 0.03",
            "the stated error is a hundredth of what was seen", k.HONESTY),
     Mutant("same-steps-compared", _METHODS,
            "while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):",
@@ -69,9 +69,9 @@ FAILING = (
            "np.isfinite(state[1 : row - 1]) & np.isfinite(state[row + 1 : 2 * row - 1])",
            "np.isfinite(state[1 : row - 1])", "a NaN velocity is seen when it has reached a displacement, in another bead",
            k.FAILURES_W),
-    Mutant("checkpoint-without-scale", "integrate/checkpoint.py", "engine.stepper.work.clock[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
-           "engine.stepper.work.clock[0] = kept.control[0]", "error control goes on with another unit after a restart", k.CHECKPOINTS),
-    Mutant("checkpoint-without-clock", "integrate/checkpoint.py", "engine.stepper.work.clock[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
+    Mutant("checkpoint-without-scale", "integrate/checkpoint.py", "engine.stepper.work.next_step[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
+           "engine.stepper.work.next_step[0] = kept.control[0]", "error control goes on with another unit after a restart", k.CHECKPOINTS),
+    Mutant("checkpoint-without-next-step", "integrate/checkpoint.py", "engine.stepper.work.next_step[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
            "engine.stepper.work.scale[:] = kept.control[1:]", "error control goes on with another step after a restart", k.CHECKPOINTS),
     Mutant("checkpoint-at-phase-0", "integrate/checkpoint.py", "engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed",
            "engine.elapsed = kept.elapsed", "a run that was cut inside a period goes on at its beginning", k.CHECKPOINTS),
@@ -87,7 +87,7 @@ OBSERVED = (
            "between samples a measured force is above both, or below 0", k.SAMPLING),
     Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.rate ** np.arange(4)", "/ scales.rate ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observe/observation.py", "_UNEVEN = 3.0", "_UNEVEN = 0.003",
+    Mutant("loss-between-samples", "observe/observation.py", "=UNEVEN * _difference(", "=1e-3 * UNEVEN * _difference(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 

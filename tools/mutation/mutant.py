@@ -12,10 +12,10 @@ ROOT = Path(__file__).resolve().parents[2]
 class Mutant:
     """The text `old` of a file of granchain_core becomes `new`.
 
-    `old` stands there `count` times, and the `which`-th of them is changed. `breaks` says in one line what is wrong
-    physically or numerically. `killers` are words for pytest: node ids, or a file with `-k` and an expression. `blind` are tests that
-    must pass nevertheless, to show what they do not see. With `optimised` kernels are compiled as usual and not quickly,
-    for mutants of the compiler's options.
+    `old` occurs there `count` times, of which the `which`-th is changed. `breaks` says in one line what is wrong
+    physically or numerically. `killers` are words for pytest: node ids, or a file with `-k` and an expression. `blind`
+    are tests that must pass nevertheless, to show what they do not see. With `optimised` kernels are compiled as usual
+    and not quickly, for mutants of the compiler's options.
     """
 
     name: str

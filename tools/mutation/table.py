@@ -1,12 +1,6 @@
 """The table of mutants.
 
-How they were chosen: the numerical core was gone through file by file, and wherever a line states a law, a tangent, an
-event, a tolerance that a claim rests on, a clock or a claim, one wrong version of it was written that a person could
-have written: a factor, a sign, an exponent, a forgotten term, contact or check, one of several copies of an equation.
-Where an equation stands in several copies (scalar, lanes, vectors, blocks, flow) each has mutants of its own. The eight
-kinds of mistake that must always be noticed (docs/mutation.md) are among them. Left out is what changes no answer: safety factors and growth of steps, sizes of
-workspaces, how often the stop flag is read, sentences. None was left out because a test did not notice it; missing
-tests were written.
+docs/mutation.md says how they were chosen.
 """
 
 from __future__ import annotations

@@ -41,7 +41,7 @@ IN_LANES = (
            "an unstable orbit that extrapolation led to is drawn as periodic", k.LANE_LOOKS),
     Mutant("lane-disturbance-always-decays", _LOOKS, "if last <= _LEFT * first:", "if last < 1e300:",
            "an orbit is called stable though the disturbance grew", k.LANE_LOOKS),
-    Mutant("lane-jump-not-proved", _LOOKS, "proved = n > 0 and change < state.jumped[lane]", "proved = True",
+    Mutant("lane-jump-not-proved", _LOOKS, "proved = n > 0 and change < state.unproved[lane]", "proved = True",
            "an extrapolation that led away is kept", k.LANE_LOOKS),
     Mutant("lane-shadow-not-pulled-back", _LANES, "* (start / now)", "* 1.0",
            "the exponent of lanes is that of a distance long since large", k.LYAPUNOV),

@@ -1,10 +1,10 @@
 """The end of a batch member's drive period: its strobe is kept, its regime checked, its transient extrapolated.
 
-A coarse member is extrapolated only if the jump is no longer than its decay predicts; if the change after the jump is
-not smaller than before, the jump is undone. A chain may approach an unstable orbit before it leaves it, and an
-extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the
+A coarse member is extrapolated no further than its decay predicts; if the change after the extrapolation is not smaller
+than before, it is undone. A chain may approach an unstable orbit before it leaves it, and an extrapolation could end
+there. So an orbit found by extrapolation is disturbed, and accepted only if the
 disturbance decays; if it decays slowly, multipliers decide (steady/batch_settle.py). A fine member starts on the
-coarse orbit and is extrapolated to its own, each jump checked in the same way.
+coarse orbit and is extrapolated to its own, each extrapolation checked in the same way.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ SEEN = 4 * LONGEST_PERIOD + 1
 _TOO_LONG = 4.0
 #: Fewest drive periods between two attempts.
 _BETWEEN = 8
-#: Longest jump, in units of change/(1 − rate), the distance that the decay predicts.
-LONGEST_JUMP = 3.0
+#: How far an extrapolation may go, in units of change/(1 − rate), the distance that the decay predicts.
+FARTHEST_EXTRAPOLATION = 3.0
 #: Part of the coarse orbit's error that may be left in the finer run.
 FORGET = 0.02
 #: Extrapolations for that at most.
@@ -59,7 +59,7 @@ PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
 
 @internal
 def keep_member_strobe(state, lane):
-    """Append the state to the strobes, dropping the oldest half if they are full; whether the state is finite."""
+    """Append the state to the strobes, the oldest half of which goes if they are full; returns whether it is finite."""
     strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
     if state.kept[lane] == strobes.shape[1]:
         half = strobes.shape[1] // 2
@@ -91,14 +91,14 @@ def place_member(state, lane, where):
 
 @internal
 def follow(state, lane, n, rate, change):
-    """Put a lane into the limit of its last strobes, n periods apart, if that is within reach; whether it was."""
+    """Put a lane into the limit of its last strobes, n periods apart; returns whether that was within reach."""
     kept = state.kept[lane]
     if kept < ORBITS * n + 1 or not 0.0 < rate < 1.0:
         return False
     limit, record = state.limit, state.strobes[lane, kept - 1 - ORBITS * n : kept]
     reduced_rank(record[::n], state.basis, state.triangle, limit)
     largest_of(record, state.scale)
-    reach = LONGEST_JUMP * change / (1.0 - rate)
+    reach = FARTHEST_EXTRAPOLATION * change / (1.0 - rate)
     for q in range(2):
         for i in range(limit.shape[1]):
             if not abs(limit[q, i] - record[ORBITS * n, q, i]) <= reach * state.scale[q]:
@@ -120,9 +120,9 @@ def check_coarse(state, lane):
         return False
     if period > 0:
         return True
-    if state.jumped[lane] > 0.0:
-        proved = n > 0 and change < state.jumped[lane]
-        state.jumped[lane] = 0.0
+    if state.unproved[lane] > 0.0:
+        proved = n > 0 and change < state.unproved[lane]
+        state.unproved[lane] = 0.0
         if not proved:
             place_member(state, lane, state.before[lane])
             state.wait[lane] *= 2
@@ -136,7 +136,7 @@ def check_coarse(state, lane):
     copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
     copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
     if follow(state, lane, n, its_rate, change):
-        state.jumped[lane] = change
+        state.unproved[lane] = change
         state.slowest[lane] = min(_SLOWEST, max(state.slowest[lane], its_rate ** (1.0 / n)))
         state.earliest[lane] = periods + window_of(n) + n + 1
         state.ready[lane] = periods + ORBITS * n
@@ -182,7 +182,7 @@ def decayed(state, lane):
         rate = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
         state.seen[lane, 1] = max(state.seen[lane, 1], min(rate, _NEARLY_ONE))
         return True
-    state.slowest[lane], state.jumped[lane] = 0.0, 0.0
+    state.slowest[lane], state.unproved[lane] = 0.0, 0.0
     state.ready[lane] = state.periods[lane] + _NO_MORE
     return False
 
@@ -200,7 +200,7 @@ def largest_top(state, lane, n, q):
 def check_fine(state, lane):
     """Whether the coarse orbit's error has decayed in a fine member; if not, its transient is extrapolated.
 
-    If changes are not smaller after a jump, the jump is undone and the member continues without.
+    If changes are not smaller after an extrapolation, it is undone and the member continues without.
     """
     fine, kept, seen = state.fine[lane], state.kept[lane], state.seen[lane]
     n, rate = int(fine[PERIOD]), fine[RATE]
@@ -208,8 +208,8 @@ def check_fine(state, lane):
     largest_of(record, state.scale)
     change = change_between(record, state.scale, n, 0)
     seen[0], seen[1], seen[2] = n, rate, change * rate / (1.0 - rate)
-    proved = change < state.jumped[lane] or state.jumped[lane] == 0.0
-    state.jumped[lane] = 0.0
+    proved = change < state.unproved[lane] or state.unproved[lane] == 0.0
+    state.unproved[lane] = 0.0
     if not proved:
         place_member(state, lane, state.before[lane])
         state.earliest[lane], fine[ROUNDS] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND]), _MOST_ROUNDS
@@ -224,14 +224,14 @@ def check_fine(state, lane):
     copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
     copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
     if follow(state, lane, n, rate, change):
-        state.jumped[lane] = change
+        state.unproved[lane] = change
     state.earliest[lane] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND])
     return False
 
 
 @internal
 def end_period(state, lane):
-    """Keep strobe and largest forces of a member and restart its phase exactly; whether it is due for a check."""
+    """Keep a member's strobe and largest forces, restart its phase exactly; returns whether it is due for a check."""
     state.periods[lane] += 1
     periods = state.periods[lane]
     finite = keep_member_strobe(state, lane)

@@ -54,7 +54,7 @@ class BatchState(NamedTuple):
     ready, wait (8,)         period from which a transient may be extrapolated, and the pause after a failed attempt
     kept (8,)                number of strobes
     slowest (8,)             slowest decay known
-    jumped (8,)              change before an extrapolation that is not yet confirmed, else 0
+    unproved (8,)            change before an extrapolation that is not yet confirmed, else 0
     testing (8,)             period of an orbit that is being disturbed, else 0
     before (8, 2, N+2)       state before the last extrapolation
     fine (8, 7)              record of a fine member (period_end.py)
@@ -79,7 +79,7 @@ class BatchState(NamedTuple):
     wait: np.ndarray
     kept: np.ndarray
     slowest: np.ndarray
-    jumped: np.ndarray
+    unproved: np.ndarray
     testing: np.ndarray
     before: np.ndarray
     fine: np.ndarray

@@ -1,7 +1,7 @@
 """Roots and largest values of a quantity inside a step, on its dense output.
 
 A quantity is a NamedTuple that says what it is (an overlap, a force) and has code for `value_at`. Roots are found by
-regula falsi that halves the end that stays (Illinois), largest values by golden section.
+regula falsi that halves the value at the end that stays (Illinois), largest values by golden section.
 """
 
 from __future__ import annotations

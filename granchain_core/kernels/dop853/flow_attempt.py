@@ -92,7 +92,7 @@ def attempt_in_time(method, course, time, h):
 
 @inline_numba
 def accepted_in_time(method, course, time, h, counts):
-    """Shrink a step until its error is tolerable: (status, size, error over the tolerance)."""
+    """Shrink a step until its error is tolerable; returns (status, size, error over the tolerance)."""
     while True:
         error = attempt_in_time(method, course, time, h)
         counts[EVALUATIONS] += STAGES

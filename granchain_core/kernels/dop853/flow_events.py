@@ -13,11 +13,11 @@ from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMA
 from .flow_attempt import accepted_in_time, attempt_in_time, first_change
 from .step import growth, shrunk
 from .tableau import STAGES
-from .time_map import BEFORE, BEHIND, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
+from .time_map import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.
 _LANDED = 1e-14
-#: A step aims at the next release if that is at most so many step lengths away.
+#: A step aims at the next release if that is at most this many step lengths away.
 _AIM = 1.5
 #: Attempts to locate one event, and to take one step.
 _TRIALS, _ATTEMPTS = 8, 60
@@ -106,17 +106,17 @@ def aim(method, course, t, goal, c, counts):
 def flow_step(method, course, t, onset, counts):
     """One accepted step from y at local time t, at most to the period's end, with the last onset at `onset` (−∞: none).
 
-    Returns (status, time, size, contact); a size of 0 with a contact is a change at t itself. work.clock[0] is the next
-    step to try, in t.
+    Returns (status, time, size, contact); a size of 0 with a contact is a change at t itself.
+    work.next_step[0] is the next step to try, in t.
     """
     trajectory, path, _ = course
     slots, drive, y, work = trajectory
-    clock, limit = work.clock, drive.period
-    dt = min(clock[0], method.largest_step, limit - t)
+    next_step, limit = work.next_step, drive.period
+    dt = min(next_step[0], method.largest_step, limit - t)
     target, wait = next_release(slots, y, path)
     goal = t + wait
     aiming, lost = target >= 0 and wait < _AIM * dt and t > onset, False
-    usual = time_from(BEHIND if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
+    usual = time_from(AFTER if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
     time, h = usual, size_of(usual, dt)
     for _ in range(_ATTEMPTS):
         landed, error = -1, 0.0
@@ -134,7 +134,7 @@ def flow_step(method, course, t, onset, counts):
         contact, x = first_change(course, time, h, landed, counts)
         if contact < 0:
             if not aiming:
-                clock[0] = next_dt(time, h, error, clock[0], limit)
+                next_step[0] = next_dt(time, h, error, next_step[0], limit)
             return DONE, time, h, landed
         if x * h == 0.0:
             return DONE, time, 0.0, contact

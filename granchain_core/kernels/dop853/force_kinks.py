@@ -14,7 +14,7 @@ from ..effects.balance import add_to_account, ends_of
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, power
 from ..effects.preload import overlap
-from ..effects.tension import NoTension, slacken
+from ..effects.tension import TensionCut, slacken
 from ..equations.motion import write_w
 from ..jit import by_slot
 from ..simd.functions import gate, root
@@ -63,7 +63,7 @@ def enter_force_free(tension, trajectory, t):
     """Mark the contacts that are slack at the start of a step and evaluate the slope anew. Absent: none is."""
 
 
-@enter_force_free.of(NoTension)
+@enter_force_free.of(TensionCut)
 def _(tension, trajectory, t):
     slots, drive, y, work = trajectory
     found = False
@@ -78,14 +78,14 @@ def _(tension, trajectory, t):
 
 @by_slot
 def leave_force_free(tension, trajectory):
-    """At a step's end no contact is slack: velocities stay, w and the account use the law's own G again.
+    """End a step's slack contacts: velocities stay, w and the account use the law's own G again.
 
     Returns whether anything changed, and the slope with it. Absent: no contact is slack.
     """
     return False
 
 
-@leave_force_free.of(NoTension)
+@leave_force_free.of(TensionCut)
 def _(tension, trajectory):
     slots, _, y, work = trajectory
     dy, found = work.k[0], False
@@ -112,7 +112,7 @@ def first_kink(tension, step, until, counts, again):
     return 2.0
 
 
-@first_kink.of(NoTension)
+@first_kink.of(TensionCut)
 def _(tension, step, until, counts, again):
     slots, drive, y, work = step.trajectory
     first, ready, turned, k, still = 2.0, False, False, work.k, _STILL * work.scale[1]

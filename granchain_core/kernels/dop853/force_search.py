@@ -30,7 +30,7 @@ from .tableau import STAGES
 _SECTIONS = 24
 #: A step whose ends are below this part of the largest force so far is not searched.
 _FAINT = 0.3
-#: A maximum that the cubic through values and slopes at both ends estimates below this part of it is not searched.
+#: A maximum is not searched if the cubic through values and slopes at both ends puts it below this part of that force.
 _WORTH = 0.98
 
 
@@ -100,7 +100,7 @@ def is_monotone(f0, s0, f1, s1, h):
 
 @internal
 def follow_step(step, ready, peaks, counts):
-    """Raise the largest forces to those in the accepted step; whether its dense output is prepared now.
+    """Raise the largest forces to those in the accepted step; returns whether its dense output is prepared now.
 
     work.k[0] and work.k[12] are its slopes at both ends. A force that rises or falls throughout is largest at an end.
     """

@@ -23,7 +23,7 @@ from .tableau import STAGES
 
 
 class OrbitRecord(NamedTuple):
-    """What is kept of an orbit.
+    """The record of an orbit.
 
     Turning points are rows of `turns` (T, 4): contact, +1 for a largest and −1 for a smallest overlap, scaled time
     since the orbit's phase 0, overlap.

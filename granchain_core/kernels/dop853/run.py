@@ -1,6 +1,6 @@
 """Event-located, error-controlled integration: DOP853 in w, restarted where a contact opens or closes.
 
-The slope is continuous across an event but its derivative is not, and behind an onset the solution has a term
+The slope is continuous across an event but its derivative is not, and after an onset the solution has a term
 (t − t_e)^{5/2}: no method for smooth equations keeps its order across. So every contact event inside a step is located
 on the dense output, the step is repeated to end just past it, and the next one starts small.
 """
@@ -13,7 +13,7 @@ import numpy as np
 
 from ..effects.balance import add_to_account, slack_loss
 from ..effects.preload import overlap
-from ..effects.tension import NoTension
+from ..effects.tension import TensionCut
 from ..equations.motion import copy
 from ..forces.largest import SAMPLE, Instant, Span, note_closings
 from ..jit import by_slot, inline_numba, kernel
@@ -52,7 +52,7 @@ from .step import (
 _BEHIND = 1e-15
 #: Factor by which it may be missed: the time of the event is then as exact as the approach speed allows.
 _NEAR = 4.0
-#: The same two where tension is cut: a contact without force may linger at δ = 0, which is no chatter.
+#: The same two where tension is cut: a contact without force may linger at δ = 0 without chattering.
 _BEHIND_CUT = 1e-14
 _NEAR_CUT = 100.0
 #: A step that is to end at an event may become longer by this factor.
@@ -113,16 +113,16 @@ def event_tolerance(tension):
     return _BEHIND, _NEAR
 
 
-@event_tolerance.of(NoTension)
+@event_tolerance.of(TensionCut)
 def _(tension):
     return _BEHIND_CUT, _NEAR_CUT
 
 
 @inline_numba
 def locate_event(method, step, limit, c, counts):
-    """Shorten or lengthen a step so that it ends just behind the event of contact c; returns its size.
+    """Shorten or lengthen a step so that it ends just past the event of contact c; returns its size.
 
-    An event that turns out to lie behind `limit` is left to the next step, and so is one that is approached so slowly
+    An event that turns out to lie beyond `limit` is left to the next step, and so is one that is approached so slowly
     that the step would grow over other events on the way to it.
     """
     slots, _, y, work = step.trajectory
@@ -148,7 +148,7 @@ def locate_event(method, step, limit, c, counts):
 
 @inline_numba
 def accepted_step(method, trajectory, t, h, counts):
-    """Shrink a step from t until its error is tolerable: (status, size, factor by which the next one may grow)."""
+    """Shrink a step from t until its error is tolerable; returns (status, size, factor for the next one)."""
     while True:
         error = attempt(method, Step(trajectory, t, h))
         counts[EVALUATIONS] += STAGES
@@ -166,10 +166,10 @@ def accepted_step(method, trajectory, t, h, counts):
 def certified_step(method, trajectory, t, limit, counts):
     """One accepted step from y at local time t, at most to `limit`; the result is work.end.
 
-    Returns (status, step taken, contact that changed at its end or −1); work.clock[0] is the next step to try.
+    Returns (status, step taken, contact that changed at its end or −1); work.next_step[0] is the next step to try.
     """
-    tension, clock = trajectory.slots.tension, trajectory.work.clock
-    h = min(clock[0], method.largest_step, limit - t)
+    tension, next_step = trajectory.slots.tension, trajectory.work.next_step
+    h = min(next_step[0], method.largest_step, limit - t)
     enter_force_free(tension, trajectory, t)
     aimed, kinked, again = -1, False, False
     while True:
@@ -187,7 +187,7 @@ def certified_step(method, trajectory, t, limit, counts):
             aimed, again = -1, True
             continue
         if kink < 1.0:
-            clock[0] = min(clock[0], h * factor)
+            next_step[0] = min(next_step[0], h * factor)
             aimed, kinked = -1, True
             h *= kink
             continue
@@ -196,10 +196,10 @@ def certified_step(method, trajectory, t, limit, counts):
         h *= x
     if aimed >= 0:
         h = locate_event(method, step, limit, aimed, counts)
-        # behind the event is a term (t − t_e)^{5/2}: a first step of this size errs by about the tolerance
-        clock[0] = min(clock[0], 2.0 * method.tolerance**0.4)
-    elif not kinked and (h < limit - t or factor < 1.0 or clock[0] <= h):
-        clock[0] = h * factor  # behind a kink the motion is smooth on both sides: the next step need not start small
+        # after the event is a term (t − t_e)^{5/2}: a first step of this size errs by about the tolerance
+        next_step[0] = min(next_step[0], 2.0 * method.tolerance**0.4)
+    elif not kinked and (h < limit - t or factor < 1.0 or next_step[0] <= h):
+        next_step[0] = h * factor  # after a kink the motion is smooth on both sides: the next step need not start small
     counts[EVENTS] += aimed >= 0 or kinked
     counts[STEPS] += 1
     return DONE, h, aimed
@@ -207,7 +207,7 @@ def certified_step(method, trajectory, t, limit, counts):
 
 @inline_numba
 def record_step(step, g, passed, spacing, row, every, samples, out):
-    """Record the forces in the accepted step, and of the `passed` grid points behind number g in it each `every`-th.
+    """Record the forces in the accepted step, and of the `passed` grid points past number g in it each `every`-th.
 
     Returns the next free row of `samples`.
     """
@@ -234,7 +234,7 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
 
 @inline_numba
 def accept(trajectory):
-    """Let the step's end be the state, and its slope the next step's first; whether the slope has to be made anew."""
+    """Make the step's end the state; returns whether its slope must be evaluated anew."""
     slots, _, y, work = trajectory
     lost = slack_loss(slots.balance, slots, y, work.end)
     copy(work.end, y)

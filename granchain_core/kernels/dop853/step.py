@@ -32,8 +32,8 @@ class Dop853(NamedTuple):
 class Work(NamedTuple):
     """Workspace: slopes k (16, M), stage, step end, probe and its slope (M,), dense output (7, M), forces.
 
-    `scale` (2,) is the largest displacement and the largest w so far, to which the tolerance is relative; `clock` (1,)
-    the next step to try.
+    `scale` (2,) is the largest displacement and the largest w so far, to which the tolerance is relative;
+    `next_step` (1,) is the size of the next step to try.
     """
 
     k: np.ndarray
@@ -43,7 +43,7 @@ class Work(NamedTuple):
     slope: np.ndarray
     dense: np.ndarray
     scale: np.ndarray
-    clock: np.ndarray
+    next_step: np.ndarray
     forces: Any
 
 

@@ -1,11 +1,11 @@
 """Time as a power of the distance from a contact event, in which the motion beside it is smooth.
 
-Behind the onset t_e of a contact the overlap goes with (t − t_e) and the elastic force with its power 3/2, so the
-motion has no Taylor series in t there; in s it has one, where
+After the onset t_e of a contact the overlap grows as t − t_e and the elastic force as its power 3/2, so the motion has
+no Taylor series in t there. It has one in s, where
 
-    t = t_e + s^p  behind an onset,    t = t_e − s^p  before a release,    p = 2
+    t = t_e + s^p  after an onset,    t = t_e − s^p  before a release,    p = 2
 
-and p = 4 for damping ∝ δ^{1/4} or δ^{3/4}, whose G goes with the power 5/4 or 7/4. A step of Dormand and Prince that
+and p = 4 for damping ∝ δ^{1/4} or δ^{3/4}, whose G grows as the power 5/4 or 7/4. A step of Dormand and Prince that
 begins at an event is then as long as anywhere else, for motion and tangents alike; in t, error control would have to
 begin with tiny steps.
 """
@@ -19,8 +19,8 @@ from ..effects.dissipation import LAWS, exponent
 from ..jit import by_slot, internal
 from .step import evaluate
 
-#: Kinds of time: behind an onset, plain, before a release.
-BEHIND, PLAIN, BEFORE = 1, 0, -1
+#: Kinds of time: after an onset, plain, before a release.
+AFTER, PLAIN, BEFORE = 1, 0, -1
 
 
 class Time(NamedTuple):

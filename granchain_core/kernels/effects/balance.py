@@ -1,4 +1,4 @@
-"""The energy account, and the forces on beads that come from no contact: what such a force takes is accounted for here.
+"""The energy account, and the force on a bead besides its contacts, whose energy belongs to the same account.
 
 The account is the work of the driver and the energy lost in the contacts, integrated beside the motion.
 
@@ -37,7 +37,7 @@ def force_on_bead(slots, contacts, u, v):
 
 @by_slot
 def account(balance, slots, y, dy, e):
-    """Write the integrands of W and Q behind the motion in dy; needs the velocities in dy and the forces in e."""
+    """Write the integrands of W and Q after the motion in dy; needs the velocities in dy and the forces in e."""
 
 
 @account.of(Balance)

@@ -5,7 +5,7 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              Tsuji           a = 1/4   Tsuji, Tanaka & Ishida 1992
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
 Values     coefficient: λ in scaled units, at an overlap of one length unit where a > 0
-Law        its `exponent` a and its `power` δ^a; all other terms, here and in other files, follow from these two
+Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
 Terms      damping, damping_slope, primitive, shape = G/λ, velocity and its inverse shifted (absent: v = w);
            keep_primitive, put_primitive and put_prescribed_primitive write into the array of G, batch_values reads the
            lanes of a batch
@@ -159,7 +159,7 @@ def _(law, d):
 
 @by_slot
 def shape(law, d, r):
-    """G over its coefficient, from d and r = √d."""
+    """The shape of G: G over its coefficient, from d and r = √d."""
     return 0.0
 
 

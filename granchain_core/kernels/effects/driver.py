@@ -3,7 +3,7 @@
 Equation   u_0 = A sin θ,  θ = 2πft;  v_0 = β A cos θ
 Source     Zhang et al. 2016, eqs. (1) and (2)
 Values     amplitude (1 in scaled units, kept so that a resting driver is the same code), beta = 2πf/φ
-Absent     bead 1 has nothing on its left: body 0 stands FAR away and its contact is open for ever
+Absent     bead 1 has nothing on its left: body 0 stands FAR away and its contact never closes
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""No tension: the contact force is cut at zero while the contact opens.
+"""The cut of tension: the contact force is cut at zero while the contact opens.
 
 Equation   F = max(0, K δ^{3/2} + g(δ) δ̇)   for δ > 0
 Source     the alternative to the paper's law, in which the gated dashpot pulls while the contact opens
@@ -6,7 +6,7 @@ Values     slack (N+1,): 1 for a contact that touches without force throughout t
            G is offset + slope·δ, both (N+1,)
 Terms      cut_tension raises each elastic force just enough to make the total zero, so that forces still enter in one
            place, m ẇ = Σ e
-Slack      Just before δ = 0 the added force −g(δ)δ̇ is finite and just behind it zero (linear law), or its slope is
+Slack      Just before δ = 0 the added force −g(δ)δ̇ is finite and just after it is zero (linear law), or its slope is
            infinite (Tsuji). So for one step G is replaced by its tangent at the step's start, which is smooth at
            δ = 0; at the step's end w is recomputed with the law's own G (`leave_force_free`).
 """
@@ -23,17 +23,17 @@ from .dissipation import damping, primitive, put_primitive
 from .preload import overlap
 
 
-class NoTension(NamedTuple):
-    """Slot of the cut."""
+class TensionCut(NamedTuple):
+    """Slot of the cut; its arrays describe the slack contacts."""
 
     slack: np.ndarray
     slope: np.ndarray
     offset: np.ndarray
 
 
-def no_tension(contacts: int) -> NoTension:
+def new_tension_cut(contacts: int) -> TensionCut:
     """The slot for this number of contacts, none of them slack."""
-    return NoTension(np.zeros(contacts, dtype=np.uint8), np.zeros(contacts), np.zeros(contacts))
+    return TensionCut(np.zeros(contacts, dtype=np.uint8), np.zeros(contacts), np.zeros(contacts))
 
 
 @internal
@@ -51,7 +51,7 @@ def contact_primitive(tension, slots, y, c, d):
     return primitive(slots.dissipation, d)
 
 
-@contact_primitive.of(NoTension)
+@contact_primitive.of(TensionCut)
 def _(tension, slots, y, c, d):
     if tension.slack[c] != 0:
         return tension.offset[c] + tension.slope[c] * overlap(slots.preload, y, c)
@@ -60,10 +60,10 @@ def _(tension, slots, y, c, d):
 
 @by_slot
 def keep_slack_primitive(tension, slots, y, G):
-    """Continue G of slack contacts linearly, below δ = 0 too. Absent: no contact is slack."""
+    """Continue G of slack contacts linearly, also below δ = 0. Absent: no contact is slack."""
 
 
-@keep_slack_primitive.of(NoTension)
+@keep_slack_primitive.of(TensionCut)
 def _(tension, slots, y, G):
     for c in range(tension.slack.size):
         if tension.slack[c] != 0:
@@ -75,7 +75,7 @@ def cut_tension(tension, slots, y, dy, e):
     """Raise e[c] so that e[c] + g δ̇ ≥ 0; needs the velocities in dy. Absent: tension is allowed."""
 
 
-@cut_tension.of(NoTension)
+@cut_tension.of(TensionCut)
 def _(tension, slots, y, dy, e):
     for c in range(e.size):
         rate = dy[c] - dy[c + 1]
@@ -93,7 +93,7 @@ def cut_at_zero(tension, force):
     return force
 
 
-@cut_at_zero.of(NoTension)
+@cut_at_zero.of(TensionCut)
 def _(tension, force):
     return max(force, 0.0)
 
@@ -104,7 +104,7 @@ def unless_slack(tension, c, force):
     return force
 
 
-@unless_slack.of(NoTension)
+@unless_slack.of(TensionCut)
 def _(tension, c, force):
     return 0.0 if tension.slack[c] != 0 else force
 
@@ -115,7 +115,7 @@ def lost_in(tension, slots, y, end):
     return 0.0
 
 
-@lost_in.of(NoTension)
+@lost_in.of(TensionCut)
 def _(tension, slots, y, end):
     lost = 0.0
     for c in range(tension.slack.size):

@@ -2,7 +2,7 @@
 
 Equation   m_i and K_c in units of the first bead's
 Values     inverse_mass (N+2, 8) and stiffness (N+1, 8) in all lanes
-Absent     all beads are alike: the only factor in lanes is the wall's
+Absent     all beads are alike: the wall's stiffness is the only factor in lanes
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Closings of contacts for methods that do not locate events: the jumps of the force between two states a step apart.
 
-Method     A closing is the zero of a smooth quantity: without the contact's own damping the rate of an overlap is
-           smooth, and its parabola gives the rate at the instant at which the overlap is zero. A touch within a step
+Method     Without the contact's own damping the rate of an overlap is smooth across a closing; the parabola through it
+           gives the rate at the instant at which the overlap is zero. A touch within a step
            shows as a maximum of the overlap between two negative values
 """
 

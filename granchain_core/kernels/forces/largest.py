@@ -1,7 +1,7 @@
 """The largest forces of a motion: their suprema over the recorded time, the jumps of closing contacts included.
 
 Equation   F = K δ^{3/2} + g(δ) δ̇.  With a linear dashpot F jumps from 0 to λδ̇ at the instant a contact closes. The
-           value behind the jump, its right limit, counts: it is often the largest force there is
+           value after the jump, its right limit, counts: it is often the largest force there is
 Method     Between two states the force is the cubic with its values and slopes at both. At an event it is evaluated on
            either side: nothing is interpolated across a jump or a kink. Methods that do not locate events look for
            closings in their own way (crossings.py)
@@ -29,7 +29,7 @@ from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 #: A force below this part of the largest so far is followed without its slope: a maximum inside a step exceeds the
 #: step's ends by h²/8 of its curvature, which is some per cent of it.
 _FAINT = 0.9
-#: Largest rise or fall of a force in one step, over its value: behind a closing, where g has an
+#: Largest rise or fall of a force in one step, over its value: after a closing, where g has an
 #: infinite slope, the cubic's slope is bounded by this.
 _STEEPEST = 3.0
 #: Entries of `ForceLog.met`: how many contacts closed with a jump, how many of these were touches within a step of a
@@ -42,7 +42,7 @@ class ForceLog(NamedTuple):
 
     `peaks` (17,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value and
     slope of each force at the last state followed. Rows of `closings` (C, 4) are the number of the last sample before a
-    contact closed, the drive phase θ, the contact and the force behind the jump; `met` (3,) are the numbers CLOSED,
+    contact closed, the drive phase θ, the contact and the force after the jump; `met` (3,) are the numbers CLOSED,
     UNRESOLVED and SAMPLE.
     """
 
@@ -82,7 +82,7 @@ def reach(peaks, row, value):
 
 @internal
 def force_beside(slots, y, dy, e, c, event, closed):
-    """Total force of contact c; at the event of contact `event` that one is just closed or just open."""
+    """Total force of contact c beside the event of contact `event`, which is closed or open there as `closed` says."""
     if c != event:
         return contact_force(slots, y, dy, e, c)
     if not closed:
@@ -126,7 +126,7 @@ def cubic_top(f0, s0, f1, s1, h):
 
 @internal
 def follow(log, q, value, slope, h):
-    """Follow force number q to its value at a state that lies h behind the last one."""
+    """Follow force number q to its value at a state that lies h after the last one."""
     peaks, last = log.peaks, log.last
     row = q * OUTPUT
     reach(peaks, row, cubic_top(last[q, 0], last[q, 1], value, slope, h) if h > 0.0 else value)
@@ -135,7 +135,7 @@ def follow(log, q, value, slope, h):
 
 @internal
 def watch_beside(slots, y, dy, e, h, event, closed, log):
-    """Follow the three forces to state y, whose slope is dy, h behind the last one; h = 0 begins anew there."""
+    """Follow the three forces to state y, whose slope is dy, h after the last one; h = 0 begins anew there."""
     last = e.size - 1
     for q in range(2):
         c = 0 if q == 0 else last
@@ -167,7 +167,7 @@ def watch_state(slots, y, dy, e, h, log):
 
 @internal
 def watch_event(slots, y, dy, e, h, c, theta, log):
-    """Follow the forces up to the event of contact c at drive phase θ, and begin anew behind it."""
+    """Follow the forces up to the event of contact c at drive phase θ, and begin anew after it."""
     rate = dy[c] - dy[c + 1]
     watch_beside(slots, y, dy, e, h, c, rate < 0.0, log)
     watch_beside(slots, y, dy, e, 0.0, c, rate > 0.0, log)
@@ -214,7 +214,7 @@ def _(law, rate, c, last, theta, log):
 def note_closings(law, slots, start, end, span, log):
     """Record the contacts that closed in a located step between two instants. Absent: no force jumps there.
 
-    The step ends just behind an event; an event too near to the step's start to be distinguished from it belongs to
+    The step ends just past an event; an event too near to the step's start to be distinguished from it belongs to
     the start.
     """
 

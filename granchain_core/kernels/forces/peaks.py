@@ -17,7 +17,7 @@ HIGHEST = 1.25
 
 #: Where the memories of the three forces start in an array of peaks, and how many values they take.
 INPUT, OUTPUT, OUTPUT_ELASTIC, MEMORY = 0, ROWS, 2 * ROWS, 3 * ROWS
-#: Behind them the largest jumps of input and output force, and the size of the whole.
+#: After them the largest jumps of input and output force, and the size of the whole.
 INPUT_JUMP, OUTPUT_JUMP, PEAKS = MEMORY, MEMORY + 1, MEMORY + 2
 
 

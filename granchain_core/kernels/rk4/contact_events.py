@@ -1,6 +1,6 @@
 """Contact events inside a step of fixed size: their times, and the quadrature error of a step beside one.
 
-An overlap is a cubic in between, from its values and rates at the step's two ends. Behind an onset at s = 0 the
+An overlap is a cubic in between, from its values and rates at the step's two ends. After an onset at s = 0 the
 elastic force grows like s^{3/2}, whose integral Simpson's rule (and RK4 with it) misses by a part of h^{5/2}: that
 part is known, because the speed is, and is subtracted. For laws with a > 0 the corresponding error of ∫G dt is
 subtracted from the displacement.
@@ -17,7 +17,7 @@ from ..jit import by_slot, inline_llvm, inline_numba, internal
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
 #: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
 GAP, RATE, GAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
-#: At most so many events are located in one step; the rest of it is taken whole.
+#: Most events located in one step; the rest of the step is taken whole.
 MOST_SPLITS = 64
 #: Size of an overlap that only has a sign: above zero the contact counts as closed, but its force is negligible.
 TINY = 1e-300
@@ -93,7 +93,7 @@ def first_event(ends, contacts, h):
 def nearer_event(law, ends, c, last, part, most, h):
     """Fraction of a step of size h, below `most`, at which contact c really opens or closes; it was stepped to `part`.
 
-    The cubic's end may lie behind a kink of the velocity: its root is off by h², and so is the rate there. That matters
+    The cubic's end may lie beyond a kink of the velocity: its root is off by h², and so is the rate there. That matters
     where a force jumps with the rate and is recorded. Absent, and elsewhere: `part`.
     """
     return part

@@ -44,7 +44,7 @@ class LongChain(NamedTuple):
 
 @inline_numba
 def steps_without_events(simd, trajectory, j, count, peaks):
-    """Take up to `count` steps from half-step index 2j of the drive; how many were taken."""
+    """Take up to `count` steps from half-step index 2j of the drive; returns how many were taken."""
     slots, drive, y, _ = trajectory
     h, now, before, blocks = drive.h, simd.now, simd.before, simd.inverse_mass.shape[0]
     m = slots.chain.inverse_mass.size
@@ -77,7 +77,7 @@ def steps_without_events(simd, trajectory, j, count, peaks):
 
 @inline_numba
 def first_stage(simd, slots, u0, h):
-    """The slope at the step's start: begins acc and the mid-step state; whether a contact changed since the last."""
+    """The slope at the step's start: begins acc and the mid-step state; returns whether a contact changed since."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
     here, e_before = with_first(load(now, 0), u0), splat(0.0)
     G_before, changed = primitive(law, e_before), np.int64(0)

@@ -13,7 +13,7 @@ from .step import step
 
 @kernel
 def run_two_trajectories(method, one, other, growth, strobes, out):
-    """Run two through growth.size periods, recording the logarithm of each period's growth of their distance.
+    """Run two chains through growth.size periods, recording the logarithm of each period's growth of their distance.
 
     Both start at phase 0 with their slopes in place; strobes (P, 2, N+2) are those of the first. The forces of both go
     into the same log, which is not used. Returns (status, periods).

@@ -87,9 +87,8 @@ class Kept(NamedTuple):
 def run_steps(method, trajectory, first_step, stride, kept, out):
     """Run with a fixed-step method from step index `first_step` of the period, keeping every stride-th state.
 
-    One kernel for samples and for whole periods, because the steps are most of its code. Closings are recorded in
-    the log.
-    Returns (status, samples filled or periods done).
+    One kernel serves samples and whole periods, because the steps are most of its code. Closings are recorded in the
+    log. Returns (status, samples filled or periods done).
     """
     slots, _, y, stages = trajectory
     m, log, j = slots.chain.inverse_mass.size, out.log, first_step

@@ -1,7 +1,7 @@
 """A short chain in one vector of 8, 16 or 32 doubles, up to 30 beads: RK4 split at contact events.
 
-Body i is lane i of the displacements and of w, contact c lane c of the overlaps; bodies beyond the wall have no
-mass to move and contacts beyond it no stiffness. A step is three new slopes and the slope at its end, which is the
+Body i is lane i of the displacements and of w, contact c lane c of the overlaps; bodies beyond the wall have an
+inverse mass of 0 and contacts beyond it no stiffness. A step is three new slopes and the slope at its end, which is the
 next step's first: nothing is evaluated twice, and nothing goes through memory but the forces at the two ends.
 """
 

@@ -73,7 +73,7 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
                 break
         done += stepped
         add_quadrature_errors(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
-        # after it: the overlap now has the sign that it has behind the event
+        # after it: the overlap now has the sign that it has after the event
         watch_ends_at_event(slots, ends, contact, there, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,

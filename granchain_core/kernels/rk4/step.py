@@ -48,7 +48,7 @@ class Stages(NamedTuple):
     """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays.
 
     `ends` (6, N+1) are overlaps and rates at the ends of a step that is split (contact_events.py).
-    `simd` is the workspace of steps with SIMD along the chain (long_chain.py), None where the scene or method cannot.
+    `simd` is the workspace of steps with SIMD along the chain (long_chain.py), None where there are none.
     """
 
     k: np.ndarray

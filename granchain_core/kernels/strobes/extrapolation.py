@@ -1,7 +1,7 @@
 """The limit of a decaying sequence of states: reduced rank extrapolation.
 
 Near its orbit the stroboscopic map is linear, x_{k+1} − x* = M (x_k − x*). With the differences d_j = x_{j+1} − x_j the
-weights ξ that make d_0 + Σ ξ_j (d_{j+1} − d_j) least give x* ≈ x_0 + Σ ξ_j d_j: the slowest modes are taken out.
+weights ξ that minimise d_0 + Σ ξ_j (d_{j+1} − d_j) give x* ≈ x_0 + Σ ξ_j d_j: the slowest modes are removed.
 Source: Eddy 1979; Sidi, Vector Extrapolation Methods (2017), chapter 2, by modified Gram–Schmidt.
 """
 

@@ -18,7 +18,7 @@ LEAST_WINDOW = 8
 SETTLED_DISTANCE = 1e-6
 #: Changes below this are rounding of a fixed-step map.
 ROUNDING = 1e-12
-#: A larger change cannot have such a small distance bound: nothing decays a thousandfold in one period.
+#: A larger change cannot have a bound that small: nothing decays a thousandfold in one period.
 _FAR = 1e-3
 #: A change this much smaller than the required distance is accepted without a steady rate: a slow mode below it
 #: would have to decay a hundred times more slowly than what is observed.
@@ -27,7 +27,7 @@ _DEEP = 1e-2
 #: orbit.
 _APPROACHING = 0.97
 #: Changes below this may be extrapolated (kernels/strobes/extrapolation.py).
-_WORTH_A_JUMP = 1e-2
+_WORTH_EXTRAPOLATING = 1e-2
 
 
 @internal
@@ -141,7 +141,7 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
         for q in range(1, n):
             nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
         now = change_between(strobes, scale, run, run - n)
-        if nearer or now > _WORTH_A_JUMP:
+        if nearer or now > _WORTH_EXTRAPOLATING:
             continue  # a shorter period is being approached, which is why the change over this one is small
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:

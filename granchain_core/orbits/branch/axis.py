@@ -33,7 +33,7 @@ class KnobAxis:
 
     @classmethod
     def of(cls, scene: Scene, knob: str, start: object, end: object) -> KnobAxis:
-        """The checked axis; `BadInput` for a knob that is unknown or jumps, and for values that are none."""
+        """The checked axis; `BadInput` for a knob that is unknown or discrete, and for values that it cannot take."""
         if knob not in QUANTITIES:
             raise unknown_name("knob", knob, CONTINUOUS)
         quantity = QUANTITIES[knob]

@@ -22,9 +22,9 @@ GOOD = 1e-11
 ACCEPTED = 1e-10
 #: Newton's iterations at most.
 _MOST = 8
-#: A step with the last derivative follows each of Newton's that began above this residual.
+#: Each Newton step that began above this residual is followed by one that reuses its derivative.
 _LAST = 1e-6
-#: It is taken if the residual is below this.
+#: Such a step is taken if the residual is below this.
 _NEAR = 1e-4
 #: Difference in p: between the curvature of the map and its rounding (1e-13).
 _DIFFERENCE = 1e-6
@@ -68,9 +68,9 @@ class BranchEquations:
               farthest: float = np.inf) -> Solved:
         """The branch's point in the plane through z across `normal`, at most `farthest` from z.
 
-        `slope` is P_p nearby, where it is known. A step with the last derivative follows each of Newton's that is not
-        the last, since the map alone costs a third of it. Raises `NumbersFailed` with the residuals where it does not
-        get there.
+        `slope` is P_p nearby, where it is known. Each Newton step but the last is followed by one that reuses its
+        derivative, since the map alone costs a third of it. Raises `NumbersFailed` with the residuals where the method
+        does not converge.
         """
         start, residuals = z, list[float]()
         for _ in range(_MOST):

@@ -18,7 +18,7 @@ from .equations import BranchEquations, Solved
 
 #: Tolerance of one step of the run that records forces and contacts: they are then good to about 1e-9.
 _TOLERANCE = 1e-11
-#: Turning points of overlaps there is room for at first, for each contact and period.
+#: Room for turning points of overlaps at first, for each contact and period.
 _ROOM = 32
 #: Count of the closings of a contact that is always open.
 _OPEN = 0

@@ -49,12 +49,12 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 
 @pytest.mark.parametrize(("before", "kept"), [(1e-3, True), (1e-9, False)])
 def test_a_jump_is_kept_only_if_changes_are_smaller_behind_it(before: float, kept: bool) -> None:
-    """Else the chain goes back to where it jumped from, and waits twice as long."""
+    """Else the chain goes back to where it was extrapolated from, and waits twice as long."""
     block = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
     state = block.state
-    state.jumped[LANE], state.before[LANE, :, 1:-1], state.ready[LANE], state.wait[LANE] = before, 0.25, 10_000, 16
+    state.unproved[LANE], state.before[LANE, :, 1:-1], state.ready[LANE], state.wait[LANE] = before, 0.25, 10_000, 16
     assert not period_end.check_coarse.py_func(state, LANE)
-    assert state.jumped[LANE] == 0.0
+    assert state.unproved[LANE] == 0.0
     assert (state.y[1, LANE] != 0.25) == kept and (state.wait[LANE] == 16) == kept
 
 

@@ -1,8 +1,8 @@
-"""The n-period stroboscopic map by the live method, its derivative by differences, and its fixed points.
+"""The n-period stroboscopic map by the live method, its derivative by finite differences, and its fixed points.
 
-Claims near |μ| = 1 are tested with it while settling: its kernels are compiled already, and it allows cut tension. The
-tangent flow (`granchain_core/orbits`) is for orbits requested as such; both agree on |μ| to 1e-5
-(tests/numerics/test_label_honesty.py).
+While a chain settles, claims near |μ| = 1 are tested with this map: its kernels are already compiled, and it allows cut
+tension. `StroboscopicMap` (`granchain_core/orbits/flow.py`), whose derivative is the tangent flow, is for orbits that
+are asked for. Both agree on |μ| to 1e-5 (tests/numerics/test_label_honesty.py).
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from ..integrate import Engine, certified, live
 from ..scene import Scene
 from ..stop import Stop
 
-#: Steps for one of the live method's: multipliers then differ from those of a tangent flow by about 1e-6.
+#: Steps in place of one live step: multipliers then differ from those of a tangent flow by about 1e-6.
 _REFINE = 4.0
 #: Tolerance of the certified method, which scenes that cut tension need.
 _TOLERANCE = 1e-11
-#: Half the difference of two states over the largest displacement or w: the error is its square times the map's third
-#: derivative, and the method's noise, about 1e-10, over it.
+#: Half the distance of the two states of a central difference, relative to the largest displacement or w. The error is
+#: its square times the map's third derivative, plus the method's noise, about 1e-10, divided by it.
 _DIFFERENCE = 1e-5
 #: The same for a one-sided difference, whose error is the difference times the map's second derivative.
 _TO_ONE_SIDE = 1e-6
@@ -35,8 +35,8 @@ _ENOUGH = 0.1
 _HALVINGS = 5
 
 
-class StrobeMap:
-    """x → the state n drive periods later, for scaled x = (u, w) at phase 0, (2N,)."""
+class FiniteDifferenceMap:
+    """x → the state n drive periods later by the live method, for scaled x = (u, w) (2N,) at phase 0."""
 
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, refine: float = _REFINE) -> None:
         setting = certified(_TOLERANCE) if scene.cuts_tension else live(refine)
@@ -102,7 +102,7 @@ def sizes(x: np.ndarray) -> np.ndarray:
     return np.repeat(largest, half)
 
 
-def fixed_point(strobe: StrobeMap, x: np.ndarray) -> FixedPoint | None:
+def fixed_point(strobe: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
     """The fixed point to which Newton's method converges from x; None where it does not.
 
     The derivative is computed anew only where the present one does not reduce the residual enough.
@@ -113,7 +113,7 @@ def fixed_point(strobe: StrobeMap, x: np.ndarray) -> FixedPoint | None:
         return None
 
 
-def _newton(strobe: StrobeMap, x: np.ndarray) -> FixedPoint | None:
+def _newton(strobe: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
     scale = sizes(x)
     change = strobe(x) - x
     residual, matrix, here = float(np.abs(change / scale).max()), strobe.derivative(x), True

@@ -1,7 +1,7 @@
-"""The usual first attempt: the equations in (u, v), whose dashpot force jumps, with fixed steps across all events.
+"""The naive methods: the equations in (u, v), whose dashpot force jumps, with fixed steps across all events.
 
 Equation   m_i v̇_i = F_{i-1} − F_i − k u_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
-Purpose    shown beside the other methods, to measure the gain of w-variables and located events
+Purpose    the usual first attempt, beside which the gain of w-variables and located events is measured
 The second row of the state holds v here, not w; nothing else differs for the rest of the program.
 """
 
@@ -9,16 +9,16 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..effects.balance import force_on_bead
-from ..effects.contact import elastic_force, positive_part
-from ..effects.dissipation import damping
-from ..effects.preload import overlap
-from ..effects.tension import cut_at_zero
-from ..forces.crossings import end_overlaps, watch_crossings
-from ..forces.largest import Instant
-from ..jit import kernel
-from ..rk4.step import drive_displacement, drive_velocity, span_of, step
-from ..status import EVALUATIONS, STEPS
+from .effects.balance import force_on_bead
+from .effects.contact import elastic_force, positive_part
+from .effects.dissipation import damping
+from .effects.preload import overlap
+from .effects.tension import cut_at_zero
+from .forces.crossings import end_overlaps, watch_crossings
+from .forces.largest import Instant
+from .jit import kernel
+from .rk4.step import drive_displacement, drive_velocity, span_of, step
+from .status import EVALUATIONS, STEPS
 
 
 class Rk4Naive(NamedTuple):
