@@ -27,8 +27,8 @@ def marked(page: Page, name: str) -> int:
 def naive_line(page: Page) -> dict[str, Any]:
     """Length and dash of the naive force that is drawn."""
     return dict(page.evaluate("""() => {
-      const lesson = Bokeh.documents.find((one) => one.get_model_by_name("lesson"));
-      const [certified, naive] = lesson.get_model_by_name("lesson").renderers;
+      const forces = Bokeh.documents.find((one) => one.get_model_by_name("naive forces"));
+      const [certified, naive] = forces.get_model_by_name("naive forces").renderers;
       return { certified: certified.data_source.data.force.length, naive: naive.data_source.data.force.length,
                dash: String(naive.glyph.line_dash.value ?? naive.glyph.line_dash) };
     }"""))
@@ -119,10 +119,10 @@ def test_a_moved_knob_greys_the_picture_until_it_is_measured_again(visit: Visit)
 def test_the_naive_force_is_drawn_over_the_certified_one(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
-    expect(sheet.locator(".lesson canvas").first).to_be_visible()
+    expect(sheet.locator(".naive canvas").first).to_be_visible()
     drawn = naive_line(page)
     assert drawn["certified"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
-    said = sheet.locator(".lesson p")
+    said = sheet.locator(".naive p")
     expect(said).to_contain_text("With 200 steps a period the force is off by")
     first = said.inner_text()
     sheet.get_by_label("its steps in a drive period").select_option("2000")
@@ -134,7 +134,7 @@ def test_steps_that_blow_up_are_told(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     sheet = opened(page)
     sheet.get_by_label("its steps in a drive period").select_option("100")
-    expect(sheet.locator(".lesson p")).to_contain_text("nothing would have been drawn")
+    expect(sheet.locator(".naive p")).to_contain_text("nothing would have been drawn")
     assert naive_line(page)["naive"] == 0
     sheet.get_by_role("button", name="cancel").click()
 

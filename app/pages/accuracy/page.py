@@ -38,7 +38,7 @@ class AccuracyPage(Page):
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._say, "The measurement")
         self._measured = ""
-        self._lesson: Lesson | None = None
+        self._naive: Lesson | None = None
         self._agreement: float | None = None
         self.rows: list[Row] = []
         self.status = "none"
@@ -96,7 +96,7 @@ class AccuracyPage(Page):
     def _measure(self) -> None:
         self._task.cancel()
         scene = self._host.session.scene
-        self._measured, self.rows, self._lesson, self.done = measured_for(scene), [], None, 0.0
+        self._measured, self.rows, self._naive, self.done = measured_for(scene), [], None, 0.0
         self._agreement = None
         self._view.forget()
         self._say("waiting")
@@ -114,14 +114,14 @@ class AccuracyPage(Page):
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.later(self._progress, done))
 
-    def _show(self, rows: list[Row], lesson: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
+    def _show(self, rows: list[Row], naive: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
         self.rows = rows
         self._agreement = agreement if math.isfinite(agreement) else None
         with unlocked():
             self._view.measured(rows, reference)
-            if lesson is not None and self._lesson is None:
-                self._lesson = lesson
-                self._view.teach(lesson)
+            if naive is not None and self._naive is None:
+                self._naive = naive
+                self._view.show_naive(naive)
             self.describe()
 
     def _progress(self, done: float) -> None:
