@@ -37,7 +37,7 @@ class AccuracyPage {
     this.model = model;
     this.asked = null; // the last message about the accuracy asked for
     this.again = button("measure again", () => model.send_msg({ do: "accuracy-measure" }));
-    this.cancel = button("cancel", () => model.send_msg({ do: "accuracy-cancel" }));
+    this.stop = button("stop", () => model.send_msg({ do: "accuracy-stop" }));
     this.meter = meter("progress of the measurement");
     this.status = part("span", { className: "status" });
     this.said = part("b");
@@ -50,7 +50,7 @@ class AccuracyPage {
     this.root = part(
       "div",
       { className: "part sheet" },
-      pageHead("What accuracy costs", this.status, this.meter, this.cancel, this.again),
+      pageHead("What accuracy costs", this.status, this.meter, this.stop, this.again),
       part("div", { className: "say" }, this.said, this.agreement, this.warning),
       part("div", { className: "work" }, this.picture),
       this.naive.root,
@@ -75,7 +75,7 @@ class AccuracyPage {
     const { state } = this.model;
     const { running } = state;
     this.status.textContent = state.progress ?? "";
-    this.meter.hidden = this.cancel.hidden = !running;
+    this.meter.hidden = this.stop.hidden = !running;
     this.again.hidden = running || !state.status || state.status === "none";
     this.meter.value = state.done ?? 0;
     this.agreement.textContent = state.agreement_words ?? "";

@@ -66,7 +66,7 @@ class BranchesPage {
     this.model = model;
     this.period = periodChoice(model.state.longest_period);
     this.start = button("follow from here", () => send(this.request()), { title: FOLLOW });
-    this.stop = button("stop", () => send({ do: "branches-cancel" }));
+    this.stop = button("stop", () => send({ do: "branches-stop" }));
     this.on = button("continue", () => send({ do: "branches-continue" }));
     this.status = part("span", { className: "status" });
     this.said = paragraph("", "said");

@@ -60,7 +60,7 @@ class Card {
 
   show(result) {
     const { status, progress, running: busy, rows, time, failure } = result ?? {};
-    if (status === "running") this.began ??= performance.now();
+    if (status === "computing") this.began ??= performance.now();
     else this.began = null;
     this.told = { status, progress, time };
     this.run.disabled = Boolean(busy);
@@ -78,7 +78,7 @@ class Card {
     const seconds = this.began === null ? 0 : Math.round((performance.now() - this.began) / 1000);
     const first = seconds > PATIENCE ? "; the first run on a computer compiles kernels, which can take minutes" : "";
     this.status.textContent =
-      status === "running" ? `running, ${seconds} s${first} …` : progress || (time ? `took ${time}` : "");
+      status === "computing" ? `${progress} ${seconds} s${first}` : progress || (time ? `took ${time}` : "");
   }
 
   load(message) {
@@ -97,17 +97,17 @@ class HardCases {
     this.all = button("run all (quick)", () => send({ do: "hard-all" }), {
       title: `All ${cases.length} cases with fewer runs; in full: granchain check`,
     });
-    this.cancel = button("cancel", () => send({ do: "hard-cancel" }), { title: "Stop; what was found stays" });
+    this.stop = button("stop", () => send({ do: "hard-stop" }), { title: "What was found stays" });
     this.meter = meter("progress of the hard cases");
     this.said = part("p", { className: "say", ariaLive: "polite" });
-    const head = pageHead("Hard cases", this.meter, this.cancel, this.all);
+    const head = pageHead("Hard cases", this.meter, this.stop, this.all);
     const list = part("div", { className: "cases" }, ...[...this.cards.values()].map(({ root }) => root));
     this.root = part("div", { className: "part sheet" }, head, this.said, list);
   }
 
   show() {
     const { results = {}, summary, running, done } = this.model.state;
-    this.meter.hidden = this.cancel.hidden = !running;
+    this.meter.hidden = this.stop.hidden = !running;
     this.all.hidden = Boolean(running);
     this.meter.value = done ?? 0;
     this.said.textContent = summary || ABOUT;

@@ -103,7 +103,7 @@ class MapTab {
   showProgress() {
     this.status.textContent = MAP.stale ? "the knobs have moved …" : MAP.words;
     this.meter.hidden = this.stop.hidden = !MAP.running;
-    this.again.hidden = MAP.status !== "cancelled";
+    this.again.hidden = MAP.status !== "stopped";
     this.meter.value = MAP.done;
     this.host.classList.toggle("stale", MAP.stale);
     this.host.dataset.done = MAP.stale ? 0 : MAP.done;

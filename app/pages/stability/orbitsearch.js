@@ -30,7 +30,7 @@ export class OrbitSearch {
   show({ status, searched, failure }) {
     this.find.disabled = status === "searching" || status === "compiling";
     this.back.hidden = !(status === "searching" || searched);
-    this.back.textContent = status === "searching" ? "cancel" : "back to the settled motion";
+    this.back.textContent = status === "searching" ? "stop" : "back to the settled motion";
     this.said.textContent = failure ?? "";
   }
 }
