@@ -14,7 +14,7 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, ways
 
 from ...format import prefixed, short_error
 from ...parts.component import text
-from ...parts.figure_part import FigurePart
+from ...parts.figure_part import FigurePart, page_and_small
 from ...pictures.accuracy import Asked, accuracy, marks, points
 from ...pictures.naive_forces import naive_forces
 from ...pictures.theme import Theme
@@ -27,8 +27,7 @@ _LOST = 1e-4
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
     """Error against time without points, for the page and, small, for its tab."""
-    return {name: json_item(accuracy([], Asked(1e-6), theme, compact))
-            for name, compact in (("page", False), ("small", True))}
+    return page_and_small(lambda compact: accuracy([], Asked(1e-6), theme, compact))
 
 
 class Accuracy(FigurePart):
