@@ -12,8 +12,9 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import NamedTuple, NoReturn
 
-from app.cli import branch, check, commands, observe, options, orbit
+from app.cli import accuracy, branch, check, curve, observe, options, orbit, run, scenes, serve, warm
 from app.cli import map as map_command
+from app.cli.common import say, show_json
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import OverBudget, outcome_of, unknown_name
 
@@ -37,17 +38,17 @@ class _Command(NamedTuple):
 
 #: In the order of `granchain --help`.
 _COMMANDS = {
-    "serve": _Command("open the dashboard", options.add_serve, commands.serve),
-    "scenes": _Command("list the scenes and what to look at", options.add_json, commands.scenes),
-    "warm": _Command("compile the kernels of all presets, ahead of time", options.add_nothing, commands.warm),
-    "run": _Command("run a scene and record it", options.add_run, commands.run),
+    "serve": _Command("open the dashboard", serve.add_options, serve.serve),
+    "scenes": _Command("list the scenes and what to look at", options.add_json, scenes.scenes),
+    "warm": _Command("compile the kernels of all presets, ahead of time", warm.add_options, warm.warm),
+    "run": _Command("run a scene and record it", run.add_options, run.run),
     "orbit": _Command("periodic orbit and Floquet multipliers", orbit.add_options, orbit.orbit),
     "branch": _Command("branch of periodic orbits and its special points", branch.add_options, branch.branch),
-    "accuracy": _Command("what accuracy costs: error against time for every method", options.add_accuracy,
-                         commands.accuracy),
+    "accuracy": _Command("what accuracy costs: error against time for every method", accuracy.add_options,
+                         accuracy.accuracy),
     "observe": _Command("push a scene's chain by a measured force", observe.add_options, observe.observe),
     "check": _Command("the hard cases: figure, bar and verdict; status 3 if one fails", check.add_options, check.check),
-    "curve": _Command("resonance curve: largest forces over frequency", options.add_curve, commands.curve),
+    "curve": _Command("resonance curve: largest forces over frequency", curve.add_options, curve.curve),
     "map": _Command("regime and largest forces over two knobs", map_command.add_options, map_command.map_scene),
 }
 
@@ -70,12 +71,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parsed = _parser().parse_args(words)
         return _COMMANDS[parsed.command].do(parsed) or DONE
     except (BadInput, NumbersFailed) as problem:
-        commands.say(problem)
+        say(problem)
         if "--json" in words and isinstance(problem, (NumbersFailed, OverBudget)):
-            commands.show_json(outcome_of(problem))
+            show_json(outcome_of(problem))
         return BAD_INPUT if isinstance(problem, BadInput) else FAILED
     except (KeyboardInterrupt, Cancelled):
-        commands.say("Cancelled.")
+        say("Cancelled.")
         return CANCELLED
     except BrokenPipeError:
         sys.stderr.close()

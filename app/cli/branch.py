@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import threading
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ from granchain_core import BadInput, Cancelled
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
 
-from .commands import chosen_scene, in_background, say, say_if
+from .common import check_points, chosen_scene, in_background, say, say_if, show_json
 from .foundation import kept_along
 from .options import add_result
 from .picture import add_option as add_picture
@@ -43,9 +42,7 @@ def branch(arguments: argparse.Namespace) -> None:
     check_picture(arguments.picture)
     if arguments.out:
         check_writable(arguments.out)
-    if not 2 <= arguments.points <= MOST_POINTS:
-        raise BadInput(f"--points {arguments.points} is outside 2 to {MOST_POINTS}; the nearest valid value is "
-                       f"{min(max(arguments.points, 2), MOST_POINTS)}.")
+    check_points(arguments.points, 2, MOST_POINTS)
     kept: list[Branch] = []
 
     def work(stop: Any) -> Branch:
@@ -64,7 +61,7 @@ def branch(arguments: argparse.Namespace) -> None:
     for arm in found.arms:
         say(f"{len(arm.points)} orbits {_way(arm)}: {arm.reason or 'stopped after the number of orbits asked for'}")
     if arguments.json:
-        print(json.dumps(branch_json(found), allow_nan=False))
+        show_json(branch_json(found))
     else:
         _show(found)
 

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import argparse
 import html
-import json
-import math
 import re
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from app.cli.commands import say
+from app.cli.common import finite_or_null, say, show_json
 from app.cli.options import add_json
 from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
+
+if TYPE_CHECKING:
+    from granchain_core.hard import Check
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -24,7 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def check(arguments: argparse.Namespace) -> int:
-    """Run all hard cases; the exit status is 3 where a row is above its bar, and stderr names it."""
+    """Run all hard cases; the exit status is 3 if a row is above its bar, and stderr names it."""
     from granchain_core.hard.runner import in_order, run_cases
     from granchain_core.hard.table import CASES
 
@@ -32,29 +33,40 @@ def check(arguments: argparse.Namespace) -> int:
     began, found = time.perf_counter(), {}
     for name, rows in run_cases(arguments.quick):
         found[name] = rows
-        verdict = "passed" if all(row.passed for row in rows) else "FAILED"
-        say(f"{len(found):2}/{len(CASES)}  {name}: {verdict}, {rows[0].seconds:.1f} s")
-        for row in rows:
-            if not row.passed:
-                say(f"       {row.figure:.2e} is above {row.bar:.1e}: {row.case.removeprefix(name + ': ')} {row.note}")
+        _say_case(f"{len(found):2}/{len(CASES)}", name, rows)
     every = in_order(found)
     if arguments.json:
-        print(json.dumps({"rows": [{"case": row.case, "figure": row.figure if math.isfinite(row.figure) else None,
-                                    "bar": row.bar, "passed": row.passed, "seconds": row.seconds} for row in every]},
-                         allow_nan=False))
+        show_json({"rows": [{"case": row.case, "figure": finite_or_null(row.figure), "bar": row.bar,
+                             "passed": row.passed, "seconds": row.seconds} for row in every]})
     else:
-        for case in CASES:
-            print(f"\n{case.name}\n  {case.hard}\n  Naive: {case.naive}\n  Oracle: {case.oracle}.")
-            for row in found[case.name]:
-                mark = "ok  " if row.passed else "FAIL"
-                note = f"  ({row.note})" if row.note else ""
-                print(f"  {mark} {row.figure:9.2e} ≤ {row.bar:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
+        _show_cases(found)
     say(f"{sum(row.passed for row in every)} of {len(every)} rows passed in {time.perf_counter() - began:.1f} s")
     write_picture(arguments.picture, "The hard cases", _drawn)
     missed = [row.case for row in every if not row.passed]
     if missed:
         say(f"{len(missed)} of {len(every)} rows are above their bars: {'; '.join(missed)}.")
     return 3 if missed else 0
+
+
+def _say_case(number: str, name: str, rows: list[Check]) -> None:
+    """Say on stderr how a case went, with the rows that missed their bars."""
+    verdict = "passed" if all(row.passed for row in rows) else "FAILED"
+    say(f"{number}  {name}: {verdict}, {rows[0].seconds:.1f} s")
+    for row in rows:
+        if not row.passed:
+            say(f"       {row.figure:.2e} is above {row.bar:.1e}: {row.case.removeprefix(name + ': ')} {row.note}")
+
+
+def _show_cases(found: dict[str, list[Check]]) -> None:
+    """Print every case with its rows."""
+    from granchain_core.hard.table import CASES
+
+    for case in CASES:
+        print(f"\n{case.name}\n  {case.hard}\n  Naive: {case.naive}\n  Oracle: {case.oracle}.")
+        for row in found[case.name]:
+            mark = "ok  " if row.passed else "FAIL"
+            note = f"  ({row.note})" if row.note else ""
+            print(f"  {mark} {row.figure:9.2e} ≤ {row.bar:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
 
 
 def _drawn(theme: Any) -> Any:

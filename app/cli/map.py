@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import sys
 import time
@@ -13,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from app.cli.commands import chosen_scene, in_background, say, say_if
+from app.cli.common import chosen_scene, finite_or_null, in_background, say, say_if, show_json
 from app.cli.foundation import kept_along
 from app.cli.options import add_json, add_scene
 from app.cli.picture import add_option as add_picture
@@ -166,10 +165,10 @@ def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
     inward, worst, elastic = (_largest(found.cells[name]) for name in ERRORS)
     if arguments.json:
         grid = found.grid
-        print(json.dumps({
+        show_json({
             "scene": grid.scene.name, "x": grid.x.knob, "y": grid.y.knob, "cells": grid.size, "computed": computed,
-            "regimes": counts, "largest_error_estimate": None if math.isnan(worst) else worst,
-            "wall_s": found.wall_s, "file": str(arguments.out)}, allow_nan=False))
+            "regimes": counts, "largest_error_estimate": finite_or_null(worst),
+            "wall_s": found.wall_s, "file": str(arguments.out)})
         return
     for axis in (found.grid.x, found.grid.y):
         quantity = QUANTITIES[axis.knob]

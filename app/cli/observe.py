@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
 from dataclasses import asdict
 from typing import Any
 
-from app.cli.commands import chosen_scene, in_background, say
+from app.cli.common import chosen_scene, in_background, say, show_json
 from app.cli.options import add_result
 from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
@@ -60,8 +58,7 @@ def observe(arguments: argparse.Namespace) -> None:
         save_observation(seen, arguments.out)
     write_picture(arguments.picture, f"An observer of {chosen.name}", lambda theme: _drawn(seen, theme))
     if arguments.json:
-        json.dump(described(seen), sys.stdout, allow_nan=False)
-        print()
+        show_json(described(seen))
         return
     print(f"{chosen.name}: {len(seen.time)} samples, {seen.time[-1] - seen.time[0]:.6g} s; {seen.status}")
     print(f"largest output force {seen.max_output_force:.6g} N (elastic {seen.max_output_force_elastic:.6g} N), "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from app.cli.commands import chosen_scene, in_background, show_json
+from app.cli.common import chosen_scene, in_background, show_json
 from app.cli.options import add_json, add_scene
 from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture

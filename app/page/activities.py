@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from granchain_core import Settled
 
+from .progress import COMPUTING, OFF, READY
 from .session import Session
 
 #: Name, state and detail of a view or an analysis.
 Activity = tuple[str, str, str]
 
-OFF, IDLE, RUNNING = "off", "ready", "computing"
-
 
 def picture_activities(session: Session, busy: bool) -> list[Activity]:
     """The pictures, where they come from, and what was found out while they settled."""
     picture, live = session.picture, session.mode == "live"
-    running = RUNNING if busy else IDLE
+    running = COMPUTING if busy else READY
     return [
         ("chain, map, force trains", running, f"from one {'live' if live else 'settled'} run"),
-        ("live run", (RUNNING if session.playing else IDLE) if live else OFF,
+        ("live run", (COMPUTING if session.playing else READY) if live else OFF,
          ("goes on" if session.playing else "paused") if live else "the page shows the steady state"),
         ("steady state", OFF if live else running,
          "not looked for in live mode" if live else "not found yet" if picture is None else picture.regime.sentence),
@@ -35,7 +34,7 @@ def _lyapunov(picture: Settled | None) -> tuple[str, str]:
     """It is computed only where the motion does not become periodic."""
     if picture is None or picture.regime.lyapunov is None:
         return OFF, "only for motions that do not become periodic"
-    return IDLE, f"{picture.regime.lyapunov[0]:+.3f} ± {picture.regime.lyapunov[1]:.3f} per period"
+    return READY, f"{picture.regime.lyapunov[0]:+.3f} ± {picture.regime.lyapunov[1]:.3f} per period"
 
 
 def _account(session: Session, busy: bool) -> tuple[str, str]:
@@ -45,5 +44,5 @@ def _account(session: Session, busy: bool) -> tuple[str, str]:
     if session.mode == "live":
         return OFF, "not computed in a live run"
     if picture is None or picture.run.energy_residual is None:
-        return RUNNING if busy else IDLE, "computed after the picture"
-    return IDLE, f"closes to {picture.run.energy_residual:.0e}"
+        return COMPUTING if busy else READY, "computed after the picture"
+    return READY, f"closes to {picture.run.energy_residual:.0e}"

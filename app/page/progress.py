@@ -1,4 +1,4 @@
-"""Words for the status of background computations. Curve and effects have their own; see also activities.py."""
+"""How computations stand, in words: the one vocabulary of all pages and of the list of what is computed now."""
 
 from __future__ import annotations
 
@@ -6,22 +6,25 @@ from typing import Any
 
 from ..serve.compiler import compiling_words
 
-#: States in which a computation is under way or waits for its turn.
-RUNNING = ("waiting", "compiling", "settling", "following", "measuring", "computing", "searching", "running", "drawing")
+#: In the list of what is computed now: nobody asks for it, nothing is left to do, it is under way.
+OFF, READY, COMPUTING = "off", "ready", "computing"
 
-#: Words for every page; a status without an entry, such as "done", is not shown.
-_WORDS = {"waiting": "waiting for its turn …", "settling": "looking for the first orbit …",
-          "following": "following …", "measuring": "measuring …", "computing": "computing …",
-          "searching": "searching …", "drawing": "drawing …", "cancelled": "cancelled"}
+#: What a page says of a computation that is under way or waits for its turn.
+UNDER_WAY = {
+    "waiting": "waiting for its turn …", "compiling": "compiling …", "settling": "looking for the first orbit …",
+    "computing": "computing …", "measuring": "measuring …", "following": "following …", "searching": "searching …",
+    "drawing": "drawing …",
+}
 
-#: Words that one page uses instead.
+#: What one page says instead.
 _OWN = {
-    "accuracy": {"cancelled": "cancelled; the measurements so far are kept"},
-    "branches": {"cancelled": "stopped; the orbits found so far are kept"},
-    "map": {"waiting": "waiting for the curve …", "computing": "",
-            "cancelled": "stopped; the cells computed so far are kept"},
+    "map": {"waiting": "waiting for the curve …"},
     "attractors": {"searching": "searching from rest, from both sweeps and from random states …"},
 }
+
+#: What a page keeps when the visitor stops its computation.
+_KEPT = {"accuracy": "the measurements so far", "branches": "the orbits found so far",
+         "map": "the cells computed so far"}
 
 
 def progress(page: str, status: str) -> dict[str, Any]:
@@ -32,14 +35,20 @@ def progress(page: str, status: str) -> dict[str, Any]:
     page : str
         The page, or "attractors" for the search on the map's tab.
     status : str
-        A state of `RUNNING`, or "none", "done", "cancelled" or "failed".
+        A state of `UNDER_WAY`, or "none", "done", "stopped" or "failed".
 
     Returns
     -------
     dict
         `status` itself, `progress` in words (empty where there is nothing to say), and whether it is `running`.
     """
-    words = _OWN.get(page, {}).get(status, _WORDS.get(status, ""))
+    return {"status": status, "progress": progress_words(page, status), "running": status in UNDER_WAY}
+
+
+def progress_words(page: str, status: str) -> str:
+    """The words of `progress` alone."""
     if status == "compiling":
-        words = f"{compiling_words(page)} …"
-    return {"status": status, "progress": words, "running": status in RUNNING}
+        return f"{compiling_words(page)} …"
+    if status == "stopped":
+        return f"stopped; {_KEPT[page]} are kept" if page in _KEPT else "stopped"
+    return _OWN.get(page, {}).get(status, UNDER_WAY.get(status, ""))

@@ -2,99 +2,130 @@
 
 import { ChainDrawing, unpack } from "./chaindrawing.js";
 import { Clock, Cursor } from "./clock.js";
+import { part } from "./dom.js";
 
+// After the animation frame under way: a message posted in it arrives when it is done.
 function afterFrame(act) {
   const channel = new MessageChannel();
   channel.port1.onmessage = act;
   channel.port2.postMessage(null);
 }
 
-export function render({ model }) {
-  const page = window.granchain;
-  const canvas = document.createElement("canvas");
-  const drawing = new ChainDrawing(canvas, model.state.palette);
-  let dirty = true;
-  const clock = new Clock(() => {
-    dirty = true;
-  });
-  const cursor = new Cursor(clock);
-  document.querySelector("#scale b").style.background =
-    `linear-gradient(to right, ${model.state.palette.filter((_, i) => i % 15 === 0).join(",")})`;
+class Chain {
+  constructor(model) {
+    this.model = model;
+    this.canvas = part("canvas");
+    this.drawing = new ChainDrawing(this.canvas, model.state.palette);
+    this.clock = new Clock(() => this.mark());
+    this.cursor = new Cursor(this.clock);
+    this.dirty = true;
+    this.narrow = null; // as the server was last told; null before it was
+  }
 
-  const scale = document.getElementById("scale");
-  scale.addEventListener("click", () => {
-    const locked = scale.getAttribute("aria-pressed") !== "true";
-    scale.setAttribute("aria-pressed", String(locked));
-    model.send_msg({ do: "lock", value: locked });
-  });
+  // Something has changed: the next animation frame draws it.
+  mark() {
+    this.dirty = true;
+  }
 
-  let narrow = null; // as the server was last told; null before it was
-  const measure = () => {
-    drawing.measure(cursor.map.getBoundingClientRect(), cursor.gap);
-    cursor.measure();
-    dirty = true;
-    if (narrow === null || narrow === cursor.narrow(model.state.titles)) return;
-    narrow = !narrow;
-    model.send_msg({ do: "room", narrow });
-  };
-  new ResizeObserver(measure).observe(document.getElementById("map"));
-  new ResizeObserver(measure).observe(document.getElementById("chain"));
+  measure() {
+    this.drawing.measure(this.cursor.map.getBoundingClientRect(), this.cursor.gap);
+    this.cursor.measure();
+    this.mark();
+    if (this.narrow === null || this.narrow === this.isNarrow()) return;
+    this.narrow = !this.narrow;
+    this.model.send_msg({ do: "room", narrow: this.narrow });
+  }
 
-  model.on("msg:custom", (message) => {
-    page.answerReceived();
-    if (message.type === "frames") {
-      unpack(message);
-      document.getElementById("scale-high").textContent = message.energy_label;
-      drawing.load(message);
-      clock.show(message);
-      dirty = true;
-      // Bokeh paints in the next animation frame; a message posted in it arrives when that frame is done.
-      requestAnimationFrame(() =>
-        afterFrame(() => {
-          model.send_msg({ do: "painted", number: message.number });
-          page.emit("painted", { number: message.number, live: message.live, lag: Date.now() - 1000 * message.sent });
-        }),
-      );
+  isNarrow() {
+    return this.cursor.narrow(this.model.state.titles);
+  }
+
+  // The colour bar below the map; a click keeps its scale.
+  setUpScale() {
+    const scale = document.getElementById("scale");
+    const colours = this.model.state.palette.filter((_, i) => i % 15 === 0);
+    scale.querySelector("b").style.background = `linear-gradient(to right, ${colours.join(",")})`;
+    scale.addEventListener("click", () => {
+      const locked = scale.ariaPressed !== "true";
+      scale.ariaPressed = String(locked);
+      this.model.send_msg({ do: "lock", value: locked });
+    });
+  }
+
+  receive(message) {
+    window.granchain.answerReceived();
+    if (message.type === "frames") this.load(message);
+  }
+
+  load(frames) {
+    unpack(frames);
+    document.getElementById("scale-high").textContent = frames.energy_label;
+    this.drawing.load(frames);
+    this.clock.show(frames);
+    this.mark();
+    // Bokeh paints in the next animation frame.
+    requestAnimationFrame(() => afterFrame(() => this.painted(frames)));
+  }
+
+  painted({ number, live, sent }) {
+    this.model.send_msg({ do: "painted", number });
+    window.granchain.emit("painted", { number, live, lag: Date.now() - 1000 * sent });
+  }
+
+  nextPeriod() {
+    const { frames, row } = this.clock;
+    if (!frames || frames.live) return;
+    const periods = (frames.rows - 1) / frames.samples;
+    this.clock.moveTo(((row / frames.samples + 1) % periods) / periods);
+  }
+
+  // In every animation frame.
+  tick(now) {
+    const page = window.granchain;
+    this.clock.tick(now, page.lost);
+    const { frames, playing, row } = this.clock;
+    const moving = playing && !frames?.live && !page.lost;
+    if (frames && !page.covered && (this.dirty || moving)) {
+      this.drawing.draw(frames, row);
+      this.cursor.place();
+      this.dirty = false;
     }
-  });
+    page.phase = frames && !frames.live ? row / frames.samples : 0; // in drive periods
+    requestAnimationFrame((later) => this.tick(later));
+  }
+
+  // The page stands: the first picture may come.
+  begin() {
+    this.narrow = this.isNarrow();
+    this.model.send_msg({ do: "ready", theme: window.granchain.theme(), narrow: this.narrow });
+    window.granchain.connect(() => this.model.send_msg({ do: "ping" }));
+  }
+}
+
+function listen(chain) {
+  const page = window.granchain;
+  const { clock } = chain;
   page.on("play", (playing) => {
     clock.playing = playing;
   });
   page.on("speed", (speed) => {
     clock.speed = speed;
   });
-  page.on("period", () => {
-    if (!clock.frames || clock.frames.live) return;
-    const periods = (clock.frames.rows - 1) / clock.frames.samples;
-    clock.moveTo(((clock.row / clock.frames.samples + 1) % periods) / periods);
-  });
-  page.on("cover", () => {
-    dirty = true;
-  });
-  page.on("theme", () => {
-    measure();
-  });
+  page.on("period", () => chain.nextPeriod());
+  page.on("cover", () => chain.mark());
+  page.on("theme", () => chain.measure());
+}
+
+export function render({ model }) {
+  const chain = new Chain(model);
+  chain.setUpScale();
+  for (const id of ["map", "chain"]) new ResizeObserver(() => chain.measure()).observe(document.getElementById(id));
+  model.on("msg:custom", (message) => chain.receive(message));
+  listen(chain);
   document.addEventListener("visibilitychange", () => {
     if (!document.hidden) model.send_msg({ do: "visible" });
   });
-
-  const loop = (now) => {
-    clock.tick(now, page.lost);
-    const { frames } = clock;
-    if (frames && !page.covered && (dirty || (clock.playing && !frames.live && !page.lost))) {
-      drawing.draw(frames, clock.row);
-      cursor.place();
-      dirty = false;
-    }
-    page.row = clock.row;
-    page.phase = frames && !frames.live ? clock.row / frames.samples : 0; // in drive periods
-    requestAnimationFrame(loop);
-  };
-  requestAnimationFrame(loop);
-  setTimeout(() => {
-    narrow = cursor.narrow(model.state.titles);
-    model.send_msg({ do: "ready", theme: page.theme(), narrow });
-    page.connect(() => model.send_msg({ do: "ping" }));
-  }, 0);
-  return canvas;
+  requestAnimationFrame((now) => chain.tick(now));
+  setTimeout(() => chain.begin(), 0);
+  return chain.canvas;
 }

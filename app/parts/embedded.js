@@ -142,33 +142,3 @@ export class Grown {
 export function fillModels(figure, models) {
   for (const [name, properties] of Object.entries(models ?? {})) figure.set(name, properties);
 }
-
-// What the observer's page and its tab show.
-export function fillDistance(figure, { history, prediction }) {
-  for (const [name, points] of [
-    ["distance", history],
-    ["prediction", prediction],
-  ])
-    figure.set(name, {
-      data: { period: points.map(([period]) => period), distance: points.map(([, distance]) => distance) },
-    });
-}
-
-// The figure comes with its first points: an axis without data has no range.
-export function showDistance(figure, item, known) {
-  if (!known.history.length) return;
-  if (figure.item !== item) figure.load(item, "distance between observer and chain over time");
-  else fillDistance(figure, known);
-}
-
-// Error against time as it is known now: points by method, then what is asked, cheapest and used.
-export function fillAccuracy(figure, { drawn, told }) {
-  for (const [name, data] of Object.entries(drawn)) figure.set(name, { data });
-  fillModels(figure, told?.marks);
-}
-
-export function showAccuracy(figure, item, known) {
-  if (!Object.values(known.drawn).some(({ ms }) => ms.length)) return;
-  if (figure.item !== item) figure.load(item, "error against computing time");
-  else fillAccuracy(figure, known);
-}

@@ -1,19 +1,7 @@
 // The bar on top. What only concerns the replay stays in the browser; the rest is one message each.
 
 import { part } from "./dom.js";
-
-const HELP = [
-  ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
-  ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
-  ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
-  ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
-  [
-    "accuracy",
-    "Click it in the status line to measure, on this machine, every method's error against its computing time.",
-  ],
-  ["effects", "In the tab “effects”: switch an effect on or off and see what it costs."],
-  ["curve", "Click a frequency to go there. Shape and colour of a point show its regime."],
-];
+import { Popovers } from "./popovers.js";
 
 // Drawn here, so that no font has to have them.
 const ICONS = {
@@ -32,174 +20,179 @@ const icon = (name, words = "") =>
     words && `<span class="wide">${words}</span>`
   }`;
 
-export function render({ model }) {
-  const page = window.granchain;
-  const send = (message) => model.send_msg(message);
-  const button = (text, title, act, className = "") => {
-    const element = part("button", { type: "button", title, className });
-    element.innerHTML = text;
-    element.setAttribute("aria-label", title);
-    element.addEventListener("click", act);
-    return element;
-  };
-  const chooser = (label, className, act) => {
-    const select = part("select", { className, title: label });
-    select.setAttribute("aria-label", label);
-    select.addEventListener("change", () => act(select.value));
-    return select;
-  };
+const MODES = [
+  ["settled", "The steady state for these knobs, replayed"],
+  ["live", "The run goes on while you move the knobs"],
+];
+const STARTS = [
+  ["rest", "from rest"],
+  ["previous", "from the previous state"],
+];
 
-  const drawer = button(icon("knobs", "knobs"), "Show the knobs", () => page.drawer(true), "knobs-button");
-  const scene = chooser("scene", "scene", (name) => {
-    page.requested("scene", name);
-    send({ do: "scene", name });
-  });
-  const reset = button(icon("reset", "reset"), "Back to rest", () => send({ do: "reset" }));
-  const play = button("", "Play or pause (space)", () => setPlaying(!playing));
-  const period = button(icon("step", "period"), "Forward one drive period", () => {
-    setPlaying(false);
-    page.emit("period");
-    send({ do: "step" });
-  });
-  const speed = chooser("drive periods shown per second", "speed", (value) =>
-    send({ do: "speed", value: Number(value) }),
-  );
-  const segments = part("span", { className: "segments" });
-  segments.setAttribute("role", "group");
-  const modes = ["settled", "live"].map((mode) =>
-    button(
-      mode,
-      mode === "settled" ? "The steady state for these knobs, replayed" : "The run goes on while you move the knobs",
-      () => {
-        page.requested("mode", mode);
-        send({ do: "mode", value: mode });
-      },
-    ),
-  );
-  segments.append(...modes);
-  const start = chooser("where the steady state starts", "start", (value) => {
-    page.requested("start", value);
-    send({ do: "start", value });
-  });
-  start.add(new Option("from rest", "rest"));
-  start.add(new Option("from the previous state", "previous"));
-  const share = button(icon("share", "share"), "Link to this picture", () => send({ do: "share" }));
-  const save = button(icon("save", "save"), "Save this picture as HDF5", () => send({ do: "save" }), "save");
-  const help = button(icon("help"), "Help", () => toggle(helpBox), "icon");
-  const theme = button(icon("theme"), "Light, dark, projector", () => page.nextTheme(), "icon");
+function button(innerHTML, title, act, className = "") {
+  const element = part("button", { type: "button", innerHTML, title, ariaLabel: title, className });
+  element.addEventListener("click", act);
+  return element;
+}
 
-  const list = part("dl");
-  for (const [term, meaning] of HELP)
-    list.append(part("dt", { textContent: term }), part("dd", { textContent: meaning }));
-  const helpBox = part("div", { className: "popover", hidden: true }, list);
-  const linkField = part("input", { readOnly: true });
-  linkField.setAttribute("aria-label", "link to this picture");
-  const linkBox = part("div", { className: "popover", hidden: true }, linkField);
-  const toggle = (box, open = box.hidden) => {
-    helpBox.hidden = linkBox.hidden = true;
-    box.hidden = !open;
-  };
+function chooser(label, className, act) {
+  const select = part("select", { className, title: label, ariaLabel: label });
+  select.addEventListener("change", () => act(select.value));
+  return select;
+}
 
-  let playing = true;
-  const drawPlay = () => {
-    play.innerHTML = playing ? icon("pause", "pause") : icon("play", "play");
-  };
-  const setPlaying = (value) => {
-    if (value === playing) return;
-    playing = value;
-    drawPlay();
-    page.kept = { ...page.kept, playing };
-    page.emit("play", playing);
-    send({ do: "playing", value: playing });
-  };
-  page.on("pause", () => setPlaying(false));
-  page.on("theme", (value) => send({ do: "theme", value }));
-  document.addEventListener("keydown", (event) => {
+function download({ name, content }) {
+  const link = part("a", { href: URL.createObjectURL(new Blob([content])), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+class Header {
+  constructor(model) {
+    this.model = model;
+    this.playing = true;
+    this.themed = false; // whether the theme of the link has been taken over
+    this.popovers = new Popovers();
+    this.makeTimeControls();
+    this.scene = chooser("scene", "scene", (name) => this.request("scene", name, { name }));
+    const send = (name) => () => this.send(name);
+    this.root = part(
+      "div",
+      { className: "part bar" },
+      button(icon("knobs", "knobs"), "Show the knobs", () => window.granchain.drawer(true), "knobs-button"),
+      part("h1", { textContent: "granchain" }),
+      this.scene,
+      button(icon("reset", "reset"), "Back to rest", send("reset")),
+      this.play,
+      button(icon("step", "period"), "Forward one drive period", () => this.nextPeriod()),
+      this.speed,
+      part("span", { className: "segments", role: "group" }, ...this.modes),
+      this.start,
+      part("span", { className: "grow" }),
+      button(icon("share", "share"), "Link to this picture", send("share")),
+      button(icon("save", "save"), "Save this picture as HDF5", send("save"), "save"),
+      button(icon("help"), "Help", () => this.popovers.toggleHelp(), "icon"),
+      button(icon("theme"), "Light, dark, projector", () => window.granchain.nextTheme(), "icon"),
+      this.popovers.help,
+      this.popovers.link,
+    );
+  }
+
+  makeTimeControls() {
+    this.play = button("", "Play or pause (space)", () => this.setPlaying(!this.playing));
+    this.speed = chooser("drive periods shown per second", "speed", (value) =>
+      this.send("speed", { value: Number(value) }),
+    );
+    this.modes = MODES.map(([mode, title]) => button(mode, title, () => this.request("mode", mode, { value: mode })));
+    this.start = chooser("where the steady state starts", "start", (value) => this.request("start", value, { value }));
+    for (const [value, words] of STARTS) this.start.add(new Option(words, value));
+  }
+
+  send(name, more = {}) {
+    this.model.send_msg({ do: name, ...more });
+  }
+
+  // Sends a choice that a share link carries, and keeps it until the server has answered.
+  request(name, value, message) {
+    window.granchain.requested(name, value);
+    this.send(name, message);
+  }
+
+  drawPlay() {
+    this.play.innerHTML = this.playing ? icon("pause", "pause") : icon("play", "play");
+  }
+
+  setPlaying(value) {
+    if (value === this.playing) return;
+    this.playing = value;
+    this.drawPlay();
+    window.granchain.kept = { ...window.granchain.kept, playing: value };
+    window.granchain.emit("play", value);
+    this.send("playing", { value });
+  }
+
+  nextPeriod() {
+    this.setPlaying(false);
+    window.granchain.emit("period");
+    this.send("step");
+  }
+
+  key(event) {
     const inField = event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
-    if (event.key === " " && !inField && !page.lost) {
+    if (event.key === " " && !inField && !window.granchain.lost) {
       event.preventDefault();
-      setPlaying(!playing);
+      this.setPlaying(!this.playing);
     }
     if (event.key === "Escape") {
-      toggle(helpBox, false);
-      page.drawer(false);
+      this.popovers.close();
+      window.granchain.drawer(false);
     }
-  });
-  document.addEventListener("pointerdown", (event) => {
-    if (!event.composedPath().includes(root)) toggle(helpBox, false);
-  });
+  }
+
+  show() {
+    const { state } = this.model;
+    this.takeTheme(state.theme);
+    this.showChoices(state);
+    this.showPlaying(state);
+    if (!state.query) return;
+    window.granchain.linkReceived(state.query, ["scene", "mode", "start"]);
+    this.restore();
+  }
 
   // The theme of the link comes with the first state; from then on the button alone says it.
-  let linked = false;
-  const show = () => {
-    const { state } = model;
-    if (!linked && state.theme) {
-      linked = true;
-      page.setTheme(state.theme, false); // "auto" is none of the themes and changes nothing
-    }
-    scene.replaceChildren(...(state.scenes ?? []).map(({ name, title }) => new Option(`${name} — ${title}`, name)));
-    scene.value = state.scene ?? "";
-    speed.replaceChildren(
-      ...(state.speeds ?? []).map((value) => new Option(`${value} period${value > 1 ? "s" : ""}/s`, value)),
-    );
-    speed.value = String(state.speed ?? 1);
-    page.emit("speed", state.speed ?? 1);
-    modes.forEach((element, i) => {
-      element.setAttribute("aria-pressed", String(state.mode === ["settled", "live"][i]));
-    });
-    start.value = state.start ?? "rest";
-    start.style.display = state.mode === "live" ? "none" : "";
-    if (state.playing !== undefined && state.playing !== playing) {
-      playing = state.playing;
-      page.emit("play", playing);
-    }
-    drawPlay();
-    page.kept = { ...page.kept, speed: state.speed, playing };
-    if (!state.query) return;
-    page.linkReceived(state.query, ["scene", "mode", "start"]);
-    if (page.again) {
-      const { speed: value = 1, playing: goesOn = true, uploaded = false } = page.again;
-      page.again = null;
-      send({ do: "again", speed: value, playing: goesOn, uploaded });
-    }
-  };
-  model.on("state", show);
-  model.on("msg:custom", (message) => {
-    if (message.type === "link") {
-      const url = new URL(location.href);
-      url.search = message.query;
-      history.replaceState(null, "", url);
-      linkField.value = url.href;
-      toggle(linkBox, true);
-      linkField.select();
-      navigator.clipboard?.writeText(url.href).catch(() => {});
-    } else if (message.type === "file") {
-      const link = part("a", { href: URL.createObjectURL(new Blob([message.content])), download: message.name });
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-    }
-  });
+  takeTheme(theme) {
+    if (this.themed || !theme) return;
+    this.themed = true;
+    window.granchain.setTheme(theme, false); // "auto" is none of the themes and changes nothing
+  }
 
-  const root = part(
-    "div",
-    { className: "part bar" },
-    drawer,
-    part("h1", { textContent: "granchain" }),
-    scene,
-    reset,
-    play,
-    period,
-    speed,
-    segments,
-    start,
-    part("span", { className: "grow" }),
-    share,
-    save,
-    help,
-    theme,
-    helpBox,
-    linkBox,
-  );
-  show();
-  return root;
+  showChoices({ scenes = [], scene = "", speeds = [], speed = 1, mode, start = "rest" }) {
+    this.scene.replaceChildren(...scenes.map(({ name, title }) => new Option(`${name} — ${title}`, name)));
+    this.scene.value = scene;
+    this.speed.replaceChildren(...speeds.map((value) => new Option(`${value} period${value > 1 ? "s" : ""}/s`, value)));
+    this.speed.value = String(speed);
+    window.granchain.emit("speed", speed);
+    MODES.forEach(([name], i) => {
+      this.modes[i].ariaPressed = String(mode === name);
+    });
+    this.start.value = start;
+    this.start.style.display = mode === "live" ? "none" : "";
+  }
+
+  showPlaying({ playing = this.playing, speed }) {
+    if (playing !== this.playing) {
+      this.playing = playing;
+      window.granchain.emit("play", playing);
+    }
+    this.drawPlay();
+    window.granchain.kept = { ...window.granchain.kept, speed, playing };
+  }
+
+  // After a lost connection: what the share link does not carry.
+  restore() {
+    const { again } = window.granchain;
+    if (!again) return;
+    window.granchain.again = null;
+    const { speed = 1, playing = true, uploaded = false } = again;
+    this.send("again", { speed, playing, uploaded });
+  }
+
+  receive(message) {
+    if (message.type === "link") this.popovers.showLink(message.query);
+    else if (message.type === "file") download(message);
+  }
+}
+
+export function render({ model }) {
+  const header = new Header(model);
+  window.granchain.on("pause", () => header.setPlaying(false));
+  window.granchain.on("theme", (value) => header.send("theme", { value }));
+  document.addEventListener("keydown", (event) => header.key(event));
+  document.addEventListener("pointerdown", (event) => {
+    if (!event.composedPath().includes(header.root)) header.popovers.close();
+  });
+  model.on("state", () => header.show());
+  model.on("msg:custom", (message) => header.receive(message));
+  header.show();
+  return header.root;
 }

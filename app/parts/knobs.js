@@ -1,200 +1,97 @@
-// The knobs: slider, number and unit; arrows fine, shift coarse, double click back to the scene's value.
+// The knobs, one below the other; those that are seldom moved are folded away under "more".
 
-const STEPS = 1000;
+import { part } from "./dom.js";
+import { Knob } from "./knob.js";
 
-// Slider position (0..1) to value and back, for the three kinds of range.
-const RANGE = {
-  linear: {
-    value: (p, { low, high }) => low + p * (high - low),
-    place: (v, { low, high }) => (v - low) / (high - low),
-  },
-  log: {
-    value: (p, { low, high }) => low * (high / low) ** p,
-    place: (v, { low, high }) => Math.log(v / low) / Math.log(high / low),
-  },
-  cubic: {
-    value: (p, { low, high }) => low + p ** 3 * (high - low),
-    place: (v, { low, high }) => Math.cbrt((v - low) / (high - low)),
-  },
-};
+const KEPT = "κ = k/(K√A₀): at the same k, κ changes with A₀. Set κ to get the old value back.";
+const FREQUENCY = "Frequency of one bead on its foundation spring alone: √(k/m) / 2π.";
 
-// Four figures are what a slider can mean; a typed value keeps all it has.
-const rounded = (value) => Number(value.toPrecision(4));
-
-const written = (value, factor) => {
-  const shown = Number((value / factor).toPrecision(10));
-  if (shown !== 0 && (Math.abs(shown) < 1e-3 || Math.abs(shown) >= 1e6))
-    return Number(shown.toPrecision(6)).toExponential().replace("e+", "e");
-  return String(Number(shown.toPrecision(6)));
-};
-
-class Knob {
-  constructor(spec, send) {
-    this.spec = spec;
-    this.send = send;
-    this.el = document.createElement("div");
-    this.el.className = "knob";
-    this.el.dataset.knob = spec.name;
-    const label = document.createElement("label");
-    label.title = `${spec.label}: ${spec.meaning}`;
-    label.innerHTML = `${spec.symbol || ""} <small>${spec.short}</small>`;
-    this.el.append(label);
-    this.el.addEventListener("dblclick", (event) => {
-      if (event.target.type === "text") return;
-      this.send({ do: "restore", name: spec.name }, true);
-    });
-    if (spec.choices.length) this.chooser();
-    else this.number();
+// Sends one message per animation frame and knob, which is all the eye can follow; the first goes at once.
+class Sender {
+  constructor(model) {
+    this.model = model;
+    this.sent = 0; // the number of the last message
+    this.waiting = new Map();
+    this.resting = true;
   }
 
-  chooser() {
-    const select = document.createElement("select");
-    select.setAttribute("aria-label", this.spec.label);
-    for (const choice of this.spec.choices) select.add(new Option(choice, choice));
-    select.addEventListener("change", () => this.set(select.value, true));
-    this.select = select;
-    this.el.append(select);
+  send(message, now) {
+    this.waiting.set(message.name, message);
+    const value = message.do === "set" ? message.value : this.model.state.preset[message.name];
+    window.granchain.requested(message.name, value);
+    if (this.resting || now) this.flush();
   }
 
-  number() {
-    const { spec } = this;
-    this.field = Object.assign(document.createElement("input"), {
-      type: "text",
-      inputMode: "decimal",
-      spellcheck: false,
-    });
-    this.field.setAttribute("aria-label", `${spec.label}, ${spec.unit}`);
-    this.field.autocomplete = "off";
-    const unit = Object.assign(document.createElement("span"), { className: "unit", textContent: spec.unit });
-    this.slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: STEPS, step: 1 });
-    this.slider.setAttribute("aria-label", spec.label);
-    this.el.append(this.field, unit, this.slider);
-    this.field.addEventListener("input", () => {
-      this.editing = true;
-    });
-    this.field.addEventListener("blur", () => {
-      this.editing = false;
-    });
-    this.field.addEventListener("change", () => this.typed());
-    this.field.addEventListener("focus", () => this.field.select());
-    this.slider.addEventListener("input", () => {
-      let value = RANGE[spec.scale].value(this.slider.value / STEPS, spec);
-      if (spec.whole) value = Math.round(value);
-      this.set(
-        Number(this.slider.value) === 0 ? spec.low : Number(this.slider.value) === STEPS ? spec.high : rounded(value),
-      );
-    });
-    for (const input of [this.slider, this.field]) input.addEventListener("keydown", (event) => this.key(event));
+  flush() {
+    this.resting = !this.waiting.size;
+    for (const message of this.waiting.values()) this.model.send_msg({ ...message, seq: ++this.sent });
+    this.waiting.clear();
+    if (!this.resting) requestAnimationFrame(() => this.flush());
   }
 
-  // Text that is not a number is sent as it is; the server answers with a sentence.
-  typed() {
-    this.editing = false;
-    const raw = this.field.value.trim();
-    const number = Number(raw);
-    this.set(raw !== "" && !Number.isNaN(number) ? Number((number * this.spec.factor).toPrecision(12)) : raw, true);
+  // Whether nothing newer than message `seq` has been sent or waits.
+  isNewest(seq) {
+    return seq >= this.sent && !this.waiting.size;
+  }
+}
+
+class Knobs {
+  constructor(model) {
+    this.model = model;
+    this.sender = new Sender(model);
+    this.knobs = new Map();
+    this.kept = part("div", { className: "kept", title: KEPT });
+    this.foundation = part("span");
+    this.aside = part(
+      "div",
+      { className: "aside" },
+      this.kept,
+      part("div", { title: FREQUENCY }, "foundation frequency ", this.foundation),
+    );
+    this.root = part("div", { className: "part" });
   }
 
-  key(event) {
-    const direction = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1 }[event.key];
-    if (!direction || (event.target === this.field && event.key.match(/Left|Right/))) return;
-    event.preventDefault();
-    const { spec, value } = this;
-    let next;
-    if (!spec.step) next = rounded(value * (event.shiftKey ? 10 : 10 ** 0.5) ** direction);
-    else if (!event.shiftKey) next = Number((value + direction * spec.step).toPrecision(10));
-    else next = rounded(RANGE[spec.scale].value(RANGE[spec.scale].place(value, spec) + direction * 0.02, spec));
-    if (spec.whole) next = Math.round(next) === value ? value + direction : Math.round(next);
-    this.set(Math.max(spec.low, Math.min(spec.high, next)));
-  }
-
-  set(value, now = false) {
-    this.show(value);
-    this.send({ do: "set", name: this.spec.name, value }, now);
-  }
-
-  show(value, preset) {
-    if (preset !== undefined) this.preset = preset;
-    this.value = value;
-    if (this.select) {
-      if (![...this.select.options].some((option) => option.value === String(value)))
-        this.select.add(new Option(Number(value).toPrecision(4), value));
-      this.select.value = String(value);
-    } else if (typeof value === "number") {
-      // What somebody is typing is left alone.
-      if (!this.editing) this.field.value = written(value, this.spec.factor);
-      this.field.style.width = `${Math.max(3, this.field.value.length) + 1.6}ch`;
-      const place = RANGE[this.spec.scale].place(value, this.spec);
-      this.slider.value = Math.round(STEPS * Math.max(0, Math.min(1, place)));
-      this.slider.setAttribute("aria-valuetext", `${written(value, this.spec.factor)} ${this.spec.unit}`);
+  // The knobs of another scene.
+  build() {
+    const open = Boolean(this.root.querySelector("details")?.open);
+    const more = part("details", { innerHTML: "<summary>more</summary>", open });
+    this.root.replaceChildren();
+    this.knobs.clear();
+    for (const spec of this.model.state.specs ?? []) {
+      const knob = new Knob(spec, (message, now) => this.sender.send(message, now));
+      this.knobs.set(spec.name, knob);
+      (spec.more ? more : this.root).append(knob.el);
+      if (spec.name === "kappa") this.root.append(this.aside);
     }
-    this.el.classList.toggle("moved", value !== this.preset);
+    this.root.append(more);
+    this.show(this.model.state);
+  }
+
+  show({ values, preset, foundation, kept }) {
+    for (const [name, knob] of this.knobs) if (name in values) knob.show(values[name], preset?.[name]);
+    this.foundation.textContent = foundation;
+    this.kept.textContent = kept ?? "";
+  }
+
+  receive(message) {
+    if (message.type !== "values") return;
+    const { sent } = this.sender;
+    const newest = this.sender.isNewest(message.seq ?? -1);
+    window.granchain.linkReceived(message.query, newest ? [...this.knobs.keys()] : []);
+    // An answer to an older movement must not pull the knob from under the hand.
+    if (this.sender.isNewest(message.seq ?? sent)) this.show(message);
+  }
+
+  disable(disabled) {
+    for (const input of this.root.querySelectorAll("input, select")) input.disabled = disabled;
   }
 }
 
 export function render({ model }) {
-  const page = window.granchain;
-  const root = document.createElement("div");
-  root.className = "part";
-  let knobs = new Map();
-  let sent = 0;
-  // One message per animation frame and knob is all the eye can follow; the first goes at once.
-  const waiting = new Map();
-  let resting = true;
-  const flush = () => {
-    resting = !waiting.size;
-    for (const message of waiting.values()) model.send_msg({ ...message, seq: ++sent });
-    waiting.clear();
-    if (!resting) requestAnimationFrame(flush);
-  };
-  const send = (message, now) => {
-    waiting.set(message.name, message);
-    page.requested(message.name, message.do === "set" ? message.value : model.state.preset[message.name]);
-    if (resting || now) flush();
-  };
-
-  const build = () => {
-    const open = root.querySelector("details")?.open;
-    root.replaceChildren();
-    knobs = new Map();
-    const more = document.createElement("details");
-    more.innerHTML = "<summary>more</summary>";
-    more.open = Boolean(open);
-    for (const spec of model.state.specs ?? []) {
-      const knob = new Knob(spec, send);
-      knobs.set(spec.name, knob);
-      (spec.more ? more : root).append(knob.el);
-      if (spec.name === "kappa") {
-        const aside = document.createElement("div");
-        aside.className = "aside";
-        aside.innerHTML = `<div class="kept" title="κ = k/(K√A₀): at the same k, κ changes with A₀. Set κ to get the old value back."></div>
-          <div title="Frequency of one bead on its foundation spring alone: √(k/m) / 2π.">foundation frequency <span></span></div>`;
-        root.append(aside);
-      }
-    }
-    root.append(more);
-    show(model.state);
-  };
-  const show = ({ values, preset, foundation, kept }) => {
-    for (const [name, knob] of knobs) if (name in values) knob.show(values[name], preset?.[name]);
-    const aside = root.querySelector(".aside span");
-    if (aside) aside.textContent = foundation;
-    const moved = root.querySelector(".kept");
-    if (moved) moved.textContent = kept ?? "";
-  };
-  model.on("state", build);
-  model.on("msg:custom", (message) => {
-    if (message.type !== "values") return;
-    const newest = (message.seq ?? -1) >= sent && !waiting.size;
-    page.linkReceived(message.query, newest ? [...knobs.keys()] : []);
-    // An answer to an older movement must not pull the knob from under the hand.
-    if ((message.seq ?? sent) >= sent && !waiting.size) show(message);
-  });
-  const disable = (lost) =>
-    root.querySelectorAll("input, select").forEach((input) => {
-      input.disabled = lost;
-    });
-  page.on("lost", disable);
-  build();
-  return root;
+  const knobs = new Knobs(model);
+  model.on("state", () => knobs.build());
+  model.on("msg:custom", (message) => knobs.receive(message));
+  window.granchain.on("lost", (lost) => knobs.disable(lost));
+  knobs.build();
+  return knobs.root;
 }

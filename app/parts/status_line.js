@@ -1,5 +1,7 @@
 // The status line: what is on the screen, how sure it is and what it cost.
 
+import { button, part } from "./dom.js";
+
 const ENTRIES = [
   ["start", (v) => v, "Where the steady state was started."],
   [
@@ -16,39 +18,33 @@ const ENTRIES = [
   ["effects", (v) => v.join(" · "), "The effects being computed; an absent one has no code and costs nothing."],
 ];
 
-export function render({ model }) {
-  const root = document.createElement("div");
-  root.className = "part";
-  const sentence = document.createElement("div");
-  sentence.className = "sentence";
-  sentence.setAttribute("role", "alert");
-  const words = document.createElement("p");
-  const close = Object.assign(document.createElement("button"), { textContent: "✕", title: "Close" });
-  close.addEventListener("click", () => model.send_msg({ do: "understood" }));
-  sentence.append(words, close);
-  const line = document.createElement("div");
-  line.className = "line";
-  root.append(sentence, line);
+function entryOf([name, write, meaning], state) {
+  const entry = part(name === "accuracy" ? "button" : "span", {
+    textContent: write(state[name]),
+    title: state[`${name}_hint`] ?? meaning,
+    id: name,
+  });
+  if (name === "accuracy") entry.addEventListener("click", () => window.granchain.cover("accuracy"));
+  return entry;
+}
 
+export function render({ model }) {
+  const words = part("p");
+  const close = button("✕", () => model.send_msg({ do: "understood" }), { title: "Close" });
+  const sentence = part("div", { className: "sentence", role: "alert" }, words, close);
+  const line = part("div", { className: "line" });
   const show = () => {
     const { state } = model;
     words.textContent = state.sentence ?? "";
     sentence.hidden = !state.sentence;
-    line.replaceChildren();
-    const regime = Object.assign(document.createElement("b"), { textContent: state.regime ?? "" });
-    line.append(regime, Object.assign(document.createElement("i"), { className: "grow" }));
-    for (const [name, write, meaning] of ENTRIES) {
-      if (state[name] === undefined || state[name] === "") continue;
-      const entry = Object.assign(document.createElement(name === "accuracy" ? "button" : "span"), {
-        textContent: write(state[name]),
-        title: state[`${name}_hint`] ?? meaning,
-        id: name,
-      });
-      if (name === "accuracy") entry.addEventListener("click", () => window.granchain.cover("accuracy"));
-      line.append(entry);
-    }
+    const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");
+    line.replaceChildren(
+      part("b", { textContent: state.regime ?? "" }),
+      part("i", { className: "grow" }),
+      ...known.map((entry) => entryOf(entry, state)),
+    );
   };
   model.on("state", show);
   show();
-  return root;
+  return part("div", { className: "part" }, sentence, line);
 }

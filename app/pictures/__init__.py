@@ -1,8 +1,8 @@
 """Every picture as a function from a result and a theme to a Bokeh figure: for the page, a file and a notebook.
 
-accuracy, branches, check, curve, diagram, lesson, multipliers, observation, observer, section: one module each, with a
-function of that name. `theme.THEMES` has the themes, `file.page_of` makes a page that needs neither server nor network.
-What a page adds to a figure as a computation goes on comes from functions beside it: `branches.Growth`,
-`diagram.cell_rows`. The dashboard's own resonance curve, which is redrawn while a knob moves, is in
+accuracy, branches, check, curve, diagram, multipliers, naive_forces, observation, observer, section: one module each,
+with a function of that name. `theme.THEMES` has the themes; `file.page_of` makes a page that needs no server and no
+network. What a page adds to a figure as a computation goes on comes from functions beside it: `branches.Growth`,
+`diagram.cell_rows`. The dashboard's own resonance curve is redrawn while a knob moves; it is in
 app/pages/curve/view.py.
 """

@@ -1,4 +1,4 @@
-"""The Accuracy page as a visitor meets it: points appear, a measurement is cancelled, a moved knob greys it."""
+"""The Accuracy page as a visitor meets it: points appear, a measurement is stopped, a moved knob greys it."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def marked(page: Page, name: str) -> int:
 def naive_line(page: Page) -> dict[str, Any]:
     """Length and dash of the naive force that is drawn."""
     return dict(page.evaluate("""() => {
-      const lesson = Bokeh.documents.find((one) => one.get_model_by_name("lesson"));
-      const [certified, naive] = lesson.get_model_by_name("lesson").renderers;
+      const forces = Bokeh.documents.find((one) => one.get_model_by_name("naive forces"));
+      const [certified, naive] = forces.get_model_by_name("naive forces").renderers;
       return { certified: certified.data_source.data.force.length, naive: naive.data_source.data.force.length,
                dash: String(naive.glyph.line_dash.value ?? naive.glyph.line_dash) };
     }"""))
@@ -68,7 +68,7 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     # another accuracy: other words, no new measurement, and nothing is greyed
     type_into(page, "accuracy", "1e-3")
     expect(sheet).to_contain_text("The cheapest way to 1e-3 is")
-    expect(sheet.get_by_role("button", name="cancel")).to_be_hidden()
+    expect(sheet.get_by_role("button", name="stop")).to_be_hidden()
     expect(sheet.locator(".stale")).to_have_count(0)
     rows = sheet.locator("tbody tr")
     expect(rows.filter(has_text="rk4-split")).to_contain_text("two changes of one inner contact")
@@ -86,16 +86,16 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
         expect(tip).to_contain_text(words)
 
 
-def test_a_measurement_is_cancelled_and_its_points_stay(visit: Visit) -> None:
+def test_a_measurement_is_stopped_and_its_points_stay(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     sheet = opened(page)
-    sheet.get_by_role("button", name="cancel").click()
-    expect(sheet).to_contain_text("cancelled", timeout=10_000)
+    sheet.get_by_role("button", name="stop").click()
+    expect(sheet).to_contain_text("stopped", timeout=10_000)
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible()
     count = sum(page.evaluate(POINTS).values())
     page.wait_for_timeout(1500)
     assert sum(page.evaluate(POINTS).values()) == count > 0
-    # the next one begins: the cancelled one, which would take minutes, has really ended
+    # the next one begins: the stopped one, which would take minutes, has really ended
     sheet.get_by_role("button", name="measure again").click()
     expect(sheet).to_contain_text("measuring", timeout=10_000)
 
@@ -113,16 +113,16 @@ def test_a_moved_knob_greys_the_picture_until_it_is_measured_again(visit: Visit)
     sheet.get_by_role("button", name="measure again").click()
     expect(sheet.locator(".stale")).to_have_count(0)
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
-    sheet.get_by_role("button", name="cancel").click()
+    sheet.get_by_role("button", name="stop").click()
 
 
 def test_the_naive_force_is_drawn_over_the_certified_one(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
-    expect(sheet.locator(".lesson canvas").first).to_be_visible()
+    expect(sheet.locator(".naive canvas").first).to_be_visible()
     drawn = naive_line(page)
     assert drawn["certified"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
-    said = sheet.locator(".lesson p")
+    said = sheet.locator(".naive p")
     expect(said).to_contain_text("With 200 steps a period the force is off by")
     first = said.inner_text()
     sheet.get_by_label("its steps in a drive period").select_option("2000")
@@ -134,9 +134,9 @@ def test_steps_that_blow_up_are_told(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     sheet = opened(page)
     sheet.get_by_label("its steps in a drive period").select_option("100")
-    expect(sheet.locator(".lesson p")).to_contain_text("nothing would have been drawn")
+    expect(sheet.locator(".naive p")).to_contain_text("nothing would have been drawn")
     assert naive_line(page)["naive"] == 0
-    sheet.get_by_role("button", name="cancel").click()
+    sheet.get_by_role("button", name="stop").click()
 
 
 def test_its_tab_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
@@ -158,4 +158,4 @@ def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") == size[0]
     box = sheet.locator(".work .picture").bounding_box()
     assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > 200
-    sheet.get_by_role("button", name="cancel").click()
+    sheet.get_by_role("button", name="stop").click()

@@ -49,7 +49,7 @@ def test_a_cost_is_not_there_before_it_was_measured(visit: Visit) -> None:
     page = visit()
     tab = panel(page)
     words = effect(tab, "account").inner_text()
-    assert "not measured yet" in words or "being timed" in words or "compiling" in words
+    assert "not measured yet" in words or "measuring" in words or "compiling" in words
     expect(effect(tab, "account").locator(".cost").first).to_contain_text("ns", timeout=COMPILED)
 
 

@@ -1,4 +1,4 @@
-"""The page "Hard cases" as a visitor meets it: found from its tab, still until asked, run, drawn, cancelled."""
+"""The page "Hard cases" as a visitor meets it: found from its tab, still until asked, run, drawn, stopped."""
 
 from __future__ import annotations
 
@@ -67,15 +67,15 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     expect(page.locator("#tabs")).to_contain_text("1 of 16 cases run")
 
 
-def test_run_all_is_cancelled_at_once(visit: Visit) -> None:
+def test_run_all_is_stopped_at_once(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
     sheet.get_by_role("button", name="run all").click()
-    expect(card(sheet, LONG)).to_contain_text("running", timeout=20_000)
+    expect(card(sheet, LONG)).to_contain_text("computing", timeout=20_000)
     expect(card(sheet, QUICK)).to_contain_text("waiting for its turn …")
-    sheet.get_by_role("button", name="cancel").click()
-    expect(card(sheet, QUICK)).to_contain_text("cancelled", timeout=1500)
-    expect(card(sheet, LONG)).to_contain_text("cancelled")
+    sheet.get_by_role("button", name="stop").click()
+    expect(card(sheet, QUICK)).to_contain_text("stopped", timeout=1500)
+    expect(card(sheet, LONG)).to_contain_text("stopped")
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
 
 

@@ -5,12 +5,26 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from playwright.sync_api import Locator, Page, expect
+from started import until
 
 Visit = Callable[..., Page]
 #: A first visit may have to compile the pair's kernels, on a machine that runs tests.
 COMPILED = 240_000
 #: What the page drew last: period and distance.
 LAST = "granchain.observer?.history.at(-1)"
+
+#: How many pixels of a canvas have the colour of the input force.
+PUSH = """(canvas) => {
+  const of = (drawn, width, height) => drawn.getContext("2d").getImageData(0, 0, width, height).data;
+  const sample = Object.assign(document.createElement("canvas"), { width: 1, height: 1 });
+  sample.getContext("2d").fillStyle = getComputedStyle(canvas).getPropertyValue("--input").trim();
+  sample.getContext("2d").fillRect(0, 0, 1, 1);
+  const [red, green, blue] = of(sample, 1, 1);
+  const data = of(canvas, canvas.width, canvas.height);
+  let count = 0;
+  for (let i = 0; i < data.length; i += 4) count += data[i] === red && data[i + 1] === green && data[i + 2] === blue;
+  return count;
+}"""
 
 
 def drawn(source: str, points: int) -> str:
@@ -38,6 +52,8 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
     page.wait_for_function(f"{LAST}?.[1] > 0.5", timeout=30_000)
     chains = sheet.locator(".chains canvas")
     assert chains.count() == 3
+    # the force pushes the observer: an arrow in its colour, which is there in most of a drive period
+    until(page, lambda: int(chains.nth(2).evaluate(PUSH)) > 30)
     sheet.get_by_role("button", name="0.001").click()
     expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
     page.wait_for_function(drawn("prediction", 2), timeout=30_000)

@@ -142,13 +142,13 @@ def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: 
     until(page, lambda: len(section(page, "way").get("u", ())) + len(section(page, "dots").get("u", ())) > 1000)
     expect(sheet.locator(".evidence")).to_contain_text("Lyapunov exponent")
     sheet.get_by_role("button", name="search").click()
-    expect(sheet.locator(".mine")).to_contain_text("the chain does not follow this orbit", timeout=COMPILED)
+    expect(sheet.locator(".searched")).to_contain_text("the chain does not follow this orbit", timeout=COMPILED)
     expect(sheet.locator(".say")).to_contain_text("Unstable: a disturbance grows 1.57-fold")
     until(page, lambda: marks(page, "outside") == 3)
     until(page, lambda: len(section(page, "unstable orbit")["u"]) == 1)
     sheet.get_by_role("button", name="back to the settled motion").click()
     expect(sheet.locator(".say")).to_contain_text("No multipliers", timeout=20_000)
-    expect(sheet.locator(".mine")).to_be_hidden()
+    expect(sheet.locator(".searched")).to_be_hidden()
 
 
 def test_a_live_run_has_none(visit: Visit) -> None:

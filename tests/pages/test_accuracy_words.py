@@ -11,7 +11,7 @@ import pytest
 from app.format import duration, short_error
 from app.page.active_setting import locate, page_setting
 from app.pages.accuracy.page import measured_for
-from app.pages.accuracy.view import described_reference, described_rows, described_ways, lesson_message
+from app.pages.accuracy.view import described_reference, described_rows, described_ways, naive_message
 from app.pictures.theme import THEMES
 from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, ways
@@ -95,9 +95,9 @@ def test_the_reference_is_told_with_its_agreement() -> None:
     assert "The second reference failed: It was not done." in described_reference(found)["agreement_words"]
 
 
-def test_the_lesson_is_one_array_in_which_failures_have_no_row() -> None:
+def test_the_forces_are_one_array_in_which_failures_have_no_row() -> None:
     found = lesson(scene("rig"), Stop())
-    message = lesson_message(found, THEMES["light"])
+    message = naive_message(found, THEMES["light"])
     rows = message["values"].reshape(-1, message["columns"])
     assert message["values"].dtype == np.float32
     for told, one in zip(message["drawn"], found.drawn, strict=True):

@@ -7,7 +7,7 @@ import pytest
 from bokeh.models import ColumnDataSource
 
 from app.pictures.accuracy import Asked, accuracy, marks, points, styles
-from app.pictures.lesson import lesson, naive_columns
+from app.pictures.naive_forces import naive_columns, naive_forces
 from app.pictures.theme import THEMES
 from granchain_core.accuracy import Row, ways
 
@@ -57,7 +57,7 @@ def test_everything_that_changes_is_found_by_its_name(compact: bool) -> None:
 def test_a_naive_force_is_drawn_with_its_difference_or_not_at_all() -> None:
     time, force = np.arange(3.0), np.array([0.0, 1.0, 2.0])
     np.testing.assert_array_equal(naive_columns(time, force, force + 0.5)["difference"], [0.5] * 3)
-    both = lesson(time, force, None, "ms", "mN", THEMES["light"])
+    both = naive_forces(time, force, None, "ms", "mN", THEMES["light"])
     assert all(len(column) == 0 for column in both.select_one({"name": "naive"}).data.values())
     above, below = both.children
     assert above.x_range is below.x_range and above.yaxis[0].axis_label == "output force (mN)"

@@ -15,10 +15,10 @@ from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
 from ...format import duration, short_error
 from ...page.active_setting import locate, page_setting
-from ...page.activities import IDLE, OFF, RUNNING, Activity
+from ...page.activities import Activity
 from ...page.hooks import Page
 from ...page.host import Host
-from ...page.progress import progress
+from ...page.progress import COMPUTING, OFF, READY, progress
 from ...page.task import Job, Task
 from ...pictures.accuracy import Asked
 from ...serve.queues import MEASUREMENTS
@@ -31,21 +31,21 @@ def measured_for(scene: Scene) -> str:
 
 
 class AccuracyPage(Page):
-    """One measurement at a time; it goes on in the background until it is done, cancelled or the visitor leaves."""
+    """One measurement at a time; it goes on in the background until it is done, is stopped or the visitor leaves."""
 
     def __init__(self, host: Host, view: Accuracy) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._say, "The measurement")
         self._measured = ""
-        self._lesson: Lesson | None = None
+        self._naive: Lesson | None = None
         self._agreement: float | None = None
         self.rows: list[Row] = []
         self.status = "none"
         self.done = 0.0
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "accuracy-open": lambda _: self.open(), "accuracy-measure": lambda _: self._measure(),
-            "accuracy-cancel": lambda _: self.cancel(),
+            "accuracy-stop": lambda _: self.stop(),
         }
 
     @property
@@ -57,7 +57,7 @@ class AccuracyPage(Page):
     def activity(self) -> Activity:
         """Name, state and detail for the list of what is computed now."""
         words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page has not been opened"
-        return "accuracy of all methods", RUNNING if self.running else IDLE if self.rows else OFF, words
+        return "accuracy of all methods", COMPUTING if self.running else READY if self.rows else OFF, words
 
     def changed(self) -> None:
         """Another accuracy is asked for, or the rows are another chain's."""
@@ -77,10 +77,10 @@ class AccuracyPage(Page):
             scene.accuracy, self._agreement, None if best is None else (best.wall_s, best.error),
             None if now is None else (now.wall_s, now.error)), stale=stale, sentence=self._sentence(best))
 
-    def cancel(self) -> None:
+    def stop(self) -> None:
         """Stop; the rows that are there stay."""
         if self._task.cancel():
-            self._say("cancelled")
+            self._say("stopped")
 
     def close(self) -> None:
         """The visitor left."""
@@ -96,7 +96,7 @@ class AccuracyPage(Page):
     def _measure(self) -> None:
         self._task.cancel()
         scene = self._host.session.scene
-        self._measured, self.rows, self._lesson, self.done = measured_for(scene), [], None, 0.0
+        self._measured, self.rows, self._naive, self.done = measured_for(scene), [], None, 0.0
         self._agreement = None
         self._view.forget()
         self._say("waiting")
@@ -114,14 +114,14 @@ class AccuracyPage(Page):
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.later(self._progress, done))
 
-    def _show(self, rows: list[Row], lesson: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
+    def _show(self, rows: list[Row], naive: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
         self.rows = rows
         self._agreement = agreement if math.isfinite(agreement) else None
         with unlocked():
             self._view.measured(rows, reference)
-            if lesson is not None and self._lesson is None:
-                self._lesson = lesson
-                self._view.teach(lesson)
+            if naive is not None and self._naive is None:
+                self._naive = naive
+                self._view.show_naive(naive)
             self.describe()
 
     def _progress(self, done: float) -> None:

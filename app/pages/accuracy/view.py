@@ -14,9 +14,9 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, ways
 
 from ...format import prefixed, short_error
 from ...parts.component import text
-from ...parts.figure_part import FigurePart
+from ...parts.figure_part import FigurePart, page_and_small
 from ...pictures.accuracy import Asked, accuracy, marks, points
-from ...pictures.lesson import lesson
+from ...pictures.naive_forces import naive_forces
 from ...pictures.theme import Theme
 from ...scripts import module
 
@@ -27,8 +27,7 @@ _LOST = 1e-4
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
     """Error against time without points, for the page and, small, for its tab."""
-    return {name: json_item(accuracy([], Asked(1e-6), theme, compact))
-            for name, compact in (("page", False), ("small", True))}
+    return page_and_small(lambda compact: accuracy([], Asked(1e-6), theme, compact))
 
 
 class Accuracy(FigurePart):
@@ -40,13 +39,13 @@ class Accuracy(FigurePart):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, **params)
-        self._lesson: Lesson | None = None
+        self._naive: Lesson | None = None
 
     def dress(self, theme: Theme) -> None:
         """Another theme, for the forces too."""
         super().dress(theme)
-        if self._lesson is not None:
-            self.teach(self._lesson)
+        if self._naive is not None:
+            self.show_naive(self._naive)
 
     def measured(self, rows: list[Row], reference: dict[str, Any]) -> None:
         """The rows measured so far and what is known of the reference."""
@@ -57,16 +56,16 @@ class Accuracy(FigurePart):
         """What is asked, cheapest and used now; `stale` where the rows belong to another chain."""
         self.tell(type="asked", marks=marks(asked, rows), stale=stale, sentence=sentence)
 
-    def teach(self, shown: Lesson) -> None:
+    def show_naive(self, shown: Lesson) -> None:
         """The forces that naive steps would have drawn."""
-        self._lesson = shown
-        self.tell(**lesson_message(shown, self.theme))
+        self._naive = shown
+        self.tell(**naive_message(shown, self.theme))
 
     def forget(self) -> None:
         """Nothing is measured any more."""
-        self._lesson = None
+        self._naive = None
         self.display(rows=[], drawn={}, agreement_words="", reference="", second="")
-        self.tell(type="no-lesson")
+        self.tell(type="no-naive")
 
 
 def described_ways() -> list[dict[str, Any]]:
@@ -97,7 +96,7 @@ def described_reference(found: WorkPrecision) -> dict[str, Any]:
     return {"reference": found.reference, "second": found.second, "agreement_words": words}
 
 
-def lesson_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
+def naive_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
     """The certified and the naive output forces, in one array of rows; a naive one that failed has no row."""
     largest = float(np.abs(shown.force).max())
     factor, letter = prefixed(largest)
@@ -106,8 +105,8 @@ def lesson_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
     rows = np.array([shown.time / seconds, shown.force / factor, *(one.force / factor for one in drawn)],
                     dtype=np.float32)
     return {
-        "type": "lesson", "columns": len(shown.time),
-        "figure": json_item(lesson(rows[0], rows[1], None, f"{unit}s", f"{letter}N", theme)),
+        "type": "naive", "columns": len(shown.time),
+        "figure": json_item(naive_forces(rows[0], rows[1], None, f"{unit}s", f"{letter}N", theme)),
         "drawn": [{"method": one.method, "steps": one.steps, "failure": one.failure,
                    "error": None if one.failure else one.error,
                    "row": -1 if one.failure else 2 + drawn.index(one)} for one in shown.drawn],

@@ -49,7 +49,7 @@ class BranchesPage(Page):
         self._sent = 0.0
         self.status = "none"
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "branches-start": self._start, "branches-cancel": lambda _: self.cancel(),
+            "branches-start": self._start, "branches-stop": lambda _: self.stop(),
             "branches-continue": lambda _: self._continue(), "branches-orbit": self._load_orbit,
             "branches-double": self._double,
         }
@@ -61,10 +61,10 @@ class BranchesPage(Page):
             without_frequency(self._followed[0].branch.axis.scene) != without_frequency(now)
         self._view.display(now=now.f, stale=stale)
 
-    def cancel(self) -> None:
+    def stop(self) -> None:
         """Stop; what has been computed stays and can be continued."""
         if self._task.cancel():
-            self._say("cancelled")
+            self._say("stopped")
 
     def close(self) -> None:
         """The visitor left."""
@@ -157,7 +157,7 @@ class BranchesPage(Page):
                 drawn.special += len(special)
                 self._view.need_figures()
                 self._view.tell(type="orbits", **self._growth.add(number, drawn.branch, points, special))
-            self._say(self.status if self.status in ("cancelled", "done") else "following")
+            self._say(self.status if self.status in ("stopped", "done") else "following")
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status

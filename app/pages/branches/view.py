@@ -6,10 +6,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from bokeh.embed import json_item
-
 from ...parts.component import text
-from ...parts.figure_part import FigurePart
+from ...parts.figure_part import FigurePart, page_and_small
 from ...pictures.branches import branches
 from ...pictures.theme import Theme
 from ...scripts import module
@@ -21,8 +19,7 @@ LONGEST_PERIOD = 8
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
     """The figure without branches, for the page and, small, for its tab."""
-    return {name: json_item(branches([], theme, compact=compact)) for name, compact in (("page", False),
-                                                                                        ("small", True))}
+    return page_and_small(lambda compact: branches([], theme, compact=compact))
 
 
 class Branches(FigurePart):

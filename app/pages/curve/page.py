@@ -13,8 +13,9 @@ from granchain_core.experiment import Measured, stated_features
 from granchain_core.steady.curve import draft_curve
 from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
-from ...page.activities import IDLE, OFF, RUNNING, Activity
+from ...page.activities import Activity
 from ...page.host import Host
+from ...page.progress import COMPUTING, OFF, READY
 from ...page.session import rig_beads, slider_range, without_frequency
 from ...page.task import Task
 from ...serve.compiler import COMPILER
@@ -132,11 +133,11 @@ class Curves:
             if not self._wanted[name]:
                 found.append((title, OFF, "not selected"))
             elif self._computed.get(name) is not None and self._computed.get(name) == self._key:
-                found.append((title, IDLE, "complete"))
+                found.append((title, READY, "all points are computed"))
             elif not self._visible:
                 found.append((title, OFF, "not on the screen"))
             elif name in self._remaining and self.computing:
-                found.append((title, RUNNING, f"{100 * self._done:.0f} % of what is asked for"))
+                found.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
             else:
                 found.append((title, OFF, "waits until the knobs rest, or was stopped"))
         return found

@@ -1,6 +1,16 @@
 // The effects panel: a switch for every effect, its slot in the compiled kernel, what it costs, and what is being computed.
 
-import { part } from "../../parts/dom.js";
+import { paragraph, part } from "../../parts/dom.js";
+
+// The columns of the costs, with their hints.
+const COLUMNS = [
+  ["effect and its slot in the kernel", ""],
+  ["its code", "What its code adds to a plain RK4 step, in which the arithmetic is always the same."],
+  [
+    "in this motion",
+    "How it changes the time of a step of the live method, which splits steps where contacts open or close.",
+  ],
+];
 
 const signed = (value) =>
   `${value < 0 ? "−" : "+"}${Math.abs(value) < 9.95 ? Math.abs(value).toFixed(1) : Math.abs(value).toFixed(0)}`;
@@ -38,25 +48,10 @@ function effectRow(model, effect, slot) {
   return row;
 }
 
-export function effectsTab(model) {
-  const { panel, validity } = model.state;
-  if (!panel) return [];
-  const { step } = panel;
-  const slots = new Map(panel.slots.map((one) => [one.slot, one]));
+// Every effect with its costs, and below them the time of a whole step.
+function costTable(model, { effects, slots, step }) {
+  const slotOf = new Map(slots.map((one) => [one.slot, one]));
   const ns = (value) => (value ? `${value.toFixed(0)} ns` : "–");
-  const head = part(
-    "tr",
-    {},
-    part("th", { textContent: "effect and its slot in the kernel" }),
-    part("th", {
-      textContent: "its code",
-      title: "What its code adds to a plain RK4 step, in which the arithmetic is always the same.",
-    }),
-    part("th", {
-      textContent: "in this motion",
-      title: "How it changes the time of a step of the live method, which splits steps where contacts open or close.",
-    }),
-  );
   const whole = part(
     "tr",
     { className: "whole" },
@@ -64,30 +59,41 @@ export function effectsTab(model) {
     part("td", { textContent: ns(step.rk4) }),
     part("td", { textContent: ns(step["rk4-split"]) }),
   );
-  const rows = panel.effects.map((effect) => effectRow(model, effect, slots.get(effect.slot)));
-  const table = part("table", { className: "costs" }, part("thead", {}, head), part("tbody", {}, ...rows, whole));
+  const rows = effects.map((effect) => effectRow(model, effect, slotOf.get(effect.slot)));
+  const head = COLUMNS.map(([textContent, title]) => part("th", { textContent, title }));
+  return part(
+    "table",
+    { className: "costs" },
+    part("thead", {}, part("tr", {}, ...head)),
+    part("tbody", {}, ...rows, whole),
+  );
+}
+
+function activityRow({ name, state, detail }) {
+  const row = part(
+    "tr",
+    { className: state },
+    part("td", { textContent: name }),
+    part("td", {}, part("b", { textContent: state })),
+    part("td", { className: "soft", textContent: detail }),
+  );
+  row.dataset.activity = name;
+  return row;
+}
+
+export function effectsTab(model) {
+  const { panel, validity } = model.state;
+  if (!panel) return { content: [] };
   const always = panel.slots
     .filter((one) => panel.always.includes(one.slot))
     .map((one) => `${one.title} (${one.type})`)
     .join(", ");
-  const doing = part("table", { className: "doing" });
-  for (const { name, state, detail } of panel.activities) {
-    const row = part(
-      "tr",
-      { className: state },
-      part("td", { textContent: name }),
-      part("td", {}, part("b", { textContent: state })),
-      part("td", { className: "soft", textContent: detail }),
-    );
-    row.dataset.activity = name;
-    doing.append(row);
-  }
-  const paragraph = (text, className) => part("p", { textContent: text, className });
-  return [
-    table,
+  const content = [
+    costTable(model, panel),
     paragraph(`Always compiled in: ${always}. Kernel: ${panel.structure}.`, "soft"),
     part("h3", { textContent: "being computed now" }),
-    doing,
+    part("table", { className: "doing" }, ...panel.activities.map(activityRow)),
     ...(validity ?? []).map((sentence) => paragraph(sentence, "soft")),
   ];
+  return { content };
 }

@@ -13,9 +13,10 @@ from granchain_core.lower import slots_of
 from granchain_core.scene.effects import ALWAYS
 from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
 
-from ...page.activities import IDLE, RUNNING, Activity
+from ...page.activities import Activity
 from ...page.hooks import Page
 from ...page.host import Host
+from ...page.progress import COMPUTING, READY, UNDER_WAY
 from ...page.switches import EFFECTS, present, refusal, variants
 from ...page.task import Job, Task
 from ...parts.component import Component
@@ -46,14 +47,14 @@ class EffectsPanel(Page):
     @property
     def activity(self) -> Activity:
         """Name, state and detail for the list of what is computed now."""
-        return "cost of effects", RUNNING if self.measuring else IDLE, self._progress_words
+        return "cost of effects", COMPUTING if self.measuring else READY, self._progress_words
 
     @property
     def _progress_words(self) -> str:
         if self._compiling:
             return f"compiling a kernel for {EFFECTS[self._compiling].title}"
         if self.measuring:
-            return f"timing {EFFECTS[self.measuring].title}"
+            return f"measuring {EFFECTS[self.measuring].title}"
         possible = sum(variants(name, self._host.session.scene) is not None for name in EFFECTS)
         return f"{len(self._costs)} of {possible} effects measured"
 
@@ -170,7 +171,7 @@ class EffectsPanel(Page):
             "code": _words(costs.get(CODE)), "motion": _words(costs.get(MOTION)),
             "state": refused or self._failed.get(name) or (
                 "compiling its kernel …" if name == self._compiling else
-                "being timed …" if name == self.measuring else
+                UNDER_WAY["measuring"] if name == self.measuring else
                 "not measured yet, waits for the curve" if self._host.curve_computing else "not measured yet"),
         }
 

@@ -1,6 +1,6 @@
 // The page "Hard cases", over the pictures: a card for each case, nothing measured before one asks.
 
-import { part } from "../../parts/dom.js";
+import { button, meter, pageHead, part, table } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
 // Text with its powers, "10^5" and "F^{1/6}", raised.
@@ -8,7 +8,9 @@ const raised = (text) =>
   text
     .split(/(\^\{[^}]+\}|\^-?\d+)/)
     .map((piece) => (piece.startsWith("^") ? part("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
-const PATIENCE = 20; // seconds after which it is told why the first run on a computer lasts
+const PATIENCE = 20; // seconds after which the card says why the first run on a computer takes long
+const ABOUT =
+  "Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and must stay below its bar.";
 
 function rowTable(rows) {
   const body = part("tbody");
@@ -26,19 +28,12 @@ function rowTable(rows) {
       ),
     );
   }
-  const head = part(
-    "tr",
-    {},
-    ...["", "what must hold", "figure", "bar"].map((name) => part("th", { textContent: name })),
-  );
-  return part("table", {}, part("thead", {}, head), body);
+  return table(["", "what must hold", "figure", "bar"], body);
 }
 
 class Card {
   constructor(one, run) {
-    this.run = part("button", { type: "button", textContent: "run" });
-    this.run.setAttribute("aria-label", `run: ${one.name}`);
-    this.run.addEventListener("click", run);
+    this.run = button("run", run, { ariaLabel: `run: ${one.name}` });
     this.status = part("span", { className: "status" });
     this.warning = part("p", { className: "warn", hidden: true });
     this.rows = part("div", { className: "rows" });
@@ -65,7 +60,7 @@ class Card {
 
   show(result) {
     const { status, progress, running: busy, rows, time, failure } = result ?? {};
-    if (status === "running") this.began ??= performance.now();
+    if (status === "computing") this.began ??= performance.now();
     else this.began = null;
     this.told = { status, progress, time };
     this.run.disabled = Boolean(busy);
@@ -83,7 +78,7 @@ class Card {
     const seconds = this.began === null ? 0 : Math.round((performance.now() - this.began) / 1000);
     const first = seconds > PATIENCE ? "; the first run on a computer compiles kernels, which can take minutes" : "";
     this.status.textContent =
-      status === "running" ? `running, ${seconds} s${first} …` : progress || (time ? `took ${time}` : "");
+      status === "computing" ? `${progress} ${seconds} s${first}` : progress || (time ? `took ${time}` : "");
   }
 
   load(message) {
@@ -92,63 +87,50 @@ class Card {
   }
 }
 
-export function render({ model }) {
-  const page = window.granchain;
-  const button = (label, title, act) => {
-    const made = part("button", { type: "button", textContent: label, title });
-    made.addEventListener("click", act);
-    return made;
-  };
-  const all = button(
-    "run all (quick)",
-    `All ${model.state.cases.length} cases with fewer runs; in full: granchain check`,
-    () => model.send_msg({ do: "hard-all" }),
-  );
-  const cancel = button("cancel", "Stop; what was found stays", () => model.send_msg({ do: "hard-cancel" }));
-  const close = button("✕", "Back to the chain", () => page.cover(null));
-  close.className = "close";
-  const meter = part("progress", { max: 1 });
-  meter.setAttribute("aria-label", "progress of the hard cases");
-  const head = part(
-    "div",
-    { className: "head" },
-    part("h2", { textContent: "Hard cases" }),
-    meter,
-    cancel,
-    all,
-    part("span", { className: "grow" }),
-    close,
-  );
-  const said = part("p", { className: "say" });
-  said.setAttribute("aria-live", "polite");
-  const cards = new Map(
-    (model.state.cases ?? []).map((one) => [
-      one.name,
-      new Card(one, () => model.send_msg({ do: "hard-run", case: one.name })),
-    ]),
-  );
-  const list = part("div", { className: "cases" }, ...[...cards.values()].map((card) => card.root));
-  const root = part("div", { className: "part sheet" }, head, said, list);
+class HardCases {
+  constructor(model) {
+    const send = (message) => model.send_msg(message);
+    const { cases = [] } = model.state;
+    const card = (one) => [one.name, new Card(one, () => send({ do: "hard-run", case: one.name }))];
+    this.model = model;
+    this.cards = new Map(cases.map(card));
+    this.all = button("run all (quick)", () => send({ do: "hard-all" }), {
+      title: `All ${cases.length} cases with fewer runs; in full: granchain check`,
+    });
+    this.stop = button("stop", () => send({ do: "hard-stop" }), { title: "What was found stays" });
+    this.meter = meter("progress of the hard cases");
+    this.said = part("p", { className: "say", ariaLive: "polite" });
+    const head = pageHead("Hard cases", this.meter, this.stop, this.all);
+    const list = part("div", { className: "cases" }, ...[...this.cards.values()].map(({ root }) => root));
+    this.root = part("div", { className: "part sheet" }, head, this.said, list);
+  }
 
-  const show = () => {
-    const { results = {}, summary, running, done } = model.state;
-    meter.hidden = cancel.hidden = !running;
-    all.hidden = Boolean(running);
-    meter.value = done ?? 0;
-    said.textContent =
-      summary ||
-      "Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and must stay below its bar.";
-    for (const [name, card] of cards) card.show(results[name]);
-    page.hard = { sentence: summary };
-    page.emit("hard");
-  };
-  setInterval(() => {
-    for (const card of cards.values()) if (card.began !== null) card.tick();
-  }, 1000);
-  model.on("state", show);
-  model.on("msg:custom", (message) => {
-    if (message.type === "picture") cards.get(message.case)?.load(message);
-  });
-  show();
-  return root;
+  show() {
+    const { results = {}, summary, running, done } = this.model.state;
+    this.meter.hidden = this.stop.hidden = !running;
+    this.all.hidden = Boolean(running);
+    this.meter.value = done ?? 0;
+    this.said.textContent = summary || ABOUT;
+    for (const [name, card] of this.cards) card.show(results[name]);
+    window.granchain.hard = { sentence: summary };
+    window.granchain.emit("hard");
+  }
+
+  // Once a second: how long the case under way has been running.
+  tick() {
+    for (const card of this.cards.values()) if (card.began !== null) card.tick();
+  }
+
+  receive(message) {
+    if (message.type === "picture") this.cards.get(message.case)?.load(message);
+  }
+}
+
+export function render({ model }) {
+  const page = new HardCases(model);
+  setInterval(() => page.tick(), 1000);
+  model.on("state", () => page.show());
+  model.on("msg:custom", (message) => page.receive(message));
+  page.show();
+  return page.root;
 }

@@ -9,10 +9,10 @@ from typing import Any
 from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Picture
 
-from ...page.activities import IDLE, OFF, RUNNING, Activity
+from ...page.activities import Activity
 from ...page.hooks import Page
 from ...page.host import Host
-from ...page.progress import progress
+from ...page.progress import COMPUTING, OFF, READY, progress
 from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
 from .view import Hard, described, summary
@@ -34,21 +34,21 @@ class HardPage(Page):
         self.waiting: list[str] = []
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "hard-run": self._run_one, "hard-all": lambda _: self._run(CASES),
-            "hard-cancel": lambda _: self.cancel(),
+            "hard-stop": lambda _: self.stop(),
         }
 
     @property
     def activity(self) -> Activity:
         """Name, state and detail for the list of what is computed now."""
         if self.waiting:
-            return "hard cases", RUNNING, self.waiting[0]
-        return "hard cases", IDLE if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
+            return "hard cases", COMPUTING, self.waiting[0]
+        return "hard cases", READY if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
 
-    def cancel(self) -> None:
+    def stop(self) -> None:
         """Stop the case under way and forget those that wait; what was found stays."""
         self._give_up()
         for name in self.waiting:
-            self._put(name, **progress("hard", "cancelled"))
+            self._put(name, **progress("hard", "stopped"))
         self.waiting = []
         self._show()
 
@@ -91,7 +91,7 @@ class HardPage(Page):
     # In the measuring thread
 
     def _work(self, case: Case, process: CaseProcess, job: Job) -> None:
-        job.later(self._change, case.name, **progress("hard", "running"))
+        job.later(self._change, case.name, **progress("hard", "computing"))
         try:
             answers = process.measure(case, job.stop)
             job.later(self._measured, case.name, next(answers))

@@ -1,148 +1,123 @@
 // The map: regime or largest force over f and A0, coarse first, and all attractors of the present setting.
 
-import { part } from "../../parts/dom.js";
+import { button, meter, paragraph, part } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
+import { attractorList } from "./attractorlist.js";
 import { cellAt, finest, MAP, valuesOf } from "./cells.js";
 
-const swatch = (colour) => {
-  const square = part("i", { className: "swatch" });
-  square.style.background = colour;
-  return square;
-};
+const WORDS = "regime and largest force over drive frequency and amplitude; arrow keys move, Enter chooses";
+const SHOWN = [
+  ["force", "largest force"],
+  ["regime", "regime"],
+];
+const ARROWS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
 
 // Sends the theme of the page, whose colours the figure has; set while the tab is open.
 let sendTheme = () => {};
 window.granchain.on("theme", () => sendTheme());
 
-export function mapTab(model) {
-  sendTheme = () => model.send_msg({ do: "map-theme", value: window.granchain.theme() });
-  const button = (text, action, properties = {}) => {
-    const element = part("button", { type: "button", textContent: text, ...properties });
-    element.addEventListener("click", action);
-    return element;
-  };
-  const send = (name, more = {}) => model.send_msg({ do: name, ...more });
-  const choices = [
-    ["force", "largest force"],
-    ["regime", "regime"],
-  ].map(([name, title]) =>
-    button(
-      title,
-      () => {
-        MAP.shown = name;
-        redraw();
-      },
-      { value: name },
-    ),
-  );
-  const status = part("span", { className: "soft" }),
-    meter = part("progress", { max: 1 });
-  meter.setAttribute("aria-label", "progress of the map");
-  const stop = button("stop", () => send("map-stop")),
-    again = button("go on", () => send("map-compute"));
-  const host = part("div", { className: "maphost", tabIndex: 0 }),
-    said = part("p", { className: "soft told" });
-  const WORDS = "regime and largest force over drive frequency and amplitude; arrow keys move, Enter chooses";
-  const find = button("all attractors at this setting", () => send("map-attractors")),
-    found = part("div");
-  let cursor = null;
+const within = (value, count) => Math.max(0, Math.min(count - 1, value));
 
-  const pick = (row) => {
+class MapTab {
+  constructor(model) {
+    this.send = (name, more = {}) => model.send_msg({ do: name, ...more });
+    this.cursor = null; // row and column of the cell that the arrow keys have chosen
+    this.choices = SHOWN.map(([name, title]) => button(title, () => this.choose(name), { value: name }));
+    this.meter = meter("progress of the map");
+    this.stop = button("stop", () => this.send("map-stop"));
+    this.again = button("continue", () => this.send("map-compute"));
+    this.status = part("span", { className: "soft" });
+    this.said = paragraph("", "soft told");
+    this.host = part("div", { className: "maphost", tabIndex: 0 });
+    this.host.addEventListener("keydown", (event) => this.key(event));
+    this.host.addEventListener("blur", () => this.moveCursor(null));
+    this.found = part("div");
+    this.figure = new Embedded(this.host, (one) => this.fill(one));
+    const segments = part("span", { className: "segments" }, ...this.choices);
+    const find = button("all attractors at this setting", () => this.send("map-attractors"));
+    this.content = [
+      part("div", { className: "row top" }, segments, this.meter, this.stop, this.again, this.status),
+      part("div", { className: "mapbox" }, this.host),
+      this.said,
+      part("div", { className: "row" }, find),
+      this.found,
+    ];
+  }
+
+  // Force or regime.
+  choose(name) {
+    MAP.shown = name;
+    this.redraw();
+  }
+
+  // Turns the knobs to the values of a cell.
+  pick(row) {
     if (row < 0) return;
-    said.textContent = MAP.cells.rows.cells.tooltip[row];
-    send("map-choose", valuesOf(row));
-  };
-  const figure = new Embedded(host, (one) => {
-    MAP.cells.fill(one);
-    one.taps(["cells"], (_, row) => pick(row), finest);
-    dress();
-  });
-  MAP.figure = figure;
-  // Which colours, where the page is now, and the cell of the arrow keys.
-  const dress = () => {
-    fillModels(figure, MAP.head?.shown[MAP.shown]);
-    figure.set("now", { data: MAP.now });
-    const row = cursor ? cellAt(cursor.i, cursor.j) : -1;
-    const edge = (name) => (row < 0 ? [] : [MAP.cells.rows.cells[name][row]]);
-    const data = { left: edge("left"), right: edge("right"), bottom: edge("bottom"), top: edge("top") };
-    figure.set("cursor", { data });
-    if (row >= 0) said.textContent = MAP.cells.rows.cells.tooltip[row];
-  };
-  host.addEventListener("keydown", (event) => {
-    const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] }[event.key];
+    this.said.textContent = MAP.cells.rows.cells.tooltip[row];
+    this.send("map-choose", valuesOf(row));
+  }
+
+  key(event) {
+    const step = ARROWS[event.key];
     if (!MAP.head || !(step || event.key === "Enter")) return;
     event.preventDefault();
     const { x, y } = MAP.head;
-    cursor ??= { i: Math.floor(y.length / 2), j: Math.floor(x.length / 2) };
-    if (!step) return pick(cellAt(cursor.i, cursor.j));
-    cursor = {
-      i: Math.max(0, Math.min(y.length - 1, cursor.i + step[0])),
-      j: Math.max(0, Math.min(x.length - 1, cursor.j + step[1])),
-    };
-    dress();
-  });
-  host.addEventListener("blur", () => {
-    cursor = null;
-    dress();
-  });
+    this.cursor ??= { i: Math.floor(y.length / 2), j: Math.floor(x.length / 2) };
+    const { i, j } = this.cursor;
+    if (step) this.moveCursor({ i: within(i + step[0], y.length), j: within(j + step[1], x.length) });
+    else this.pick(cellAt(i, j));
+  }
 
-  const listed = () => {
-    if (MAP.search !== "") {
-      const words = MAP.searched;
-      found.replaceChildren(...(words ? [part("p", { className: "soft", textContent: words })] : []));
-      return;
-    }
-    const body = part("tbody");
-    MAP.attractors.forEach((one, number) => {
-      const row = part(
-        "tr",
-        {},
-        part("td", {}, swatch(one.colour)),
-        part("td", {}, one.words, part("small", { textContent: one.force })),
-        part("td", {
-          className: "number",
-          textContent: one.share_words,
-          title: `${one.starts} of all starts lead here`,
-        }),
-        part("td", { className: "soft", textContent: one.from.join(", ") }),
-        part(
-          "td",
-          {},
-          button("show", () => send("map-load", { number })),
-        ),
-      );
-      body.append(row);
-    });
-    const head = part(
-      "tr",
-      {},
-      ...["", "attractor", "share of random states", "also from", ""].map((textContent) => part("th", { textContent })),
-    );
-    found.replaceChildren(part("table", { className: "attractors" }, part("thead", {}, head), body));
-  };
-  const redraw = (what) => {
-    for (const choice of choices) choice.setAttribute("aria-pressed", String(choice.value === MAP.shown));
-    status.textContent = MAP.stale ? "the knobs have moved …" : MAP.words;
-    meter.hidden = stop.hidden = !MAP.running;
-    again.hidden = MAP.status !== "cancelled";
-    meter.value = MAP.done;
-    host.classList.toggle("stale", MAP.stale);
-    host.dataset.done = MAP.stale ? 0 : MAP.done;
-    if (what === undefined || what === "map-attractors") listed();
-    if (what !== "map-cells") dress();
-    if (MAP.head && host.isConnected) figure.load(MAP.head.figure, WORDS);
-  };
+  moveCursor(cursor) {
+    this.cursor = cursor;
+    this.dress();
+  }
+
+  fill(figure) {
+    MAP.cells.fill(figure);
+    figure.taps(["cells"], (_, row) => this.pick(row), finest);
+    this.dress();
+  }
+
+  // Which colours, where the page is now, and the cell of the arrow keys.
+  dress() {
+    fillModels(this.figure, MAP.head?.shown[MAP.shown]);
+    this.figure.set("now", { data: MAP.now });
+    const row = this.cursor ? cellAt(this.cursor.i, this.cursor.j) : -1;
+    const edge = (name) => (row < 0 ? [] : [MAP.cells.rows.cells[name][row]]);
+    const data = { left: edge("left"), right: edge("right"), bottom: edge("bottom"), top: edge("top") };
+    this.figure.set("cursor", { data });
+    if (row >= 0) this.said.textContent = MAP.cells.rows.cells.tooltip[row];
+  }
+
+  // `what` is the type of the message that has come; without it everything is drawn again.
+  redraw(what) {
+    for (const choice of this.choices) choice.ariaPressed = String(choice.value === MAP.shown);
+    this.showProgress();
+    if (what === undefined || what === "map-attractors")
+      this.found.replaceChildren(...attractorList((number) => this.send("map-load", { number })));
+    if (what !== "map-cells") this.dress();
+    if (MAP.head && this.host.isConnected) this.figure.load(MAP.head.figure, WORDS);
+  }
+
+  showProgress() {
+    this.status.textContent = MAP.stale ? "the knobs have moved …" : MAP.words;
+    this.meter.hidden = this.stop.hidden = !MAP.running;
+    this.again.hidden = MAP.status !== "stopped";
+    this.meter.value = MAP.done;
+    this.host.classList.toggle("stale", MAP.stale);
+    this.host.dataset.done = MAP.stale ? 0 : MAP.done;
+  }
+}
+
+export function mapTab(model) {
+  const tab = new MapTab(model);
+  MAP.figure = tab.figure;
   MAP.redraw = (what) => {
-    if (host.isConnected) redraw(what);
+    if (tab.host.isConnected) tab.redraw(what);
   };
+  sendTheme = () => tab.send("map-theme", { value: window.granchain.theme() });
   sendTheme();
-  requestAnimationFrame(() => redraw());
-  const segments = part("span", { className: "segments" }, ...choices);
-  return [
-    part("div", { className: "row top" }, segments, meter, stop, again, status),
-    part("div", { className: "mapbox" }, host),
-    said,
-    part("div", { className: "row" }, find),
-    found,
-  ];
+  requestAnimationFrame(() => tab.redraw());
+  return { content: tab.content };
 }

@@ -62,7 +62,7 @@ class MapTab(Page):
         self._found_at = ""
         self.status = "none"
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "map-visible": self._set_visible, "map-theme": self._dress, "map-stop": lambda _: self._cancel(),
+            "map-visible": self._set_visible, "map-theme": self._dress, "map-stop": lambda _: self._stop(),
             "map-compute": lambda _: self._begin(), "map-choose": self._choose,
             "map-attractors": lambda _: self._find(), "map-load": self._load,
         }
@@ -92,11 +92,11 @@ class MapTab(Page):
     def _set_visible(self, message: dict[str, Any]) -> None:
         self._visible = bool(message.get("value"))
         if not self._visible:
-            self._cancel()
+            self._stop()
             return
         if self._grid is not None and not self._stale():
             self._send_all()
-            if self.status == "cancelled":
+            if self.status == "stopped":
                 self._begin()
         else:
             self._begin()
@@ -132,12 +132,12 @@ class MapTab(Page):
         """Nothing more of this diagram is computed; says whether something was."""
         if not self._diagram.cancel():
             return False
-        self.status = "cancelled"
+        self.status = "stopped"
         return True
 
-    def _cancel(self) -> None:
+    def _stop(self) -> None:
         if self._give_up():
-            self._say("cancelled")
+            self._say("stopped")
 
     def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
         """In a thread of its own; a moving knob holds it up."""

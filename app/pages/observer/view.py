@@ -7,14 +7,13 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from bokeh.embed import json_item
 
 from granchain_core import Scene
 
 from ...format import prefixed
 from ...parts.chain import PALETTE
 from ...parts.component import text
-from ...parts.figure_part import FigurePart
+from ...parts.figure_part import FigurePart, page_and_small
 from ...pictures.observer import observer, prediction
 from ...pictures.theme import Theme
 from ...scripts import module
@@ -27,8 +26,7 @@ _TRANSIENT = 2
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
     """The distance over time without its points, for the page and, small, for its tab."""
-    return {name: json_item(observer([], [], [], theme, compact))
-            for name, compact in (("page", False), ("small", True))}
+    return page_and_small(lambda compact: observer([], [], [], theme, compact))
 
 
 class Observer(FigurePart):

@@ -1,6 +1,7 @@
 // One Floquet mode as a motion of the chain: where a small disturbance of the orbit moves every bead.
 
 import { ChainDrawing } from "../../parts/chaindrawing.js";
+import { part } from "../../parts/dom.js";
 import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
 
 class DisturbedChain extends ChainDrawing {
@@ -14,12 +15,12 @@ class DisturbedChain extends ChainDrawing {
 
   contact() {}
 
-  bead(x, y, radius, part) {
+  bead(x, y, radius, share) {
     const { context: g, ink } = this;
     g.beginPath();
     g.arc(x, y, radius, 0, 2 * Math.PI);
     g.fillStyle = ink.steel;
-    g.globalAlpha = 0.35 + 0.65 * Math.min(1, part);
+    g.globalAlpha = 0.35 + 0.65 * Math.min(1, share);
     g.fill();
     g.globalAlpha = 1;
     g.lineWidth = 1.5 * ink.bold;
@@ -45,11 +46,33 @@ class DisturbedChain extends ChainDrawing {
 }
 
 export class ModeView {
-  constructor(canvas, host) {
-    this.drawing = new DisturbedChain(canvas);
-    this.canvas = canvas;
-    this.host = host;
+  constructor() {
     this.mode = null;
+    this.canvas = part("canvas");
+    this.drawing = new DisturbedChain(this.canvas);
+    this.host = part("div", { className: "picture" });
+    this.hosts = [this.canvas, this.host]; // what is drawn anew when its size changes
+    this.title = part("h3");
+    this.told = part("span", { className: "soft" });
+    this.root = part(
+      "section",
+      { className: "motion" },
+      part("div", { className: "row" }, this.title),
+      part("div", { className: "beads" }, this.canvas),
+      part("div", { className: "draw" }, this.host),
+      this.told,
+    );
+  }
+
+  // Which disturbance it is; `rank` is that of the chosen multiplier, 0 the largest.
+  showTitle(rank) {
+    const leading = this.mode?.size < 1 ? "the slowest to die out" : "the fastest to grow";
+    this.title.textContent = this.mode ? (rank ? "the chosen disturbance" : leading) : "";
+    this.told.textContent = this.mode ? "exaggerated; starts again with every period of the orbit" : "";
+  }
+
+  readTheme() {
+    this.drawing.readTheme();
   }
 
   load(message) {
@@ -99,11 +122,11 @@ export class ModeView {
       angle = orbits * Math.atan2(turn_im, turn_re);
     const row = (phase / period - orbits) * (rows - 1),
       a = Math.min(rows - 2, Math.floor(row)),
-      part = row - a;
+      after = row - a;
     const c = Math.cos(angle),
       s = Math.sin(angle);
     for (let i = 0; i < beads; i++) {
-      this.frames.displacement[i] = (1 - part) * this.at(a, i, c, s) + part * this.at(a + 1, i, c, s);
+      this.frames.displacement[i] = (1 - after) * this.at(a, i, c, s) + after * this.at(a + 1, i, c, s);
       this.frames.energy[i] = Math.abs(this.frames.displacement[i]);
     }
     this.drawing.draw(this.frames, 0);

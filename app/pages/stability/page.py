@@ -14,11 +14,11 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
-from ...page.activities import IDLE, OFF, RUNNING, Activity
+from ...page.activities import Activity
 from ...page.hooks import Page
 from ...page.host import Host
 from ...page.message_checks import whole
-from ...page.progress import progress
+from ...page.progress import COMPUTING, OFF, READY, progress
 from ...page.task import Job, Task
 from ...pictures.multipliers import plane_state
 from ...serve.delays import ANALYSIS_QUIET
@@ -72,8 +72,8 @@ class StabilityPage(Page):
         words = {"compiling": "compiling the tangent flow", "computing": "multipliers, mode and section",
                  "searching": "Newton's method for an unstable orbit"}
         if self.status in words:
-            return "stability", RUNNING, words[self.status]
-        return "stability", IDLE if self._analysed is not None else OFF, "follows the settled picture"
+            return "stability", COMPUTING, words[self.status]
+        return "stability", READY if self._analysed is not None else OFF, "follows the settled picture"
 
     # The picture in front
 

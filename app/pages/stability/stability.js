@@ -1,8 +1,9 @@
 // The Stability page, over the pictures: does a disturbance die out, which way does it leave, and how one knows.
 
-import { part } from "../../parts/dom.js";
-import { Embedded, fillModels } from "../../parts/embedded.js";
+import { pageHead, part } from "../../parts/dom.js";
 import { ModeView } from "./mode.js";
+import { MultiplierPlane } from "./multiplierplane.js";
+import { OrbitSearch } from "./orbitsearch.js";
 import { SectionView } from "./sectionview.js";
 
 function evidenceTable(rows) {
@@ -19,189 +20,123 @@ function evidenceTable(rows) {
   return part("table", { className: "evidence" }, body);
 }
 
-function searchRow(send, longest) {
-  const period = part("input", {
-    type: "number",
-    min: 1,
-    max: longest,
-    value: 1,
-    title: "period of the orbit in drive periods",
-  });
-  period.setAttribute("aria-label", "period of the orbit that is searched");
-  const find = part("button", {
-    type: "button",
-    textContent: "search",
-    title: "Newton's method from the present state, the middle of the section and its close returns",
-  });
-  find.addEventListener("click", () => send({ do: "stability-search", value: Number(period.value) }));
-  const back = part("button", { type: "button", className: "back" });
-  back.addEventListener("click", () => send({ do: "stability-back" }));
-  const said = part("span", { className: "soft" });
-  const root = part(
-    "div",
-    { className: "search row" },
-    part("label", {}, "search for an unstable orbit nearby, of period ", period),
-    find,
-    back,
-    said,
-  );
-  const show = ({ status, searched, failure }) => {
-    find.disabled = status === "searching" || status === "compiling";
-    back.hidden = !(status === "searching" || searched);
-    back.textContent = status === "searching" ? "cancel" : "back to the settled motion";
-    said.textContent = failure ?? "";
+class StabilityPage {
+  constructor(model) {
+    const send = (message) => model.send_msg(message);
+    this.model = model;
+    this.status = part("span", { className: "status" });
+    this.said = part("b");
+    this.searched = part("span", { className: "searched" });
+    this.plane = new MultiplierPlane(model, send);
+    this.mode = new ModeView();
+    this.section = new SectionView(send, model.state.phases);
+    this.search = new OrbitSearch(send, model.state.longest_period);
+    this.evidence = part("div", { className: "table" });
+    this.root = part(
+      "div",
+      { className: "part sheet" },
+      pageHead("Stability", this.status),
+      part("div", { className: "say" }, this.searched, this.said),
+      this.plane.root,
+      this.mode.root,
+      this.section.root,
+      this.evidence,
+      this.search.root,
+    );
+  }
+
+  show() {
+    const { state, figures } = this.model;
+    window.granchain.stability = { state, small: figures.small };
+    this.root.classList.toggle("stale", Boolean(state.stale));
+    this.status.textContent = state.progress ?? "";
+    this.said.textContent = state.sentence ?? "";
+    this.searched.textContent = state.searched ? "Found by search; the chain does not follow this orbit." : "";
+    this.searched.hidden = !state.searched;
+    this.plane.show();
+    this.section.choose(state.beads ?? 1);
+    this.search.show(state);
+    this.evidence.replaceChildren(evidenceTable(state.evidence ?? []));
+    this.redraw();
+  }
+
+  redraw() {
+    const page = window.granchain;
+    if (page.covered === "stability") {
+      this.plane.draw();
+      this.section.draw(this.model.state, this.model.figures.section);
+      this.mode.measure();
+    }
+    page.emit("stability");
+  }
+
+  receive(message) {
+    if (message.type === "mode") this.mode.load(message);
+    else if (message.type === "no-mode") this.mode.forget();
+    else this.section.load(message.type === "section" ? message : null);
+    this.mode.showTitle(this.model.state.rank);
+    this.root.classList.toggle("irregular", !this.mode.mode);
+    if (window.granchain.covered === "stability") this.redraw();
+  }
+
+  themeChanged() {
+    this.mode.readTheme();
+    this.redraw();
+  }
+
+  open() {
+    this.redraw();
+    this.loop();
+  }
+
+  // The chosen disturbance moves while the page is open.
+  loop() {
+    const { covered, phase } = window.granchain;
+    if (covered !== "stability") return;
+    this.mode.draw(phase ?? 0);
+    requestAnimationFrame(() => this.loop());
+  }
+}
+
+// Tells the server whether somebody looks at the page or its tab; nothing is computed while nobody does.
+function watchVisibility(tell) {
+  const page = window.granchain;
+  let tab = "",
+    tabsSeen = true,
+    told = false;
+  const check = () => {
+    const inTab = tab === "stability" && !page.covered && tabsSeen;
+    const visible = !document.hidden && (page.covered === "stability" || inTab);
+    if (visible === told) return;
+    told = visible;
+    tell(visible);
   };
-  return { root, show };
+  document.addEventListener("visibilitychange", check);
+  new IntersectionObserver(([entry]) => {
+    tabsSeen = entry.isIntersecting;
+    check();
+  }).observe(document.getElementById("tabs"));
+  page.on("cover", check);
+  page.on("tab", (name) => {
+    tab = name;
+    check();
+  });
 }
 
 export function render({ model }) {
-  const page = window.granchain;
-  const send = (message) => model.send_msg(message);
-  const status = part("span", { className: "status" });
-  const watch = part("input", { type: "checkbox" });
-  watch.addEventListener("change", () => send({ do: "stability-observer", value: watch.checked }));
-  const close = part("button", { type: "button", textContent: "✕", title: "Back to the chain", className: "close" });
-  close.addEventListener("click", () => page.cover(null));
-  const head = part(
-    "div",
-    { className: "head" },
-    part("h2", { textContent: "Stability" }),
-    status,
-    part("span", { className: "grow" }),
-    close,
-  );
-  const said = part("b"),
-    mine = part("span", { className: "mine" });
-  const say = part("div", { className: "say" }, mine, said);
-  const circle = part("div", { className: "picture", tabIndex: 0 }),
-    told = part("span", { className: "soft told" });
-  circle.title = "the arrow keys choose another multiplier";
-  const figure = new Embedded(circle, (one) => {
-    fillModels(one, model.state.plane);
-    one.taps(["within", "outside"], (name, row) => choose(model.state.plane[name].data.rank[row]));
+  const page = new StabilityPage(model);
+  watchVisibility((value) => model.send_msg({ do: "stability-visible", value }));
+  model.on("state", () => page.show());
+  model.on("figures", () => page.show());
+  model.on("msg:custom", (message) => page.receive(message));
+  window.granchain.on("cover", (name) => {
+    if (name === "stability") requestAnimationFrame(() => page.open());
   });
-  const plane = part(
-    "section",
-    { className: "plane" },
-    part(
-      "div",
-      { className: "row" },
-      part("h3", { textContent: "multipliers" }),
-      part(
-        "label",
-        { className: "watch", title: "the observer: a second chain pushed by this one's input force" },
-        watch,
-        "observer",
-      ),
-    ),
-    part("div", { className: "draw" }, circle),
-    told,
-  );
-  const canvas = part("canvas"),
-    wiggles = part("div", { className: "picture" }),
-    turn = part("span", { className: "soft" });
-  const mode = new ModeView(canvas, wiggles);
-  const motion = part(
-    "section",
-    { className: "motion" },
-    part("div", { className: "row" }, part("h3")),
-    part("div", { className: "beads" }, canvas),
-    part("div", { className: "draw" }, wiggles),
-    turn,
-  );
-  const section = new SectionView(send, model.state.phases),
-    search = searchRow(send, model.state.longest_period);
-  const table = part("div", { className: "table" });
-  const root = part("div", { className: "part sheet" }, head, say, plane, motion, section.root, table, search.root);
-
-  const choose = (rank) => send({ do: "stability-mode", value: rank });
-  circle.addEventListener("keydown", ({ key }) => {
-    const rank = (model.state.rank ?? 0) + ({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0);
-    if (rank !== (model.state.rank ?? 0) && rank >= 0 && rank < model.state.count) choose(rank);
-  });
-  const redraw = () => {
-    if (page.covered === "stability") {
-      figure.load(model.figures.plane, "multipliers in the complex plane with the unit circle");
-      section.draw(model.state, model.figures.section);
-      mode.measure();
-    }
-    page.emit("stability", page.stability);
-  };
-  const show = () => {
-    const { state } = model;
-    page.stability = { state, small: model.figures.small };
-    fillModels(figure, state.plane);
-    told.textContent = state.told ?? "";
-    root.classList.toggle("stale", Boolean(state.stale));
-    status.textContent = state.progress ?? "";
-    said.textContent = state.sentence ?? "";
-    mine.textContent = state.searched ? "Found by search; the chain does not follow this orbit." : "";
-    mine.hidden = !mine.textContent;
-    watch.checked = Boolean(state.observer);
-    section.choose(state.beads ?? 1);
-    search.show(state);
-    table.replaceChildren(evidenceTable(state.evidence ?? []));
-    redraw();
-  };
-  const titles = () => {
-    const named = model.state.rank
-      ? "the chosen disturbance"
-      : mode.mode?.size < 1
-        ? "the slowest to die out"
-        : "the fastest to grow";
-    motion.querySelector("h3").textContent = mode.mode ? named : "";
-    root.classList.toggle("irregular", !mode.mode);
-    turn.textContent = mode.mode ? "exaggerated; starts again with every period of the orbit" : "";
-  };
-  let tab = "",
-    seen = true,
-    watched = false;
-  const looking = () => {
-    const visible =
-      !document.hidden && (page.covered === "stability" || (tab === "stability" && !page.covered && seen));
-    if (visible === watched) return;
-    watched = visible;
-    send({ do: "stability-visible", value: visible });
-  };
-  const loop = () => {
-    if (page.covered !== "stability") return;
-    mode.draw(page.phase ?? 0);
-    requestAnimationFrame(loop);
-  };
-  model.on("state", show);
-  model.on("msg:custom", (message) => {
-    if (message.type === "mode") mode.load(message);
-    else if (message.type === "no-mode") mode.forget();
-    else section.load(message.type === "section" ? message : null);
-    titles();
-    if (page.covered === "stability") redraw();
-  });
-  page.on("tab", (name) => {
-    tab = name;
-    looking();
-  });
-  page.on("cover", (name) => {
-    looking();
-    if (name === "stability")
-      requestAnimationFrame(() => {
-        redraw();
-        loop();
-      });
-  });
-  model.on("figures", show);
-  page.on("theme", () => {
-    mode.drawing.readTheme();
-    redraw();
-  });
-  document.addEventListener("visibilitychange", looking);
-  new IntersectionObserver(([entry]) => {
-    seen = entry.isIntersecting;
-    looking();
-  }).observe(document.getElementById("tabs"));
+  window.granchain.on("theme", () => page.themeChanged());
   const sized = new ResizeObserver(() => {
-    if (page.covered === "stability") redraw();
+    if (window.granchain.covered === "stability") page.redraw();
   });
-  for (const host of [canvas, wiggles]) sized.observe(host);
-  show();
-  return root;
+  for (const host of page.mode.hosts) sized.observe(host);
+  page.show();
+  return page.root;
 }

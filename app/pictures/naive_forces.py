@@ -11,15 +11,15 @@ from bokeh.models import Column, ColumnDataSource, HoverTool
 from .theme import Theme, dress, frame, in_theme
 
 
-def lesson(time: np.ndarray, certified: np.ndarray, naive: np.ndarray | None, time_unit: str, unit: str,
-           theme: Theme) -> Column:
+def naive_forces(time: np.ndarray, certified: np.ndarray, naive: np.ndarray | None, time_unit: str, unit: str,
+                 theme: Theme) -> Column:
     """Two figures over one time axis: both forces, and their difference, each on an axis of its own.
 
     The sources are named "certified" and "naive", so that a page can show the force of other steps.
     """
     sure = ColumnDataSource({"time": time, "force": certified, "nothing": np.zeros_like(time)}, name="certified")
     drawn = ColumnDataSource(naive_columns(time, certified, naive), name="naive")
-    above = frame(name="lesson", min_border=2, toolbar_location="right")
+    above = frame(name="naive forces", min_border=2, toolbar_location="right")
     below = frame(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=130,
                   sizing_mode="stretch_width")
     # without it the axis would have no range where the naive force could not be computed

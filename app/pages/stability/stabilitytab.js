@@ -1,15 +1,13 @@
 // The Stability tab: the unit circle and the sentence; it draws what the Stability page holds.
 
-import { part } from "../../parts/dom.js";
+import { openButton, paragraph, part } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
 
 export function stabilityTab() {
   const page = window.granchain;
-  const host = part("div", { className: "circle" }),
-    said = part("p", { className: "verdict" }),
-    more = part("p", { className: "soft" });
-  const open = part("button", { textContent: "open the page", type: "button", className: "open" });
-  open.addEventListener("click", () => page.cover("stability"));
+  const host = part("div", { className: "circle" });
+  const said = paragraph("", "verdict");
+  const more = paragraph("", "soft");
   const figure = new Embedded(host, (one) => fillModels(one, page.stability?.state.plane));
   const show = () => {
     const { state = {}, small } = page.stability ?? {};
@@ -21,5 +19,6 @@ export function stabilityTab() {
     else fillModels(figure, state.plane);
   };
   requestAnimationFrame(show);
-  return { show, content: [part("div", { className: "beside" }, host, part("div", {}, said, more, open))] };
+  const words = part("div", {}, said, more, openButton("stability"));
+  return { content: [part("div", { className: "beside" }, host, words)], show };
 }

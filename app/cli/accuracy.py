@@ -1,0 +1,77 @@
+"""`granchain accuracy`: what accuracy costs, as error against time for every method."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from dataclasses import asdict
+from typing import Any
+
+from .common import chosen_scene, finite_or_null, in_background, show_json, show_percent
+from .options import add_json, add_scene
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """A scene whose accuracy is measured."""
+    add_scene(parser)
+    add_json(parser)
+    add_picture(parser)
+
+
+def accuracy(arguments: argparse.Namespace) -> None:
+    """Error against time for every method."""
+    from granchain_core.accuracy import work_precision
+
+    check_picture(arguments.picture)
+    chosen = chosen_scene(arguments)
+    progress = show_percent if sys.stderr.isatty() else None
+    found = in_background(lambda stop: work_precision(chosen, stop, progress))
+    write_picture(arguments.picture, f"What accuracy costs for {chosen.name}",
+                  lambda theme: _drawn(found, chosen.accuracy, theme))
+    if arguments.json:
+        show_json(_accuracy_json(found))
+    else:
+        _show_accuracy(found)
+
+
+def _accuracy_json(found: Any) -> dict[str, Any]:
+    """The measurement as one JSON object; "naive" is what plain steps in (u, v) make of the output force."""
+    naive = [{"method": one.method, "steps_per_period": one.steps, "output_force_error": finite_or_null(one.error),
+              "failure": one.failure} for one in found.lesson.drawn]
+    return {
+        "reference": {"method": found.reference, "agreement": finite_or_null(found.agreement),
+                      "second": found.second, "disagreement": found.disagreement},
+        "rows": [{**asdict(row), "error": finite_or_null(row.error)} for row in found.rows],
+        "naive": naive,
+    }
+
+
+def _show_accuracy(found: Any) -> None:
+    """The measurement as a table, with the cheapest ways to three accuracies and the naive forces below it."""
+    print(f"reference: {found.reference}")
+    print(f"second reference: {found.second}: " + (found.disagreement or f"agrees to {found.agreement:.1e}"))
+    print("method          setting                   error     time_ms  evaluations")
+    for row in found.rows:
+        if row.failure:
+            print(f"{row.method:14}  {row.setting:22}  failed: {row.failure}")
+            continue
+        print(f"{row.method:14}  {row.setting:22}  {row.error:8.1e}  {1e3 * row.wall_s:8.2f}  {row.rhs:11d}")
+    for error in (1e-3, 1e-6, 1e-9):
+        best = found.cheapest(error)
+        if best is not None:
+            print(f"the cheapest way to {error:g} is {best.method}, {best.setting}: {1e3 * best.wall_s:.2f} ms")
+    for one in found.lesson.drawn if found.lesson else ():
+        drawn = one.failure or f"off by {100 * one.error:.2g} % of the largest"
+        print(f"output force by {one.method} with {one.steps} steps a period: {drawn}")
+
+
+def _drawn(found: Any, asked: float, theme: Any) -> Any:
+    from app.pictures.accuracy import Asked
+    from app.pictures.accuracy import accuracy as drawn
+
+    best = found.cheapest(asked)
+    cheapest = None if best is None else (best.wall_s, best.error)
+    return drawn(found.rows, Asked(asked, found.agreement if math.isfinite(found.agreement) else None, cheapest), theme)

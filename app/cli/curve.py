@@ -1,0 +1,91 @@
+"""`granchain curve`: largest forces over the drive frequency."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from typing import Any
+
+from granchain_core import BadInput
+
+from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent
+from .options import add_result
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The frequencies of a curve and how it is swept."""
+    add_result(parser)
+    parser.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
+    parser.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
+    parser.add_argument("--points", type=int, required=True, metavar="n")
+    parser.add_argument("--start", default="rest", metavar="rest|up|down")
+    add_picture(parser)
+
+
+def curve(arguments: argparse.Namespace) -> None:
+    """The resonance curve of a scene."""
+    import numpy as np
+
+    from granchain_core.steady.curve import MOST_POINTS, resonance_curve
+    from granchain_core.store import check_writable, save_curve
+
+    chosen = chosen_scene(arguments)
+    check_picture(arguments.picture)
+    if arguments.out:
+        check_writable(arguments.out)
+    check_points(arguments.points, 1, MOST_POINTS)
+    low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
+    if low > high:
+        raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
+    done = [0]
+
+    def count(point: Any) -> None:
+        done[0] += 1
+        if point.failure:
+            say(f"{point.frequency:g} Hz: {point.failure}")
+        if sys.stderr.isatty():
+            show_percent(done[0] / arguments.points)
+
+    frequencies = np.linspace(low, high, arguments.points)
+    swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start,
+                                                       stop=stop, on_point=count))
+    if arguments.out:
+        save_curve(swept, arguments.out)
+    write_picture(arguments.picture, f"Resonance curve of {chosen.name}", lambda theme: _drawn_curve(swept, theme))
+    if arguments.json:
+        show_json(_curve_json(swept))
+    else:
+        _show_curve(swept)
+
+
+def _curve_json(swept: Any) -> dict[str, Any]:
+    """A curve as one JSON object."""
+    return {
+        "frequency": [p.frequency for p in swept.points],
+        **{name: [finite_or_null(getattr(p, name)) for p in swept.points]
+           for name in ("max_output_force", "max_output_force_elastic", "max_input_force")},
+        "regime": [p.regime.name for p in swept.points], "period": [p.regime.period for p in swept.points],
+        "error_estimate": [p.force_errors.output for p in swept.points],
+        "error_estimate_elastic": [p.force_errors.elastic for p in swept.points],
+        "error_estimate_input": [p.force_errors.input for p in swept.points], "wall_s": swept.wall_s,
+    }
+
+
+def _show_curve(swept: Any) -> None:
+    """A curve as a table."""
+    print("frequency_Hz  max_output_force_N    error  elastic_N    error  max_input_force_N    error  regime")
+    for p in swept.points:
+        regime = f"period {p.regime.period}" if p.regime.period else p.regime.name
+        inward, outward, elastic = (f"{'–':>7}" if math.isnan(e) else f"{e:7.1e}" for e in p.force_errors.row)
+        print(f"{p.frequency:12.6g}  {p.max_output_force:18.6g}  {outward}  {p.max_output_force_elastic:9.6g}  "
+              f"{elastic}  {p.max_input_force:17.6g}  {inward}  {regime}")
+    say(f"{len(swept.points)} points in {swept.wall_s:.2f} s")
+
+
+def _drawn_curve(swept: Any, theme: Any) -> Any:
+    from app.pictures.curve import curve as drawn
+
+    return drawn([swept], theme)

@@ -1,0 +1,103 @@
+"""`granchain run`: one run of a scene, with forces, regime, error reached, energy balance and cost."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from dataclasses import asdict
+from typing import Any
+
+from granchain_core import Run, Scene
+from granchain_core.run.budget import BUDGET
+
+from .common import chosen_scene, in_background, say, show_json, show_percent
+from .options import add_result
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """What is run, recorded and explained."""
+    add_result(parser)
+    parser.add_argument("--periods", type=int, default=100, metavar="P", help="periods run and discarded")
+    parser.add_argument("--record", type=int, default=20, metavar="R", help="periods recorded")
+    parser.add_argument("--samples", type=int, default=96, metavar="S", help="samples a period")
+    parser.add_argument("--method", metavar="M", help="integration method instead of the one accuracy chooses")
+    parser.add_argument("--budget", type=float, default=BUDGET, metavar="SECONDS", help="refuse what would take longer")
+    parser.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Run a scene and record it."""
+    from granchain_core.run.run import run as run_scene
+    from granchain_core.store import check_writable, save
+
+    chosen = chosen_scene(arguments)
+    if arguments.out:
+        check_writable(arguments.out)
+    if arguments.explain:
+        _explain(chosen, arguments, sys.stderr if arguments.json else sys.stdout)
+    progress = show_percent if sys.stderr.isatty() else None
+    result = in_background(lambda stop: run_scene(chosen, arguments.periods, arguments.record, arguments.samples,
+                                                  arguments.method, stop=stop, progress=progress,
+                                                  budget=arguments.budget))
+    _warn(result, arguments.budget)
+    if arguments.out:
+        save(result, arguments.out)
+    if arguments.json:
+        show_json(_run_json(result))
+    else:
+        _show_run(result)
+
+
+def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:
+    from .explain import explanation
+
+    print(explanation(chosen, arguments.method, arguments.samples), file=stream, flush=True)
+
+
+def _warn(result: Run, budget: float) -> None:
+    """Say on stderr what the numbers do not show: warnings, an accuracy not reached, touches not resolved."""
+    from granchain_core.run.run import warnings
+
+    for warning in warnings(result):
+        say(warning)
+    asked, error = result.scene.accuracy, result.error_estimate
+    if result.status == "accuracy-not-reached":
+        say(f"The accuracy asked for, {asked:g}, was not reached: the error may be {error:.1e} of the largest "
+            "displacement.")
+    if result.status == "over-budget":
+        say(f"A finer computation would not fit the budget of {budget:g} s: the error may be {error:.1e} of the "
+            f"largest displacement, {asked:g} was asked for.")
+    if result.jumps.unresolved:
+        say(f"{result.jumps.unresolved} touches were shorter than a step of {result.cost.method} and are not resolved: "
+            "their jumps are read off the step's ends.")
+
+
+def _run_json(result: Run) -> dict[str, Any]:
+    """A run as one JSON object."""
+    chosen = result.scene
+    return {
+        "scene": chosen.name, "knobs": chosen.knobs, "effects": chosen.effects, "status": result.status,
+        "regime": result.regime.name, "period": result.regime.period,
+        "max_output_force": result.max_output_force,
+        "max_output_force_elastic": result.max_output_force_elastic,
+        "max_input_force": result.max_input_force, "error_estimate": result.error_estimate,
+        "error_estimate_output": result.force_errors.output, "error_estimate_input": result.force_errors.input,
+        "error_estimate_elastic": result.force_errors.elastic,
+        "energy_residual": result.energy_residual, "cost": asdict(result.cost),
+    }
+
+
+def _show_run(result: Run) -> None:
+    """A run in a few lines."""
+    print(f"{result.scene.name}: {result.regime.sentence}; {result.status}")
+    print(f"largest output force {result.max_output_force:.6g} N (elastic {result.max_output_force_elastic:.6g} N), "
+          f"input force {result.max_input_force:.6g} N")
+    errors = result.force_errors
+    inward, outward, elastic = ("none claimed" if e is None else f"{e:.1e}"
+                                for e in (errors.input, errors.output, errors.elastic))
+    energy = ("no energy account" if result.energy_residual is None
+              else f"energy closes to {result.energy_residual:.1e}")
+    print(f"relative errors: displacement {result.error_estimate:.1e}, output force {outward} (elastic {elastic}), "
+          f"input force {inward}; {energy}; "
+          f"{result.cost.method}, {result.cost.steps} steps, {result.cost.events} contact events, "
+          f"{1e3 * result.cost.wall_s:.1f} ms")

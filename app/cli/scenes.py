@@ -1,0 +1,20 @@
+"""`granchain scenes`: every scene and what to look at."""
+
+from __future__ import annotations
+
+import argparse
+
+from granchain_core import scene, scene_names
+
+from .common import show_json
+
+
+def scenes(arguments: argparse.Namespace) -> None:
+    """List the scenes."""
+    found = [scene(name) for name in scene_names()]
+    if arguments.json:
+        show_json({"scenes": [{"name": s.name, "title": s.title, "look_at": s.look_at, "paper": s.paper,
+                                "knobs": s.knobs, "effects": s.effects} for s in found]})
+        return
+    for one in found:
+        print(f"{one.name:10}  {one.title}\n{'':10}  {one.look_at}")

@@ -1,0 +1,128 @@
+// The drawings of the Observer page: the chain, its observer, and between them the force that goes from one to the other.
+
+import { ChainDrawing } from "../../parts/chaindrawing.js";
+import { part } from "../../parts/dom.js";
+
+// A chain that fills its own canvas, without the words of the main picture.
+class WholeChain extends ChainDrawing {
+  measure() {
+    const box = this.canvas.getBoundingClientRect();
+    super.measure(box, Math.min(90, 0.12 * box.width));
+  }
+
+  words() {}
+}
+
+// The observer: instead of the driver an arrow that is as long as the force.
+class PushedChain extends WholeChain {
+  bodies(place, pitch, radius, y, beads) {
+    const wall = place(beads + 1);
+    const { context: g } = this;
+    g.save();
+    g.beginPath();
+    g.rect(wall - radius - 6, 0, this.width, this.height);
+    g.clip();
+    super.bodies((i) => (i === 0 ? -1e4 : place(i)), pitch, radius, y, beads);
+    g.restore();
+  }
+
+  contact(c, force, frames, place, radius, y) {
+    if (c > 0) super.contact(c, force, frames, place, radius, y);
+    else this.arrow(force, place(1) - radius, y, this.left - this.span / frames.beads);
+  }
+
+  // With its tip at x = `tip`; the largest force is `room` long, but at least 30 px.
+  arrow(force, tip, y, room) {
+    const { context: g, ink } = this;
+    const long = Math.min(1, Math.abs(force) / this.force) * Math.max(30, room);
+    if (long < 1) return;
+    g.strokeStyle = g.fillStyle = ink.input;
+    g.lineWidth = 5 * ink.bold;
+    g.setLineDash(force < 0 ? [3, 3] : []);
+    g.beginPath();
+    g.moveTo(tip - long, y);
+    g.lineTo(tip - Math.min(9, long), y);
+    g.stroke();
+    g.setLineDash([]);
+    g.beginPath();
+    g.moveTo(tip, y);
+    g.lineTo(tip - 11, y - 8);
+    g.lineTo(tip - 11, y + 8);
+    g.fill();
+  }
+}
+
+// The canvas with as many pixels as the screen has under it, empty and ready to draw in CSS pixels.
+function cleared(canvas) {
+  const { width, height } = canvas.getBoundingClientRect();
+  const ratio = window.devicePixelRatio || 1;
+  const [wide, high] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== wide || canvas.height !== high) Object.assign(canvas, { width: wide, height: high });
+  const context = canvas.getContext("2d");
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return { context, width, height };
+}
+
+// F_in of the period that plays, with a dot where it is now.
+function drawForce(canvas, { message, chain }, row) {
+  const { context: g, width, height } = cleared(canvas);
+  const { rows, beads } = message;
+  const force = (r) => chain.force[r * (beads + 1)];
+  let largest = 1e-30;
+  for (let r = 0; r < rows; r++) largest = Math.max(largest, Math.abs(force(r)));
+  const left = Math.min(130, 0.2 * width);
+  const X = (r) => left + (r / (rows - 1)) * (width - left - 12);
+  const Y = (r) => height - 6 - (force(r) / largest) * (height - 14);
+  g.strokeStyle = g.fillStyle = getComputedStyle(canvas).getPropertyValue("--input").trim();
+  g.lineWidth = 2.5;
+  g.beginPath();
+  for (let r = 0; r < rows; r++) g.lineTo(X(r), Y(r));
+  g.stroke();
+  const here = Math.min(rows - 1, Math.round(row));
+  g.beginPath();
+  g.arc(X(here), Y(here), 5, 0, 2 * Math.PI);
+  g.fill();
+}
+
+const label = (text, detail) =>
+  part("div", { className: "label" }, part("b", { textContent: text }), part("span", { textContent: detail }));
+
+// The three drawings, one above the other.
+export class Chains {
+  constructor(palette) {
+    const [above, between, below] = ["chain", "force", "observer"].map((name) => part("canvas", { className: name }));
+    this.force = between;
+    this.chain = new WholeChain(above, palette);
+    this.observer = new PushedChain(below, palette);
+    this.push = part("span");
+    const forceLabel = part("div", { className: "label force" }, part("b", { textContent: "F_in" }), this.push);
+    this.root = part(
+      "div",
+      { className: "chains" },
+      part("div", {}, label("chain x", "driven, as in the main picture"), above),
+      part("div", { className: "between" }, forceLabel, between),
+      part("div", {}, label("observer y", "feels F_in and nothing else of x"), below),
+    );
+  }
+
+  measure() {
+    this.chain.measure();
+    this.observer.measure();
+  }
+
+  // Both chains are drawn on the scale of the first.
+  load({ chain, message }) {
+    this.chain.load({ ...chain, live: true });
+    this.observer.factor = this.chain.factor;
+    this.observer.load({ ...chain, live: true });
+    this.observer.exaggeration = this.chain.exaggeration;
+    this.push.textContent = `at most ${message.push}`;
+  }
+
+  draw(step, row) {
+    this.chain.draw(step.chain, row);
+    this.observer.draw(step.observer, row);
+    drawForce(this.force, step, row);
+  }
+}

@@ -1,0 +1,54 @@
+// What opens over the pictures from the bar on top: the help, and the link to the picture.
+
+import { part } from "./dom.js";
+
+const HELP = [
+  ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
+  ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
+  ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
+  ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
+  [
+    "accuracy",
+    "Click it in the status line to measure, on this machine, every method's error against its computing time.",
+  ],
+  ["effects", "In the tab “effects”: switch an effect on or off and see what it costs."],
+  ["curve", "Click a frequency to go there. Shape and colour of a point show its regime."],
+];
+
+function helpList() {
+  const list = part("dl");
+  for (const [term, meaning] of HELP)
+    list.append(part("dt", { textContent: term }), part("dd", { textContent: meaning }));
+  return list;
+}
+
+// At most one of them is open.
+export class Popovers {
+  constructor() {
+    this.field = part("input", { readOnly: true, ariaLabel: "link to this picture" });
+    this.help = part("div", { className: "popover", hidden: true }, helpList());
+    this.link = part("div", { className: "popover", hidden: true }, this.field);
+  }
+
+  close() {
+    this.help.hidden = this.link.hidden = true;
+  }
+
+  toggleHelp() {
+    const open = this.help.hidden;
+    this.close();
+    this.help.hidden = !open;
+  }
+
+  // The link becomes the page's address, is shown, and goes to the clipboard.
+  showLink(query) {
+    const url = new URL(location.href);
+    url.search = query;
+    history.replaceState(null, "", url);
+    this.field.value = url.href;
+    this.close();
+    this.link.hidden = false;
+    this.field.select();
+    navigator.clipboard?.writeText(url.href).catch(() => {});
+  }
+}
