@@ -9,11 +9,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
-from typing import NamedTuple, NoReturn
+from collections.abc import Sequence
+from importlib import import_module
+from typing import NoReturn
 
-from app.cli import accuracy, branch, check, curve, observe, options, orbit, run, scenes, serve, warm
-from app.cli import map as map_command
 from app.cli.common import say, show_json
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import OverBudget, outcome_of, unknown_name
@@ -28,37 +27,35 @@ class _Parser(argparse.ArgumentParser):
         raise BadInput(f"{self.prog}: {message}; see '{self.prog} --help'.")
 
 
-class _Command(NamedTuple):
-    """What a command is for, how its options are added to a parser, and what does it."""
-
-    about: str
-    add_options: Callable[[argparse.ArgumentParser], None]
-    do: Callable[[argparse.Namespace], int | None]
-
-
-#: In the order of `granchain --help`.
+#: What each command is for, in the order of `granchain --help`. The module of its name has its options, `add_options`,
+#: and does it, `do`; only the one that is asked for is imported, because some need what takes a second to load.
 _COMMANDS = {
-    "serve": _Command("open the dashboard", serve.add_options, serve.serve),
-    "scenes": _Command("list the scenes and what to look at", options.add_json, scenes.scenes),
-    "warm": _Command("compile the kernels of all presets, ahead of time", warm.add_options, warm.warm),
-    "run": _Command("run a scene and record it", run.add_options, run.run),
-    "orbit": _Command("periodic orbit and Floquet multipliers", orbit.add_options, orbit.orbit),
-    "branch": _Command("branch of periodic orbits and its special points", branch.add_options, branch.branch),
-    "accuracy": _Command("what accuracy costs: error against time for every method", accuracy.add_options,
-                         accuracy.accuracy),
-    "observe": _Command("push a scene's chain by a measured force", observe.add_options, observe.observe),
-    "check": _Command("the hard cases: figure, bar and verdict; status 3 if one fails", check.add_options, check.check),
-    "curve": _Command("resonance curve: largest forces over frequency", curve.add_options, curve.curve),
-    "map": _Command("regime and largest forces over two knobs", map_command.add_options, map_command.map_scene),
+    "serve": "open the dashboard",
+    "scenes": "list the scenes and what to look at",
+    "warm": "compile the kernels of all presets, ahead of time",
+    "run": "run a scene and record it",
+    "orbit": "periodic orbit and Floquet multipliers",
+    "branch": "branch of periodic orbits and its special points",
+    "accuracy": "what accuracy costs: error against time for every method",
+    "observe": "push a scene's chain by a measured force",
+    "check": "the hard cases: figure, bar and verdict; status 3 if one fails",
+    "curve": "resonance curve: largest forces over frequency",
+    "map": "regime and largest forces over two knobs",
 }
 
 
-def _parser() -> _Parser:
+def _parser(words: Sequence[str]) -> _Parser:
+    """The parser, with the options of the command in `words`."""
+    asked_for = next((word for word in words if not word.startswith("-")), None)
     parser = _Parser(prog="granchain", description="Driven granular chains: simulate, sweep, show.",
                      allow_abbrev=False)
     known = parser.add_subparsers(dest="command", parser_class=_Parser, metavar="COMMAND", required=True)
-    for name, command in _COMMANDS.items():
-        command.add_options(known.add_parser(name, help=command.about, description=command.about, allow_abbrev=False))
+    for name, about in _COMMANDS.items():
+        command = known.add_parser(name, help=about, description=about, allow_abbrev=False)
+        if name == asked_for:
+            module = import_module(f"app.cli.{name}")
+            module.add_options(command)
+            command.set_defaults(do=module.do)
     return parser
 
 
@@ -68,8 +65,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if words and not words[0].startswith("-") and words[0] not in _COMMANDS:
             raise unknown_name("command", words[0], _COMMANDS)
-        parsed = _parser().parse_args(words)
-        return _COMMANDS[parsed.command].do(parsed) or DONE
+        parsed = _parser(words).parse_args(words)
+        return parsed.do(parsed) or DONE
     except (BadInput, NumbersFailed) as problem:
         say(problem)
         if "--json" in words and isinstance(problem, (NumbersFailed, OverBudget)):

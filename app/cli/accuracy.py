@@ -21,7 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_picture(parser)
 
 
-def accuracy(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """Error against time for every method."""
     from granchain_core.accuracy import work_precision
 

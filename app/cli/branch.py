@@ -35,7 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_picture(parser)
 
 
-def branch(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """Follow a branch of periodic orbits and report it."""
     from granchain_core.store import check_writable, save_branch
 

@@ -24,7 +24,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_picture(parser)
 
 
-def check(arguments: argparse.Namespace) -> int:
+def do(arguments: argparse.Namespace) -> int:
     """Run all hard cases; the exit status is 3 if a row is above its bar, and stderr names it."""
     from granchain_core.hard.runner import in_order, run_cases
     from granchain_core.hard.table import CASES

@@ -25,7 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_picture(parser)
 
 
-def curve(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """The resonance curve of a scene."""
     import numpy as np
 

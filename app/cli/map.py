@@ -73,7 +73,7 @@ def _number(option: str, text: str) -> float:
         raise BadInput(f"{option}: {text[:40]!r} is not a number.") from None
 
 
-def map_scene(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """Compute, write and describe a two-parameter diagram."""
     from granchain_core.store import check_writable
     from granchain_core.store.diagrams import load_diagram, save_diagram

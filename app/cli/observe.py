@@ -29,7 +29,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_picture(parser)
 
 
-def observe(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """Push a scene's chain by a measured force."""
     from granchain_core import observe as push
     from granchain_core.observe import first_state, read_force

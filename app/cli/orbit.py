@@ -27,7 +27,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_picture(parser)
 
 
-def orbit(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """The periodic orbit of a scene and its multipliers."""
     from granchain_core.orbits import periodic_orbit
 

@@ -25,13 +25,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
 
 
-def run(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """Run a scene and record it."""
     from granchain_core.run.run import run as run_scene
-    from granchain_core.store import check_writable, save
 
     chosen = chosen_scene(arguments)
     if arguments.out:
+        from granchain_core.store import check_writable, save
+
         check_writable(arguments.out)
     if arguments.explain:
         _explain(chosen, arguments, sys.stderr if arguments.json else sys.stdout)

@@ -7,9 +7,15 @@ import argparse
 from granchain_core import scene, scene_names
 
 from .common import show_json
+from .options import add_json
 
 
-def scenes(arguments: argparse.Namespace) -> None:
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """The options of `granchain scenes`."""
+    add_json(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
     """List the scenes."""
     found = [scene(name) for name in scene_names()]
     if arguments.json:

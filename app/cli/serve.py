@@ -15,7 +15,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="host name under which browsers may reach a dashboard behind a proxy")
 
 
-def serve(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """Open the dashboard."""
     from app.serve.server import serve as serve_page
 

@@ -11,7 +11,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Nothing: the command takes no options."""
 
 
-def warm(arguments: argparse.Namespace) -> None:
+def do(arguments: argparse.Namespace) -> None:
     """Compile the kernels of all presets, ahead of time."""
     from granchain_core.warm import warm_presets
 

@@ -20,7 +20,6 @@ from ..steady.regime import LONGEST_PERIOD
 from ..steady.settle import run_until_settled
 from ..stop import Stop
 from .flow import Flow, StroboscopicMap, refuse_cut, relative_change
-from .krylov import leading_multipliers, newton_step
 
 #: Residual at which an orbit is found, relative to the largest displacement and w.
 CONVERGED = 1e-11
@@ -192,6 +191,8 @@ def _flow(strobe: StroboscopicMap, x: np.ndarray) -> Flow:
 
 def _newton_step(strobe: StroboscopicMap, x: np.ndarray, flow: Flow) -> np.ndarray:
     if not _dense(x):
+        from .krylov import newton_step  # scipy.sparse.linalg takes 0.2 s to load, which only long chains need
+
         return newton_step(strobe, x, flow.end)
     try:
         return np.linalg.solve(flow.derivative - np.eye(len(x)), x - flow.end)
@@ -208,6 +209,8 @@ def _orbit(scene: Scene, n: int, strobe: StroboscopicMap, x: np.ndarray, flow: F
         liouville = _liouville(multipliers, flow.log_determinant)
         watched = sorted_multipliers(strobe(x, observer=True).derivative) if observer else None
     else:
+        from .krylov import leading_multipliers
+
         multipliers = leading_multipliers(strobe, x)
         watched = leading_multipliers(strobe, x, observer=True) if observer else None
     lowered = strobe.engine.lowered
