@@ -169,7 +169,7 @@ METHODS: dict[str, Method] = {
     )
 }
 
-#: A largest force stands at a jump if the largest jump is at least this part of it.
+#: A largest force is at a jump if the largest jump is at least this part of it.
 AT_A_JUMP = 0.95
 #: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step after an onset, with room for several
 #: contacts.
