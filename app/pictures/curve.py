@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from bokeh.models import ColumnDataSource, DataRange1d, HoverTool
 from bokeh.plotting import figure
 
-from granchain_core import Curve
+from granchain_core import Curve, CurvePoint
 
 from ..format import short_error
 from .axes import force_scale, in_words, knob_scale
@@ -19,6 +19,8 @@ DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 """Dashes of the line by the start of a sweep."""
 WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
 """The same in words."""
+FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
+"""A tooltip's lines for the columns of `forces_in_words`."""
 
 
 def curve(found: Sequence[Curve], theme: Theme) -> figure:
@@ -35,23 +37,26 @@ def curve(found: Sequence[Curve], theme: Theme) -> figure:
             "frequency": [p.frequency for p in points], "force": [p.max_output_force / scale.factor for p in points],
             "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
             "size": [style[2] + 3 for style in styles], "regime": keys,
-            "sentence": [p.regime.sentence for p in points],
-            "total": [in_words(p.max_output_force, "N") + _error(p.force_errors.output) for p in points],
-            "elastic": [in_words(p.max_output_force_elastic, "N") + _error(p.force_errors.elastic) for p in points],
-            "input": [in_words(p.max_input_force, "N") + _error(p.force_errors.input) for p in points]})
+            "sentence": [p.regime.sentence for p in points], **forces_in_words(points)})
         line = plot.line("frequency", "force", source=source, line_dash=DASHES[one.start] or "solid")
         marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
                              line_color="colour", line_width=1.5, legend_group="regime")
         in_theme(line, line_color="output", line_width=1.8)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=[
-            ("drive frequency", "@frequency{0.0} Hz"), ("output force", "@total"), ("elastic output force", "@elastic"),
-            ("input force", "@input"), ("motion", "@sentence"), ("start", WORDS[one.start])]))
+            ("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"), ("start", WORDS[one.start])]))
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
     for legend in plot.legend:
         legend.update(orientation="horizontal", padding=0, margin=2, ncols=4)
     if plot.legend:
         plot.add_layout(plot.legend[0], "below")
     return dress(plot, theme)
+
+
+def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:
+    """Columns with the largest forces of every point and their relative errors, for a tooltip with `FORCES`."""
+    return {"total": [in_words(p.max_output_force, "N", 5) + _error(p.force_errors.output) for p in points],
+            "elastic": [in_words(p.max_output_force_elastic, "N", 5) + _error(p.force_errors.elastic) for p in points],
+            "input": [in_words(p.max_input_force, "N", 5) + _error(p.force_errors.input) for p in points]}
 
 
 def _error(relative: float | None) -> str:

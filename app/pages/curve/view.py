@@ -14,14 +14,16 @@ from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Feature, Measured
 from granchain_core.steady.resonance import Place, place_of
 
-from ...format import prefixed, short_error
+from ...format import prefixed
 from ...frames import round_up
 from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
-from ...pictures.curve import DASHES, WORDS
+from ...pictures.axes import in_words
+from ...pictures.curve import DASHES, FORCES, WORDS, forces_in_words
 from ...pictures.regimes import REGIMES, regime_key
 
 _MARK = "#8a8f98"
-_COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "error")
+_COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "total", "elastic", "input")
+_MEASURED = ("frequency", "force", "value", "low", "high")
 
 
 class Curve:
@@ -35,7 +37,7 @@ class Curve:
         self._shown: tuple[float, float | None] = (0.0, None)
         self._place: tuple[object, ...] = ()
         self._now = ColumnDataSource({"frequency": [], "force": []})
-        self._measured = ColumnDataSource({"frequency": [], "force": [], "low": [], "high": []})
+        self._measured = ColumnDataSource({name: [] for name in _MEASURED})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
         self._measurement: Measured | None = None
         self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in DASHES}
@@ -70,9 +72,7 @@ class Curve:
                 line_color="colour", line_width=1.5)
             self._renderers[direction].append(marks)
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=[
-                ("f", "@frequency{0.0} Hz"), ("largest output force", "@force{0.000}"),
-                ("its relative error", "@error"), ("regime", "@regime"),
-                ("start", WORDS[direction])]))
+                ("f", "@frequency{0.0} Hz"), *FORCES, ("regime", "@regime"), ("start", WORDS[direction])]))
         return source
 
     def _marks(self) -> None:
@@ -90,7 +90,7 @@ class Curve:
         self._dots = plot.scatter("frequency", "force", source=self._measured, marker="square", size=7,
                                   line_width=2)
         plot.add_tools(HoverTool(renderers=[self._dots], tooltips=[
-            ("measured at", "@frequency{0.0} Hz"), ("force", "@force{0.000}")]))
+            ("measured at", "@frequency{0.0} Hz"), ("force", "@value")]))
         self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=OUTPUT,
                                  line_width=3, level="overlay")
 
@@ -183,12 +183,13 @@ class Curve:
         self._measurement = measured
         self._rescale()
         if measured is None:
-            self._measured.data = {name: [] for name in ("frequency", "force", "low", "high")}
+            self._measured.data = {name: [] for name in _MEASURED}
             return
         factor = self._scale[0]
         error = np.zeros(len(measured.force)) if measured.error is None else np.asarray(measured.error)
         force = np.asarray(measured.force)
         self._measured.data = {"frequency": measured.frequency, "force": force / factor,
+                               "value": [in_words(f, "N", 5) for f in force],
                                "low": (force - error) / factor, "high": (force + error) / factor}
 
     def _rescale(self) -> None:
@@ -228,6 +229,5 @@ class Curve:
             "colour": [style[1] for style in styles],
             "size": [style[2] for style in styles],
             "regime": [point.regime.sentence for point in points],
-            "error": ["not estimated" if point.error_estimate is None else short_error(point.error_estimate)
-                      for point in points],
+            **forces_in_words(points),
         }
