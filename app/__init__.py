@@ -1,1 +1,1 @@
-"""The granchain dashboard: what is served, the view models behind it and the views in front of them."""
+"""The granchain command line and dashboard. Nothing in `granchain_core` knows them."""

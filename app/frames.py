@@ -1,4 +1,4 @@
-"""What one picture shows: whole periods of a settled run, or the last periods of a live one."""
+"""The rows in time that one picture shows: whole periods of a settled run, or the last periods of a live one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _FEWEST, _MOST, _STEP = 96, 384, 48
 _PER_CONTACT_TIME = 1.5
 """Rows per contact time 1/φ; a pulse takes about three such times to pass a bead."""
 _LARGEST = 60_000
-"""Values of one quantity in a picture; beyond it rows are left out, because nobody sees them."""
+"""Most values of one quantity in a picture; beyond that, rows are left out that nobody would see."""
 
 PERIODS = 4
 """Drive periods in a live picture, and in a settled one at least; a longer orbit is shown once."""
@@ -91,7 +91,7 @@ def samples_for(scene: Scene) -> int:
 def settled_frames(run: Run) -> Frames:
     """Whole periods from time 0, with the orbit repeated often enough to show that it repeats.
 
-    What is not periodic does not repeat, and is shown as it was recorded.
+    A motion that is not periodic is shown once, as it was recorded.
     """
     rows = len(run.time)
     periods = max(1, round((rows - 1) / run.samples))
@@ -110,7 +110,7 @@ def settled_frames(run: Run) -> Frames:
 
 
 class LiveWindow:
-    """The last few periods of a live run; every row knows how many drive periods ago it was."""
+    """The last few periods of a live run; the time of a row is in drive periods before now."""
 
     def __init__(self, samples: int, periods: int = PERIODS) -> None:
         self._samples = samples

@@ -15,14 +15,14 @@ from .picture import check_picture, write_picture
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """A scene whose accuracy is measured."""
+    """Add the options of `accuracy`."""
     add_scene(parser)
     add_json(parser)
     add_picture(parser)
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """Error against time for every method."""
+    """Measure error against time for every method."""
     from granchain_core.accuracy import work_precision
 
     check_picture(arguments.picture)

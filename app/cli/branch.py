@@ -17,20 +17,21 @@ from .options import add_result
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
-#: Points between two words on progress.
+#: Orbits between two lines about progress.
 _EVERY = 25
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """What `branch` takes."""
+    """Add the options of `branch`."""
     add_result(parser)
     parser.add_argument("--knob", metavar="NAME", help="knob that is moved: f, A0, D, k, kappa or F0")
     parser.add_argument("--from", dest="start", metavar="a", help="its value where the branch begins")
     parser.add_argument("--to", dest="end", metavar="b", help="its value where it ends")
-    parser.add_argument("--period", type=int, metavar="n", help="drive periods; else those of the settled motion")
+    parser.add_argument("--period", type=int, metavar="n",
+                        help="drive periods of the orbits; by default those of the settled motion")
     parser.add_argument("--both", action="store_true",
                         help="begin at the scene's own value of the knob and go both ways, to a and to b")
-    parser.add_argument("--points", type=int, default=MOST_POINTS, metavar="m", help="orbits each way at most")
+    parser.add_argument("--points", type=int, default=MOST_POINTS, metavar="m", help="most orbits each way")
     parser.add_argument("--resume", metavar="FILE", help="continue a branch written by --out")
     add_picture(parser)
 
@@ -52,7 +53,7 @@ def do(arguments: argparse.Namespace) -> None:
     try:
         found = in_background(work)
     except (Cancelled, KeyboardInterrupt):
-        if arguments.out and kept:  # what there is can be gone on with
+        if arguments.out and kept:  # the orbits found so far can be continued
             say(f"Saved {len(kept[0].points)} orbits to {save_branch(kept[0], arguments.out)}; go on with --resume.")
         raise
     if arguments.out:
@@ -80,7 +81,7 @@ def branch_json(found: Branch) -> dict[str, Any]:
 
 
 def _begun(arguments: argparse.Namespace, stop: Any) -> Branch:
-    """A new branch, or the one in a file."""
+    """A new branch, or the one in the file of --resume."""
     from granchain_core.store import load_branch
 
     if arguments.resume:
@@ -101,7 +102,7 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> Branch:
 
 
 class _Progress:
-    """Words on stderr now and then; called from both arms' threads."""
+    """Reports progress on stderr; the threads of both arms call it after every orbit."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """What `check` takes."""
+    """Add the options of `check`."""
     parser.add_argument("--quick", action="store_true", help="smaller counts: seconds instead of a minute")
     add_json(parser)
     add_picture(parser)

@@ -16,7 +16,7 @@ from .picture import check_picture, write_picture
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """The frequencies of a curve and how it is swept."""
+    """Add the options of `curve`."""
     add_result(parser)
     parser.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
     parser.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
@@ -26,7 +26,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """The resonance curve of a scene."""
+    """Compute the resonance curve of a scene."""
     import numpy as np
 
     from granchain_core.steady.curve import MOST_POINTS, resonance_curve

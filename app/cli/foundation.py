@@ -1,4 +1,4 @@
-"""What a moved A0 does to kappa = k/(K√A0), said to someone who has set or moves it on the command line."""
+"""Sentences about kappa = k/(K√A0), which changes with A0, for someone who sets or moves A0 on the command line."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from granchain_core.scene.foundation import moved_kappa
 
 
 def kept_spring(before: Scene, after: Scene, named: Collection[str]) -> str:
-    """If A0 was set without k or kappa: what that did to kappa, and how to keep it; otherwise an empty string."""
+    """How a new A0 changed kappa and how to keep it; empty if A0 is as before, or if k or kappa was set too."""
     told = "" if {"k", "kappa"} & set(named) else moved_kappa(before, after)
     return told and f"{told}. It is {after.kappa:.6g} now; --set kappa={before.kappa:.6g} keeps it."
 
 
 def kept_along(current: Scene, *knobs: str) -> str:
-    """That kappa changes along a branch or map in A0 at constant k, in one sentence; else nothing."""
+    """A sentence that kappa changes along a branch or map in A0 at constant k; otherwise empty."""
     if "A0" not in knobs or {"k", "kappa"} & set(knobs) or current.k == 0.0:
         return ""
     return (f"A0 varies at constant k = {current.k:.6g} N/m, so kappa is proportional to 1/√A0; "

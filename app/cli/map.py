@@ -1,4 +1,4 @@
-"""granchain map: regime and largest forces over two knobs, into a file that survives being killed."""
+"""`granchain map`: regime and largest forces over two knobs. A map that was interrupted can be continued."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from granchain_core.stop import Stop
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """What `map` takes."""
+    """Add the options of `map`."""
     add_scene(parser)
     for name, example in (("--x", "f=30:3000:100"), ("--y", "A0=1e-7:1e-5:100:log")):
         parser.add_argument(name, required=True, metavar="KNOB=a:b:n",
@@ -109,7 +109,7 @@ def _refuse_too_many(grid: Grid) -> None:
 
 
 def _drawn(found: Diagram, theme: Any) -> Any:
-    """Forces and regimes one above the other."""
+    """The map of forces above the map of regimes."""
     from bokeh.layouts import column
 
     from app.pictures.diagram import diagram
@@ -126,7 +126,7 @@ def _client(address: str | None) -> Any:
 
 
 def _filled(blocks: Blocks, client: Any, stop: Stop) -> tuple[Diagram, int]:
-    """The whole diagram, from the blocks that are there and what is computed now; and how many cells that were."""
+    """The whole diagram, of which only missing cells are computed, and how many those were."""
     began, grid = time.perf_counter(), blocks.grid
     cells = blocks.cells()
     missing = [int(number) for number in grid.coarse_first() if cells["regime"][number] < 0]

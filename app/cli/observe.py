@@ -14,7 +14,7 @@ from granchain_core import BadInput
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """What `observe` takes."""
+    """Add the options of `observe`."""
     add_result(parser)
     parser.add_argument("--input", required=True, metavar="FILE",
                         help="CSV with time, force and, if measured, output force; or an HDF5 file of granchain run")

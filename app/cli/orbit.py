@@ -16,19 +16,21 @@ STARTS = ("settled", "rest", "random")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """What `orbit` takes."""
+    """Add the options of `orbit`."""
     add_scene(parser)
-    parser.add_argument("--period", type=int, metavar="n", help="drive periods; else those of the settled motion")
+    parser.add_argument("--period", type=int, metavar="n",
+                        help="drive periods of the orbit; by default those of the settled motion")
     parser.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
                         help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
-    parser.add_argument("--seed", type=int, default=0, help="of the random start")
-    parser.add_argument("--observer", action="store_true", help="multipliers of the observer of model (4) too")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the random start")
+    parser.add_argument("--observer", action="store_true",
+                        help="also compute the multipliers of the observer of model (4)")
     add_json(parser)
     add_picture(parser)
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """The periodic orbit of a scene and its multipliers."""
+    """Find the periodic orbit of a scene and its multipliers."""
     from granchain_core.orbits import periodic_orbit
 
     check_picture(arguments.picture)
@@ -70,7 +72,7 @@ def _show_multipliers(title: str, multipliers: Any) -> None:
 
 
 def _start(chosen: Scene, name: str, seed: int) -> State | None:
-    """Where Newton's method starts; None is the settled motion. A file's last sample is the start."""
+    """The state in which Newton's method starts: the last sample if `name` is a file, None for the settled motion."""
     from granchain_core.integrate.engine import rest
     from granchain_core.orbits import random_state
     from granchain_core.store import load

@@ -11,12 +11,12 @@ from granchain_core import BadInput
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
-    """The option of a command whose result has a picture."""
+    """Add the option --picture."""
     parser.add_argument("--picture", metavar="FILE.html", help="draw the result into a self-contained HTML file")
 
 
 def check_picture(name: str | None) -> None:
-    """Say before anything is computed that a picture cannot be written there."""
+    """Refuse, before anything is computed, a file into which a picture cannot be written."""
     from granchain_core.store import check_writable
 
     if name is None:
@@ -27,7 +27,7 @@ def check_picture(name: str | None) -> None:
 
 
 def write_picture(name: str | None, title: str, draw: Callable[[Any], Any]) -> None:
-    """Write what `draw` makes of a theme, where a picture is asked for."""
+    """Write the figure that `draw` makes for a theme, if a picture was asked for."""
     if name is None:
         return
     from app.pictures.file import page_of

@@ -15,7 +15,7 @@ from .options import add_result
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """What is run, recorded and explained."""
+    """Add the options of `run`."""
     add_result(parser)
     parser.add_argument("--periods", type=int, default=100, metavar="P", help="periods run and discarded")
     parser.add_argument("--record", type=int, default=20, metavar="R", help="periods recorded")

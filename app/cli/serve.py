@@ -8,7 +8,7 @@ from granchain_core import BadInput
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Where the dashboard is served."""
+    """Add the options of `serve`."""
     parser.add_argument("--port", type=int, default=5006)
     parser.add_argument("--address", default="127.0.0.1")
     parser.add_argument("--allow-websocket-origin", action="append", metavar="HOST",

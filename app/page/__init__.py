@@ -1,1 +1,1 @@
-"""The page: who owns what a visitor sees, what is computed for it, and how it is laid out."""
+"""One visitor's page: its session, its computations and its layout."""

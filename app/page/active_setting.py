@@ -1,4 +1,4 @@
-"""Which method and setting the main page uses now for the accuracy asked for, and its place among measured rows."""
+"""The method and setting with which the main page computes now, and their place among measured rows."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _LIVE = live(2)
 
 
 @dataclass(frozen=True)
-class Now:
-    """The setting in words, with the error and seconds measured for it (between its neighbours, where it has none)."""
+class PlacedSetting:
+    """A setting in words, with its error and time [s], interpolated between measured neighbours."""
 
     method: str
     label: str
@@ -38,7 +38,7 @@ def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
     return orbit_setting(scene, scene.accuracy, picture.regime.slowness).finer()
 
 
-def locate(setting: Setting, rows: Sequence[Row]) -> Now | None:
+def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:
     """Where `setting` lies on its method's measured line; None until that has two points."""
     value = setting.tolerance if METHODS[setting.method].adaptive else float(setting.refine)
     known = sorted((row.value, row.error, row.wall_s) for row in rows
@@ -47,5 +47,5 @@ def locate(setting: Setting, rows: Sequence[Row]) -> Now | None:
         return None
     values, errors, seconds = np.log(np.array(known)).T
     at = np.log(value)
-    return Now(setting.method, label(setting), float(np.exp(np.interp(at, values, errors))),
+    return PlacedSetting(setting.method, label(setting), float(np.exp(np.interp(at, values, errors))),
                float(np.exp(np.interp(at, values, seconds))))

@@ -12,7 +12,7 @@ Activity = tuple[str, str, str]
 
 
 def picture_activities(session: Session, busy: bool) -> list[Activity]:
-    """The pictures, where they come from, and what was found out while they settled."""
+    """The chain and its pictures, the live run, the steady state and its Lyapunov exponent."""
     picture, live = session.picture, session.mode == "live"
     running = COMPUTING if busy else READY
     return [
@@ -20,18 +20,18 @@ def picture_activities(session: Session, busy: bool) -> list[Activity]:
         ("live run", (COMPUTING if session.playing else READY) if live else OFF,
          ("goes on" if session.playing else "paused") if live else "the page shows the steady state"),
         ("steady state", OFF if live else running,
-         "not looked for in live mode" if live else "not found yet" if picture is None else picture.regime.sentence),
+         "not computed in live mode" if live else "not found yet" if picture is None else picture.regime.sentence),
         ("Lyapunov exponent", *_lyapunov(None if live else picture)),
     ]
 
 
 def account_activity(session: Session, busy: bool) -> Activity:
-    """The energy account: it is computed after the picture, where it was switched on."""
+    """The energy account, which is computed after the picture if it is switched on."""
     return ("energy account", *_account(session, busy))
 
 
 def _lyapunov(picture: Settled | None) -> tuple[str, str]:
-    """It is computed only where the motion does not become periodic."""
+    """State and detail of the exponent, which is computed only for a motion that does not become periodic."""
     if picture is None or picture.regime.lyapunov is None:
         return OFF, "only for motions that do not become periodic"
     return READY, f"{picture.regime.lyapunov[0]:+.3f} ± {picture.regime.lyapunov[1]:.3f} per period"

@@ -1,4 +1,4 @@
-"""What happens on the page: messages from the parts come in, pictures and sentences go out."""
+"""The controller of the page: it receives messages from the parts and sends them pictures and sentences."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Controller:
     # Coming in and going out
 
     def received(self, message: dict[str, Any]) -> None:
-        """A message from the browser: nothing in it is trusted."""
+        """Take a message from the browser, in which nothing is trusted."""
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
@@ -78,20 +78,20 @@ class Controller:
             self.failed(error)
 
     def later(self, action: Callable[..., None], *arguments: Any) -> None:
-        """Do something in the document's turn; callable from any thread."""
+        """Call `action` in the document's turn; this may be called from any thread."""
         self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
 
     def after(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
-        """Do something a little later."""
+        """Call `action` in the document's turn, so many seconds from now."""
         self._document.add_timeout_callback(partial(self._guarded, action, *arguments), round(1e3 * seconds))
 
     def say(self, sentence: str) -> None:
-        """One sentence for the visitor, until the next valid action; an empty one takes it away."""
+        """Show the visitor one sentence until the next valid action; an empty one removes it."""
         self.session.sentence = sentence
         self._show_sentences()
 
     def note(self, notice: str) -> None:
-        """One sentence that the next picture takes away."""
+        """Show one sentence that the next picture removes."""
         self.session.notice = notice
         self._show_sentences()
 
@@ -99,7 +99,7 @@ class Controller:
         self.views.status_line.display(sentence=f"{self.session.sentence} {self.session.notice}".strip())
 
     def failed(self, error: Exception) -> None:
-        """The last good picture stays, and one sentence says what happened."""
+        """Say in one sentence what happened; the last good picture stays."""
         if isinstance(error, BadInput):
             self.say(str(error))
         elif isinstance(error, NumbersFailed):

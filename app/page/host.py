@@ -32,10 +32,10 @@ class Host(Protocol):
         """Everything that is computed for this visitor, or could be."""
 
     def later(self, action: Callable[..., None], *arguments: object) -> None:
-        """Do something in the document's turn; callable from any thread."""
+        """Call `action` in the document's turn; this may be called from any thread."""
 
     def after(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
-        """Do something in the document's turn, so many seconds from now."""
+        """Call `action` in the document's turn, so many seconds from now."""
 
     def failed(self, error: Exception) -> None:
         """Tell the visitor about a failure that has no place on its own page."""

@@ -53,7 +53,7 @@ class Views:
         self.shown: Settled | None = None
 
     def fit(self, narrow: bool) -> None:
-        """Shorter titles and fewer numbers on the axes over time, where there is little room for them."""
+        """Shorten titles and leave out numbers on the axes over time if there is little room for them."""
         with unlocked():  # sent like the pictures, which write the same titles, so that neither overtakes the other
             self.trains.fit(narrow)
             self.energy.fit(narrow)

@@ -1,4 +1,4 @@
-"""What leaves and enters the page: share links, saved pictures, the visitor's measurements."""
+"""Share links, saved pictures and the visitor's own measurements."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class LinksAndFiles:
         self._reading.start(partial(self._read, str(message.get("name", "data"))[:60], text))
 
     def _read(self, name: str, text: str, job: Job) -> None:
-        """In a worker thread; what cannot be read is told in a sentence that names the line."""
+        """In a worker thread: read the file. A `BadInput` names the line that cannot be read."""
         job.later(self._show, name, read_measured_csv(text))
 
     def _show(self, name: str, measured: Measured) -> None:

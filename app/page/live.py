@@ -1,4 +1,4 @@
-"""The live run: it goes on while the knobs move, and each step waits until the browser painted the last."""
+"""The live run, which continues while knobs move; each step waits until the browser has painted the last one."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core.run.live import joined
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
 
 _LONGEST_STEP = 0.1
-"""Most seconds of viewing time that one step makes up for: after a hidden tab the run does not jump."""
+"""Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden."""
 
 
 @dataclass(frozen=True)
@@ -41,17 +41,17 @@ class LiveRun:
         self._runs: deque[Run] = deque()
 
     def change(self, scene: Scene) -> None:
-        """New knobs, taken over before the next sample."""
+        """Take over new knobs before the next sample."""
         with self._lock:
             self._new_scene = scene
 
     def reset(self) -> None:
-        """Back to rest before the next sample."""
+        """Return to rest before the next sample."""
         with self._lock:
             self._reset = True
 
     def hold(self) -> None:
-        """Time stands still from now until the next step."""
+        """Let no viewing time pass until the next step."""
         self._last = None
 
     def step(self, periods_per_second: float) -> LivePicture:

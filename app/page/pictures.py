@@ -42,7 +42,7 @@ class Pictures:
 
     @property
     def busy(self) -> bool:
-        """Whether a picture is being computed; what can wait, waits."""
+        """Whether a picture is being computed; work that can wait then waits."""
         return self._jobs.busy
 
     @property
@@ -57,7 +57,7 @@ class Pictures:
     # Computing
 
     def compute(self, start: State | None = None) -> None:
-        """A new picture for the knobs as they are now, from `start` or from where the visitor chose."""
+        """Compute a picture for the knobs as they are now, from `start` or from where the visitor chose."""
         if self._session.mode == "live":
             if self.live is not None:
                 self.live.change(self._session.scene)
@@ -66,7 +66,7 @@ class Pictures:
             self._jobs.submit(partial(self._settled, self._session.scene, start))
 
     def advance(self, samples: int | None = None) -> None:
-        """The next step of the live run: so many samples, or as many as viewing time asks for."""
+        """Take the next step of the live run: `samples`, or as many as the viewing time asks for."""
         self._jobs.submit(partial(self._live_step, samples))
 
     def run(self) -> Run | None:
@@ -90,7 +90,7 @@ class Pictures:
                     yield with_account(picture, stop)
 
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
-        """Wait until another process has compiled them. Raises `Cancelled`: settling would compile them in this one."""
+        """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
         if not COMPILER.has(scene, LIVE):
             self._host.later(self._note, f"{compiling_words('picture').capitalize()}; the picture then appears by "
                                          "itself.")
@@ -130,10 +130,10 @@ class Pictures:
         self._painter.painted(number)
 
     def restart(self) -> None:
-        """The page is visible again: acknowledgements still outstanding will never come."""
+        """The page is visible again: forget outstanding acknowledgements, which will never come."""
         self._painter.restart()
 
     def idle(self) -> None:
-        """The browser has painted everything: in live mode that asks for the next step."""
+        """The browser has painted everything: in live mode, take the next step."""
         if self._session.mode == "live" and self._session.playing and not self._painter.waits:
             self.advance()

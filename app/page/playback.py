@@ -1,4 +1,4 @@
-"""The time controls: settled or live, the start, speed, play or pause, one period forward."""
+"""The controls of time: settled or live mode, start, speed, play or pause, and one period forward."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Playback:
         self._pictures.idle()
 
     def _again(self, message: dict[str, Any]) -> None:
-        """The browser lost its server and has reloaded the page from its share link."""
+        """The browser lost its server and has loaded the page again from its share link."""
         self._speed({"value": message.get("speed")})
         if not message.get("playing"):
             self._playing({"value": False})

@@ -1,4 +1,4 @@
-"""What one visitor looks at: scene, mode, start, the last good picture, and a sentence when something failed.
+"""The state of one visitor's page: scene, mode, start, the last good picture, and a sentence if something failed.
 
 No Panel and no Bokeh in here, so that every rule of the page can be tested without a browser.
 """
@@ -46,7 +46,7 @@ class Session:
         self.scene = self.scene.evolve(**{name: value})
 
     def switch(self, name: str, on: bool) -> None:
-        """Switch an effect on or off; its knobs' values are kept for switching it back on."""
+        """Switch an effect on or off; the values of its knobs are kept until it is switched on again."""
         if name == ACCOUNT:
             self.account = on
             return
@@ -57,7 +57,7 @@ class Session:
             self.remembered.update(before)
 
     def restore(self, name: str) -> None:
-        """Turn knob `name` back to what the preset has."""
+        """Turn knob `name` back to its value in the preset."""
         preset = scene(self.scene.name).knobs
         if name not in preset:
             raise BadInput(f"There is no knob {str(name)[:40]!r} to put back.")
@@ -92,7 +92,7 @@ class Session:
 
 
 def slider_range(current: Scene, name: str) -> tuple[float, float]:
-    """The scene's range for a slider; where it has none, all that granchain accepts."""
+    """The scene's range of a slider, or all values that granchain accepts if the scene has none."""
     for knob, low, high in current.ranges:
         if knob == name:
             return low, high
@@ -100,7 +100,7 @@ def slider_range(current: Scene, name: str) -> tuple[float, float]:
 
 
 def without_frequency(current: Scene) -> Scene:
-    """The scene with a fixed f, which identifies a curve or a branch over f: they do not depend on where f stands."""
+    """The scene with f at a fixed value. It identifies a curve or branch over f, whatever the knob f is set to."""
     return current.evolve(f=slider_range(current, "f")[0])
 
 
@@ -116,5 +116,5 @@ def _one_of(what: str, value: object, known: tuple[str, ...]) -> str:
 
 
 def presets() -> list[dict[str, str]]:
-    """Name and title of every scene one can choose."""
+    """Name and title of every scene."""
     return [{"name": name, "title": scene(name).title} for name in scene_names()]

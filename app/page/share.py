@@ -1,7 +1,7 @@
 """Share links: scene name, knobs that differ from its preset, mode and start, as one versioned query string.
 
 A link stores differences only: a changed preset changes what old links mean (tests/page/test_share.py).
-Every field is checked by itself: a bad one is refused with its sentence and the others still count.
+Each field is checked by itself: a bad one is refused with a sentence, and the others are still used.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from .live import LivePicture
 
 
 def show_settled(views: Views, number: int, picture: Settled) -> None:
-    """A settled picture: whole periods, replayed in the browser."""
+    """Show a settled picture: whole periods, which the browser replays."""
     frames = settled_frames(picture.run)
     factor, letter = prefixed(float(frames.time[-1]))
     with unlocked():
@@ -28,13 +28,13 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
 
 
 def show_regime(views: Views) -> None:
-    """Update the status line when the curve is complete, which tells on which peak or valley the motion lies."""
+    """Update the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
     if views.shown is not None:
         views.status_line.display(**settled_entries(views.shown, views.curve.place(views.shown.run)))
 
 
 def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
-    """The last periods of the live run; now is at the bottom."""
+    """Show the last periods of the live run, with the present at the bottom."""
     frames, run = picture.frames, picture.run
     views.shown = None
     with unlocked():

@@ -28,7 +28,7 @@ def refusal(name: str, shown: Scene) -> str:
 
 
 def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
-    """Knob values for the switch; on: the visitor's earlier ones, else the preset's, else the usual ones."""
+    """Knob values that a switch sets; on: those the visitor had, else the preset's, else the usual ones."""
     if name not in EFFECTS or name == ACCOUNT:
         raise BadInput(f"There is no switchable effect {str(name)[:40]!r}.")
     if refused := refusal(name, shown):

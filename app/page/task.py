@@ -26,7 +26,7 @@ class Job:
         self._say = say
 
     def later(self, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
-        """Do something in the document's turn, unless the job is cancelled by then."""
+        """Call `action` in the document's turn, unless the job is cancelled by then."""
 
         def act() -> None:
             if not self.stop:
@@ -35,11 +35,11 @@ class Job:
         self._host.later(act)
 
     def say(self, status: str) -> None:
-        """Tell how far the work is."""
+        """Report the state of the work."""
         self.later(self._say, status, "")
 
     def compile(self, scene: Scene, *pieces: str) -> None:
-        """Wait until these kernels are compiled and loaded; "compiling" is told meanwhile. Raises `Cancelled`."""
+        """Wait until these kernels are compiled and loaded, and report "compiling" meanwhile. Raises `Cancelled`."""
         for piece in pieces:
             if not COMPILER.has(scene, piece):
                 self.say("compiling")
@@ -76,13 +76,13 @@ class Task:
         return self._job is not None
 
     def start(self, work: Callable[[Job], None]) -> None:
-        """Have `work` done when the queue comes to it, in place of what was started before."""
+        """Queue `work`, in place of what was started before."""
         self.cancel()
         self._job = job = Job(self._host, self._say)
         self._queue.submit(self._run, work, job)
 
     def cancel(self) -> bool:
-        """Give up what is under way; nothing of it arrives any more. Says whether there was anything."""
+        """Cancel the work under way, so that nothing more of it arrives; return whether there was any."""
         job, self._job = self._job, None
         if job is not None:
             job.stop.set()

@@ -1,4 +1,4 @@
-"""The visitor's display choices: theme, locked colour scale, which curves are drawn."""
+"""The visitor's display choices: theme, locked colour scale, and which curves are drawn."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class DisplayChoices:
         }
 
     def choose(self, message: dict[str, Any]) -> None:
-        """Colours and line widths of a theme; a name that is none of them changes nothing."""
+        """Take the colours and line widths of a theme; the name of no theme changes nothing."""
         theme = THEMES.get(str(message.get("value")))
         if theme is not None:
             self._views.curve.ink(theme.ink, theme.line)

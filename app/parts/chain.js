@@ -4,7 +4,7 @@ import { ChainDrawing, unpack } from "./chaindrawing.js";
 import { Clock, Cursor } from "./clock.js";
 import { part } from "./dom.js";
 
-// After the animation frame under way: a message posted in it arrives when it is done.
+// Calls `act` after the present animation frame: a message posted in a frame arrives when that is done.
 function afterFrame(act) {
   const channel = new MessageChannel();
   channel.port1.onmessage = act;
@@ -22,7 +22,7 @@ class Chain {
     this.narrow = null; // as the server was last told; null before it was
   }
 
-  // Something has changed: the next animation frame draws it.
+  // Has the next animation frame draw the chain anew.
   mark() {
     this.dirty = true;
   }
@@ -94,7 +94,7 @@ class Chain {
     requestAnimationFrame((later) => this.tick(later));
   }
 
-  // The page stands: the first picture may come.
+  // Tells the server that the page is complete and the first picture may come.
   begin() {
     this.narrow = this.isNarrow();
     this.model.send_msg({ do: "ready", theme: window.granchain.theme(), narrow: this.narrow });

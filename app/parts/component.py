@@ -39,7 +39,7 @@ class Component(PromptEvents, JSComponent):
         self._send_msg(message)
 
     def dress(self, theme: Theme) -> None:
-        """Another theme; a part that has no figures follows it by its style sheet alone."""
+        """Draw the figures in another theme; a part without figures needs only its style sheet."""
 
     def display(self, **changes: Any) -> None:
         """Change some entries of `state`."""

@@ -57,8 +57,8 @@
   let ping = null,
     closed = false,
     leaving = false;
-  // Milliseconds since the last ping without an answer (null where there is none), the last answer, the last try to
-  // reach a lost server, and since that can be reached (0 where it cannot).
+  // Milliseconds since the last ping without an answer (null if all are answered), since the last answer, since the
+  // last try to reach a lost server, and since that could be reached again (0 if it cannot).
   let sincePing = null,
     sinceAnswer = 0,
     sinceTry = TRY,
@@ -84,7 +84,7 @@
     try {
       sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, photo: photo() }));
     } catch {
-      /* without room for it, its sentence and its pictures are missing for a moment */
+      /* no room to keep them: the sentence and the last pictures are missing for a moment */
     }
     location.replace(address());
   };

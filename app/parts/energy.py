@@ -13,7 +13,7 @@ from .figure_style import GAP, quiet_axis, quiet_figure
 
 
 class EnergyMap:
-    """One image, one mapper; a new picture changes their contents only."""
+    """One image with one colour mapper, whose contents each new picture changes."""
 
     def __init__(self, time: Range1d) -> None:
         self._source = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")})

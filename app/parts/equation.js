@@ -1,4 +1,4 @@
-// The equation of motion as MathML, which the browser typesets without fonts from anywhere.
+// The equation of motion as MathML, which the browser typesets with its own fonts.
 
 import { part } from "./dom.js";
 

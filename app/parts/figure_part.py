@@ -28,7 +28,7 @@ class FigurePart(Component):
     figures = param.Dict(default={})
 
     empty_figures: ClassVar[staticmethod[[Theme], dict[str, Any]]]
-    """Makes the figures without their points; every part of this kind has its own."""
+    """Makes the figures without points; every subclass has its own."""
 
     __abstract = True
 
@@ -44,6 +44,6 @@ class FigurePart(Component):
                 self.figures = self.empty_figures(theme)
 
     def need_figures(self) -> None:
-        """Something is about to be drawn."""
+        """Send the figures if they have not been sent; to be called before the first data."""
         if not self.figures:
             self.figures = self.empty_figures(self.theme)

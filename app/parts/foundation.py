@@ -1,4 +1,4 @@
-"""What stands beside the knobs k and κ = k/(K√A₀): the foundation's frequency, and what a moved A₀ did to κ."""
+"""The words beside the knobs k and κ = k/(K√A₀): the foundation's frequency, and how a new A₀ changed κ."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from granchain_core.scene.foundation import moved_kappa
 
 
 def foundation_words(current: Scene) -> str:
-    """The foundation frequency, or that there is none."""
+    """The foundation frequency in words, or "none"."""
     frequency = current.foundation_frequency
     return f"{frequency:.1f} Hz" if frequency > 0 and math.isfinite(frequency) else "none"
 

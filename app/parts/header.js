@@ -1,9 +1,9 @@
-// The bar on top. What only concerns the replay stays in the browser; the rest is one message each.
+// The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
 import { part } from "./dom.js";
 import { Popovers } from "./popovers.js";
 
-// Drawn here, so that no font has to have them.
+// Paths of our own, so that no font needs these symbols.
 const ICONS = {
   knobs: "M3 6h7m4 0h7M3 12h3m4 0h11M3 18h11m4 0h3M12 4v4M8 10v4M16 16v4",
   reset: "M4 12a8 8 0 1 0 3-6.2M7 2v4h4",

@@ -1,4 +1,4 @@
-"""The bar on top: scene, transport, mode, share, save, help and theme."""
+"""The bar on top: scene, controls of time, mode, share, save, help and theme."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from .component import Component, text
 
 
 class Header(Component):
-    """Buttons and choosers; every one sends one message."""
+    """Buttons and lists of choices, each of which sends one message."""
 
     _esm = module("header.js")
     _stylesheets = [text("controls.css"), text("header.css")]  # noqa: RUF012

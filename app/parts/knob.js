@@ -20,7 +20,7 @@ const RANGE = {
   },
 };
 
-// Four figures are what a slider can mean; a typed value keeps all it has.
+// A slider is good for four figures; a typed value keeps all of its own.
 const rounded = (value) => Number(value.toPrecision(4));
 
 const written = (value, factor) => {
@@ -127,7 +127,7 @@ export class Knob {
         this.select.add(new Option(Number(value).toPrecision(4), value));
       this.select.value = String(value);
     } else if (typeof value === "number") {
-      // What somebody is typing is left alone.
+      // A value that is being typed is left alone.
       if (!this.editing) this.field.value = written(value, this.spec.factor);
       this.field.style.width = `${Math.max(3, this.field.value.length) + 1.6}ch`;
       const place = RANGE[this.spec.scale].place(value, this.spec);

@@ -16,7 +16,7 @@ MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
 
 _SHOWN_IN = {"A0": (1e-6, "µm")}
-"""Quantities that are read in another unit than SI: factor and unit."""
+"""Quantities that are shown in a unit other than SI: factor and unit."""
 
 _SHORT = {"D": "damping", "k": "foundation", "kappa": "k / (K√A₀)", "N": "beads", "F0": "preload",
           "wall": "wall", "dissipation": "law", "tension": "tension"}
@@ -34,7 +34,7 @@ class Knobs(Component):
 
 
 def knob_state(current: Scene) -> dict[str, Any]:
-    """Everything the drawing needs for this scene."""
+    """Everything that the browser needs to draw the knobs of a scene."""
     preset = scene(current.name).knobs
     return {
         "specs": [_spec(name, current) for name in MAIN + MORE],

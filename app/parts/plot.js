@@ -9,7 +9,7 @@ export const draw = (tag, attributes = {}, ...children) => {
 
 export const round3 = (value) => Number(value.toPrecision(3));
 
-// The steps that read well, in every decade; the nearest of them to a value from below or from above.
+// The round steps of a decade, and the one nearest to a value from below or from above.
 const STEPS = [1, 2, 5, 10];
 const inDecade = (value, pick) => {
   const power = 10 ** Math.floor(Math.log10(value));

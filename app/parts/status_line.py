@@ -36,13 +36,13 @@ def regime_words(picture: Settled, place: Place | None) -> str:
 
 
 def accuracy_words(run: Run) -> str:
-    """What was asked, what was reached, and what that took."""
+    """The accuracy asked for and reached, and the time that took."""
     reached = "not estimated" if run.error_estimate is None else f"reached {short_error(run.error_estimate)}"
     return f"asked {short_error(run.scene.accuracy)} · {reached} · {duration(run.cost.wall_s)}"
 
 
 def errors_hint(run: Run) -> str:
-    """Of which quantity each error is: displacements, and the three largest forces."""
+    """The error of each quantity: displacements, and the three largest forces."""
     said = [f"{name} {'not estimated' if error is None else short_error(error)}" for name, error in (
         ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]

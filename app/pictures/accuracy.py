@@ -20,7 +20,7 @@ _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_tr
 _NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), "#8a8f98"
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
 _HIGHEST = 10.0
-"""Largest error drawn; points beyond it, which mean no more, stand here."""
+"""Largest error drawn; larger ones, which tell no more, are drawn here."""
 _COLUMNS = ("ms", "error", "setting", "tooltip")
 
 
@@ -39,7 +39,7 @@ class Asked:
 
 
 def styles() -> dict[str, dict[str, Any]]:
-    """Marker, colour, dash and fill of every way: by shape and fill told apart without colour, too."""
+    """Marker, colour, dash and fill of every way; shape and fill alone tell them apart."""
     found: dict[str, dict[str, Any]] = {}
     used = {"naive": 0, "other": 0}
     for way in ways().values():
@@ -54,7 +54,7 @@ def styles() -> dict[str, dict[str, Any]]:
 
 
 def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
-    """The columns of every way's source, by its name: what has no finite error or took no time has no point."""
+    """The columns of every way's source, by its name; a row without a finite error or a time has no point."""
     columns: dict[str, dict[str, list[Any]]] = {name: {column: [] for column in _COLUMNS} for name in ways()}
     for row in rows:
         if not row.failure and math.isfinite(row.error) and row.error > 0.0 and row.wall_s > 0.0:

@@ -126,7 +126,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
 
 
 def _put(data: Columns, added: dict[str, Any]) -> None:
-    """What a piece adds, put into whole columns."""
+    """Put what a piece adds into the columns of the whole."""
     for name, columns in added["rows"].items():
         for column, values in columns.items():
             data[name][column].extend(values)
@@ -194,7 +194,7 @@ def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
 
 
 def drawn_orbits(points: list[BranchPoint], special: list[SpecialPoint]) -> list[BranchPoint]:
-    """What is drawn of a piece of a branch, in order.
+    """The orbits that are drawn of a piece of a branch, in order.
 
     The two orbits around each special point belong to it: so the line changes its dash where stability changes.
     """

@@ -26,9 +26,9 @@ _TRUTH = {"colour": "steel", "width": 5.0, "dash": []}
 
 
 def check(picture: Picture, theme: Theme) -> figure:
-    """The traces of a hard case, ours in ink, naive ones dashed and in colour, what is true broad and grey.
+    """The traces of a hard case: granchain's in ink, naive ones dashed and in colour, the true one broad and grey.
 
-    Where a trace is NaN nothing is drawn; one that ends before the picture does has a cross at its end.
+    Nothing is drawn where a trace is NaN; a trace that ends before the picture does has a cross at its end.
     """
     labels = [trace.label for trace in picture.traces]
     x_label, x_log, x = _axis(picture.x_label, picture.x)
@@ -62,7 +62,7 @@ def _axis(label: str, values: np.ndarray) -> tuple[str, bool, np.ndarray]:
 
 
 def _styles(labels: Sequence[str]) -> list[dict[str, Any]]:
-    """A line's style by whose it is. Pictures in which nobody is named show our runs only."""
+    """The style of each line. If no label names granchain, all lines are granchain's."""
     named = any(label.startswith("granchain") for label in labels)
     used = {"ours": 0, "naive": 0}
     styles = []

@@ -19,12 +19,12 @@ from ..format import duration
 from .theme import Theme, dress, frame, in_theme
 
 _FARTHEST = 2.4
-"""What lies farther out stands at the edge, with its modulus beside it."""
+"""Multipliers farther out are drawn at the edge, with their modulus beside them."""
 _AROUND = 1.18
 _TINY, _SMALL = 0.02, 0.05
 """Moduli below which a mark is small, and has no trail."""
 _STEP = 0.35
-"""Marks that moved by more are not joined."""
+"""Marks of successive orbits that are farther apart than this are not joined."""
 _SETS = {"within": "dies out", "outside": "grows", "observer within": "observer",
          "observer outside": "observer, grows"}
 _MARK = ("x", "y", "size", "value", "modulus", "angle", "decay", "rank")
@@ -159,7 +159,7 @@ def _size(modulus: float, kind: str) -> float:
 
 
 def _trail(sets: Sequence[np.ndarray]) -> dict[str, dict[str, Any]]:
-    """Marks of before, the older the fainter, each joined to the nearest of the next set; small ones are left out."""
+    """Marks of earlier orbits, fainter with age, each joined to the nearest of the next; small ones are left out."""
     dots, ways = [], []
     for i, (now, after) in enumerate(itertools.pairwise(sets)):
         alpha = 0.12 + 0.6 * (i + 1) / len(sets)

@@ -35,7 +35,7 @@ def compiling_words(page: str) -> str:
 
 
 def _compile(scene: Scene, piece: str) -> None:
-    """Compile in another process; where none can be started, in this one."""
+    """Compile in another process or, if none can be started, in this one."""
     command = [sys.executable, "-m", "granchain_core.warm", piece]
     try:
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
@@ -45,7 +45,7 @@ def _compile(scene: Scene, piece: str) -> None:
 
 
 class Compiler:
-    """Compilations that were asked for, each once."""
+    """Compiles kernels in other processes, each once."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()

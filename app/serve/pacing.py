@@ -14,7 +14,7 @@ and 45 ms of lag (p95) with one, 28 and 43 with two."""
 
 
 class Painter(Generic[Picture]):
-    """A latest-wins slot in front of the browser.
+    """Passes pictures to the browser; of those that wait, only the latest is sent.
 
     Without the acknowledgement a server that computes faster than the browser paints fills the websocket, and
     what one sees lags a second behind the knob.

@@ -33,7 +33,7 @@ class Queue:
         self._lock = threading.Lock()
 
     def submit(self, work: Callable[..., Result], *arguments: object) -> Future[Result]:
-        """Do this as soon as a thread is free; the future has what it returns or raises."""
+        """Call `work` as soon as a thread is free; the future has what it returns or raises."""
         future: Future[Result] = Future()
 
         def do() -> None:
@@ -60,14 +60,14 @@ _CORES = os.cpu_count() or 1
 #: More threads than cores: a picture that waits for the compiler keeps its thread, and must not keep other visitors
 #: waiting.
 PICTURES = Queue("pictures", 4 * max(2, _CORES))
-#: What follows a picture while the knobs rest: short, and given up when a knob moves.
+#: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
 ANALYSES = Queue("analyses", max(2, _CORES))
 #: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody.
 FILES = Queue("files", 2)
 #: Resonance curves, and loading kernels before a visitor asks. Maps and branches wait for a curve that is under way,
 #: so curves cannot share their queue.
 CURVES = Queue("curves", max(1, _CORES // 2))
-#: What lasts minutes: maps, searches for attractors, branches.
+#: Work that takes minutes: maps, searches for attractors, branches.
 LONG = Queue("long", 2)
 #: Timings, one at a time for all visitors: two at once would disturb each other.
 MEASUREMENTS = Queue("measurements", 1)
@@ -114,7 +114,7 @@ class LatestWins:
         PICTURES.submit(self._drain)
 
     def close(self) -> None:
-        """Give up: nothing more is computed or delivered."""
+        """Stop: nothing more is computed or delivered."""
         with self._lock:
             self._closed = True
             self._waiting = None

@@ -1,4 +1,4 @@
-"""The Accuracy page of one visitor: when it measures, what of it is still true, and what it says."""
+"""The Accuracy page of one visitor: when it measures, whether the rows still hold, and what it says of them."""
 
 from __future__ import annotations
 
@@ -60,15 +60,15 @@ class AccuracyPage(Page):
         return "accuracy of all methods", COMPUTING if self.running else READY if self.rows else OFF, words
 
     def changed(self) -> None:
-        """Another accuracy is asked for, or the rows are another chain's."""
+        """A knob moved: another accuracy is asked for, or the rows belong to another chain."""
         self.describe()
 
     def arrived(self, picture: Settled) -> None:
-        """What the picture took is marked among the rows."""
+        """Mark the setting of the new picture among the rows."""
         self.describe()
 
     def describe(self) -> None:
-        """Tell what follows from the knobs and the picture: asked, cheapest, now, and whether the rows still hold."""
+        """Show what was asked, what is cheapest, what the page uses now, and whether the rows still hold."""
         scene, session = self._host.session.scene, self._host.session
         now = locate(page_setting(scene, session.picture, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)
@@ -78,7 +78,7 @@ class AccuracyPage(Page):
             None if now is None else (now.wall_s, now.error)), stale=stale, sentence=self._sentence(best))
 
     def stop(self) -> None:
-        """Stop; the rows that are there stay."""
+        """Stop measuring; the rows measured so far stay."""
         if self._task.cancel():
             self._say("stopped")
 

@@ -21,7 +21,7 @@ from ...pictures.theme import Theme
 from ...scripts import module
 
 _LOST = 1e-4
-"""References that differ by more than this show a motion too sensitive to be followed for ten periods."""
+"""If references differ by more than this, the motion is too sensitive to be followed for ten periods."""
 
 
 @cache
@@ -42,27 +42,27 @@ class Accuracy(FigurePart):
         self._naive: Lesson | None = None
 
     def dress(self, theme: Theme) -> None:
-        """Another theme, for the forces too."""
+        """Draw the figures, that of the forces too, in another theme."""
         super().dress(theme)
         if self._naive is not None:
             self.show_naive(self._naive)
 
     def measured(self, rows: list[Row], reference: dict[str, Any]) -> None:
-        """The rows measured so far and what is known of the reference."""
+        """Show the rows measured so far and what is known of the reference."""
         self.need_figures()
         self.display(rows=described_rows(rows), drawn=points(rows), **reference)
 
     def mark(self, rows: list[Row], asked: Asked, stale: bool, sentence: str) -> None:
-        """What is asked, cheapest and used now; `stale` where the rows belong to another chain."""
+        """Mark what is asked, cheapest and used now; `stale` if the rows belong to another chain."""
         self.tell(type="asked", marks=marks(asked, rows), stale=stale, sentence=sentence)
 
     def show_naive(self, shown: Lesson) -> None:
-        """The forces that naive steps would have drawn."""
+        """Show the forces that naive steps would have drawn."""
         self._naive = shown
         self.tell(**naive_message(shown, self.theme))
 
     def forget(self) -> None:
-        """Nothing is measured any more."""
+        """Remove everything that was measured."""
         self._naive = None
         self.display(rows=[], drawn={}, agreement_words="", reference="", second="")
         self.tell(type="no-naive")
@@ -75,7 +75,7 @@ def described_ways() -> list[dict[str, Any]]:
 
 
 def described_rows(rows: list[Row]) -> list[dict[str, Any]]:
-    """What the table says of the rows that have no finite error: which setting, and the sentence that says why."""
+    """The rows without a finite error for the table: the setting, and a sentence that says why."""
     failed = [(row, row.failure or "Its numbers are not finite.") for row in rows
               if row.failure or not math.isfinite(row.error)]
     return [{"way": row.method, "setting": row.setting, "failure": failure} for row, failure in failed]
@@ -88,7 +88,7 @@ def described_reference(found: WorkPrecision) -> dict[str, Any]:
         words = f"The second reference failed: {found.disagreement}"
     elif found.agreement > _LOST:
         words = (f"Two references differ by {short_error(found.agreement)}: this motion amplifies every error, "
-                 "so smaller ones mean nothing here.")
+                 "so errors below that mean nothing here.")
     elif known:
         words = f"Two independent references agree to {short_error(found.agreement)}."
     else:

@@ -27,7 +27,7 @@ from .view import LONGEST_PERIOD, Branches
 
 @dataclass
 class _Drawn:
-    """An arm on the page and how much of it the page has."""
+    """An arm, and how many of its points and special points the page has been sent."""
 
     branch: Branch
     arm: Arm
@@ -100,7 +100,7 @@ class BranchesPage(Page):
         self._submit(lambda stop: [switch_to_doubled(branch, special, stop)], branch.axis.scene)
 
     def _load_orbit(self, message: dict[str, Any]) -> None:
-        """An orbit goes to the main page: a stable one settled, an unstable one live, so that one sees it leave."""
+        """Show an orbit on the main page: a stable one settled, an unstable one live, to be seen leaving."""
         arm: Any = message.get("arm")
         drawn = listed("branch", self._drawn, arm)
         point = listed("orbit", self._growth.orbits.get(arm, []), message.get("place"))
@@ -130,7 +130,7 @@ class BranchesPage(Page):
         job.later(self._draw)
 
     def _grown(self, job: Job) -> None:
-        """An orbit more: the page is told now and then; the picture in front comes first."""
+        """After each orbit, update the page now and then, and wait for the picture in front."""
         if time.monotonic() - self._sent > BRANCH_EVERY:
             self._sent = time.monotonic()
             job.later(self._draw)
@@ -145,7 +145,7 @@ class BranchesPage(Page):
         self._draw()
 
     def _draw(self) -> None:
-        """Send what is new; an arm gets a special point before the orbit that follows it."""
+        """Send what is new; a special point goes before the orbit that follows it on its arm."""
         with unlocked():
             for number, drawn in enumerate(self._drawn):
                 points = drawn.arm.points[drawn.points :]

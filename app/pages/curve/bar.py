@@ -7,7 +7,7 @@ from ...scripts import module
 
 
 class CurveBar(Component):
-    """What the curve shows, its progress and how to stop it."""
+    """Which curves are shown, their progress, and a button that stops them."""
 
     _esm = module("curvebar.js")
     _stylesheets = [text("controls.css"), text("curvebar.css")]  # noqa: RUF012

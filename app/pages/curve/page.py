@@ -29,9 +29,9 @@ _SETTINGS = (*DIRECTIONS, "features")
 
 
 class Curves:
-    """A curve on the screen is computed; one that is scrolled away, switched off or unchanged is not.
+    """Computes the selected curves while they are on the screen, each once for the same knobs.
 
-    `placed` is called when a curve from rest is whole: it says where on it the picture in front lies.
+    `placed` is called when a curve from rest is complete; it shows where on the curve the present motion lies.
     """
 
     def __init__(self, host: Host, figure: Curve, bar: CurveBar, placed: Callable[[], None]) -> None:
@@ -54,7 +54,7 @@ class Curves:
         self._done = -1.0
 
     def open(self, scene: Scene) -> None:
-        """Another scene: an empty figure over its frequencies."""
+        """Show an empty figure over the frequencies of another scene."""
         self._computed.clear()
         self._figure.clear()
         self._figure.range(*slider_range(scene, "f"))
@@ -63,7 +63,7 @@ class Curves:
         self.changed(scene)
 
     def moved(self, scene: Scene) -> None:
-        """Knobs were turned; another than f makes another curve: a draft at once, the curve when the knobs rest."""
+        """A knob moved. Any but f changes the curve: a draft comes at once, the curve when the knobs rest."""
         if without_frequency(scene) == self._asked:
             return
         self.changed(scene)
@@ -81,7 +81,7 @@ class Curves:
                 self._figure.redraw("rest", points)
 
     def changed(self, scene: Scene) -> None:
-        """The scene or the selection has changed: cancel, and start again when the knobs rest."""
+        """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
         self._task.cancel()
         self._asked = without_frequency(scene)
         self._due += 1
@@ -115,7 +115,7 @@ class Curves:
             self.changed(scene)
 
     def stop(self) -> None:
-        """Give up what is being computed; what there is stays."""
+        """Stop computing; the points computed so far stay."""
         self._task.cancel()
         self._done = -1.0
         self._bar.display(done=-1.0)

@@ -53,7 +53,7 @@ def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
 class Sweep:
     """The work of one request on a worker thread: some directions of one scene, one after the other.
 
-    While `busy` says so, it waits.
+    It waits while `busy` returns True.
     """
 
     scene: Scene

@@ -103,17 +103,17 @@ class Curve:
         self._dot.glyph.size = 15 * thick
 
     def range(self, low: float, high: float) -> None:
-        """The frequencies shown."""
+        """Set the range of frequencies shown."""
         self.figure.x_range.update(start=low, end=high)
 
     def show_directions(self, directions: list[str]) -> None:
-        """Only these directions are visible."""
+        """Make only these directions visible."""
         for name, renderers in self._renderers.items():
             for renderer in renderers:
                 renderer.visible = name in directions
 
     def begin(self, directions: list[str]) -> None:
-        """New curves will come: the present ones become the grey ones."""
+        """Make the present curves of these directions grey, because new ones will come."""
         self._whole = self._whole and "rest" not in directions
         for name in DASHES:
             if name in directions:
@@ -123,7 +123,7 @@ class Curve:
                 self._draw(name)
 
     def add(self, direction: str, points: list[CurvePoint], covers: bool) -> None:
-        """More points; once they cover the range the grey curve goes."""
+        """Add points; once they cover the range the grey curve is removed."""
         self._points[direction] += [point for point in points if np.isfinite(point.max_output_force)]
         if covers:
             self._before[direction] = []
@@ -132,7 +132,7 @@ class Curve:
         self._draw(direction)
 
     def redraw(self, direction: str, points: list[CurvePoint]) -> None:
-        """A whole curve in place of what there is of it, drawn while a knob moves."""
+        """Draw a whole curve in place of the present one, while a knob moves."""
         self._whole = self._whole and direction != "rest"
         self._points[direction] = []
         self.add(direction, points, covers=True)
@@ -151,7 +151,7 @@ class Curve:
         self._whole = self._whole or direction == "rest"
 
     def clear(self) -> None:
-        """No curve: another scene was opened."""
+        """Remove all curves, because another scene was opened."""
         self._whole = False
         for name in DASHES:
             self._points[name], self._before[name] = [], []
@@ -159,7 +159,7 @@ class Curve:
             self._draw_before(name)
 
     def now(self, frequency: float, force: float | None) -> None:
-        """The current point; without a force only its frequency."""
+        """Mark the current point; without a force, only its frequency."""
         shown = frequency, None if force is None else float(f"{force:.3g}")
         if (shown, self._scale) == self._place:
             return
@@ -170,7 +170,7 @@ class Curve:
                           "force": [force / factor] if force is not None else []}
 
     def features(self, features: Sequence[Feature]) -> None:
-        """Vertical marks at what the paper states; they carry no force."""
+        """Draw vertical marks at the frequencies that the paper states; it states no forces."""
         self._features.data = {
             "frequency": [f.frequency for f in features],
             "top": [self.figure.y_range.end] * len(features),
@@ -179,7 +179,7 @@ class Curve:
         }
 
     def measured(self, measured: Measured | None) -> None:
-        """The visitor's own data with error bars, or none."""
+        """Show the visitor's own data with error bars, or none."""
         self._measurement = measured
         self._rescale()
         if measured is None:

@@ -26,7 +26,7 @@ from ...serve.queues import MEASUREMENTS
 
 
 class EffectsPanel(Page):
-    """While it is on the screen it lists what is being computed and measures the cost of one effect after the other."""
+    """Lists what is being computed and measures the cost of one effect after the other, while it is on the screen."""
 
     def __init__(self, host: Host, view: Component) -> None:
         self._host = host
@@ -93,7 +93,7 @@ class EffectsPanel(Page):
             self._show()
 
     def _poll(self, turn: int) -> None:
-        """Again and again while the panel is open."""
+        """Repeat while the panel is open: begin what is next, and show everything."""
         if not self._open or turn != self._turn:
             return
         self._next()
@@ -101,7 +101,7 @@ class EffectsPanel(Page):
         self._host.after(ACTIVITIES_EVERY, self._poll, turn)
 
     def _next(self) -> None:
-        """Begin what is to be done next: compile for one effect, or time it."""
+        """Begin the next thing to do: compile the kernels of one effect, or measure it."""
         scene = self._host.session.scene
         busy = self.measuring or self._host.awaiting_picture or self._host.curve_computing
         if busy or time.monotonic() - self._moved < COST_QUIET:
@@ -118,7 +118,7 @@ class EffectsPanel(Page):
             return
 
     def _compiled(self, name: str, pair: tuple[Variant, Variant]) -> bool:
-        """Whether both kernels only need to be loaded; one that is not there is compiled in another process."""
+        """Whether both kernels are compiled; if one is not, another process begins to compile it."""
         for variant in pair:
             piece = COST_ACCOUNT if variant.balance else COST
             if COMPILER.has(variant.scene, piece):
@@ -135,7 +135,7 @@ class EffectsPanel(Page):
         self._task.start(partial(self._work, name, pair))
 
     def _work(self, name: str, pair: tuple[Variant, Variant], job: Job) -> None:
-        """In the measuring thread; a moving knob holds it up."""
+        """In the measuring thread: measure both costs, waiting while a knob moves."""
         for method in (CODE, MOTION):
             cost = effect_cost(*pair, method, job.stop, job.give_way)
             job.later(self._measured, name, method, cost)
@@ -176,7 +176,7 @@ class EffectsPanel(Page):
         }
 
     def _step(self, scene: Scene) -> dict[str, float]:
-        """Nanoseconds a step of this very kernel, by method, from the last effect that was timed."""
+        """Nanoseconds a step of the present kernel, by method, from the last effect that was measured."""
         found: dict[str, float] = {}
         for name, costs in self._costs.items():
             on = present(name, scene, account=False)

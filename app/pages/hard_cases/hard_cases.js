@@ -1,4 +1,4 @@
-// The page "Hard cases", over the pictures: a card for each case, nothing measured before one asks.
+// The page "Hard cases", over the pictures: a card for each case, none of which runs before the visitor asks.
 
 import { button, meter, pageHead, part, table } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";

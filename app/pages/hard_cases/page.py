@@ -22,7 +22,7 @@ _FAULT = "The process that ran this case ended unexpectedly; run it again, and p
 
 
 class HardPage(Page):
-    """Cases wait for their turn and are measured one after the other; results stay until a case is run again."""
+    """Runs the requested cases one after the other; results stay until a case is run again."""
 
     def __init__(self, host: Host, view: Hard) -> None:
         self._view = view
@@ -45,7 +45,7 @@ class HardPage(Page):
         return "hard cases", READY if self.rows else OFF, f"{len(self.rows)} of {len(CASES)} run"
 
     def stop(self) -> None:
-        """Stop the case under way and forget those that wait; what was found stays."""
+        """Stop the case under way and forget those that wait; the results found so far stay."""
         self._give_up()
         for name in self.waiting:
             self._put(name, **progress("hard", "stopped"))
@@ -110,7 +110,7 @@ class HardPage(Page):
             self._view.draw(name, picture)
 
     def _end(self, status: str, sentence: str) -> None:
-        """The case in front is measured, or failed; the next one's turn comes."""
+        """The first waiting case has ended or failed: begin the next one."""
         name = self.waiting.pop(0)
         if self.waiting:
             self._begin_next()

@@ -1,4 +1,4 @@
-"""The page "Hard cases": a card for each, with its rows of figures against bars and a picture of ours beside naive."""
+"""The page "Hard cases": a card for each, with figures beside their bars and a picture beside a naive solver's."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Hard(Component):
         self._drawn: dict[str, Picture] = {}
 
     def draw(self, name: str, picture: Picture) -> None:
-        """Show the picture of a case in place of what there is of it."""
+        """Show the picture of a case in place of an earlier one."""
         self._drawn[name] = picture
         self.tell(**picture_message(name, picture, self._theme))
 
@@ -42,7 +42,7 @@ class Hard(Component):
 
 
 def described_cases() -> list[dict[str, Any]]:
-    """The cases as they stand before anything was measured."""
+    """The cases in words, before anything is run."""
     return [{"name": case.name, "hard": case.hard, "naive": case.naive, "oracle": case.oracle}
             for case in CASES]
 
@@ -88,7 +88,7 @@ def summary(found: dict[str, list[Check]]) -> str:
 
 
 def picture_message(name: str, picture: Picture, theme: Theme) -> dict[str, Any]:
-    """A picture that nothing will change: the figure itself, and the words for who cannot see it."""
+    """A picture as a message: its figure, and words for those who cannot see it."""
     labels = "; ".join(trace.label for trace in picture.traces)
     return {"type": "picture", "case": name, "figure": json_item(check(picture, theme)),
             "words": f"{picture.y_label} over {picture.x_label}: {labels}"}

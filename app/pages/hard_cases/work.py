@@ -30,7 +30,7 @@ def case_of(name: object) -> Case | None:
 
 
 def _follow_parent() -> None:
-    """End with the dashboard, however that ended."""
+    """End this process when the dashboard ends, in whatever way."""
     parent = parent_process()
     if parent is not None:
         parent.join()
@@ -38,7 +38,7 @@ def _follow_parent() -> None:
 
 
 def serve_cases(asked: Connection) -> None:
-    """What the process does: for every name that is asked, the rows of the quick form, then the picture or None."""
+    """Run in the process: answer each name with the rows of the quick form, then with the picture or None."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the dashboard's, not ours
     threading.Thread(target=_follow_parent, daemon=True).start()
     if hasattr(os, "nice"):
@@ -53,14 +53,14 @@ def serve_cases(asked: Connection) -> None:
 
 
 class CaseProcess:
-    """One process, begun with the first case that needs one; `close` may be called at any time, from any thread."""
+    """One process, which the first case starts; `close` may be called at any time, from any thread."""
 
     def __init__(self) -> None:
         self._process: BaseProcess | None = None
         self._asked: Connection | None = None
 
     def measure(self, case: Case, stop: Stop) -> Iterator[list[Check] | Picture | None]:
-        """The rows, then the picture or None. Raises `Cancelled` for the flag, `Ended` where the process is no more."""
+        """The rows, then the picture or None. Raises `Cancelled` for the flag, `Ended` if the process has ended."""
         if stop:
             raise Cancelled
         asked = self._asked or self._begin()
@@ -80,7 +80,7 @@ class CaseProcess:
                 self.close()
 
     def close(self) -> None:
-        """End the process, whatever it does."""
+        """End the process, whatever it is doing."""
         if self._process is not None:
             self._process.kill()
 

@@ -20,7 +20,7 @@ export const MAP = {
   redraw: () => {},
 };
 
-// What a computation says: why it failed, else how far it is.
+// Why a computation failed or, if it did not, how it stands.
 const wordsOf = ({ sentence, progress }) => sentence || progress;
 
 export function mapMessage(message) {
@@ -40,7 +40,7 @@ export function mapMessage(message) {
   MAP.redraw(message.type);
 }
 
-// The row of the cell that is drawn at a place of the grid: the finest one that is there.
+// The row of the cell drawn at a place of the grid: the finest one computed so far.
 export function cellAt(i, j) {
   const { number, spacing } = MAP.cells.rows.cells ?? { number: [] };
   for (let step = 1; step <= 64; step *= 2) {
@@ -50,7 +50,7 @@ export function cellAt(i, j) {
   return -1;
 }
 
-// The row of a cell that a tap has hit: that of the finest net.
+// Of the cells that a tap has hit, the row of the one from the finest net.
 export const finest = (rows) => {
   const { spacing } = MAP.cells.rows.cells;
   return rows.reduce((best, row) => (spacing[row] < spacing[best] ? row : best));

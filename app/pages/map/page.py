@@ -32,7 +32,7 @@ from .view import cells_message, described, head_message
 COLUMNS, ROWS = 60, 40
 #: Random states from which attractors are looked for.
 _RANDOM_STATES = 64
-#: The same for a scene that has to be settled without lanes.
+#: The same for a scene that cannot be computed in SIMD lanes.
 _FEW_RANDOM_STATES = 12
 
 
@@ -44,7 +44,7 @@ def page_grid(scene: Scene) -> Grid:
 
 
 class MapTab(Page):
-    """While the tab is on the screen its diagram is computed; nothing is while it is not."""
+    """Computes its diagram while the tab is on the screen."""
 
     def __init__(self, host: Host, view: Component) -> None:
         self._host = host
@@ -74,7 +74,7 @@ class MapTab(Page):
         self._search.cancel()
 
     def changed(self) -> None:
-        """A knob has moved: another knob than f and A0 makes another diagram, any makes other attractors."""
+        """A knob has moved: any but f and A0 changes the diagram, and any at all changes the attractors."""
         if not self._visible:
             return
         self._tell_now()
@@ -129,7 +129,7 @@ class MapTab(Page):
         return [int(number) for number in np.flatnonzero(self._cells["regime"] < 0)]
 
     def _give_up(self) -> bool:
-        """Nothing more of this diagram is computed; says whether something was."""
+        """Stop computing this diagram; return whether it was being computed."""
         if not self._diagram.cancel():
             return False
         self.status = "stopped"
@@ -140,14 +140,14 @@ class MapTab(Page):
             self._say("stopped")
 
     def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
-        """In a thread of its own; a moving knob holds it up."""
+        """In a worker thread: compute the missing cells, waiting while a knob moves."""
         job.compile(grid.scene, LIVE, CERTIFIED, CURVE)
         job.say("computing")
         for rows in _batches(grid, missing, job.stop, partial(job.give_way, self._in_front)):
             job.later(self._show, rows)
 
     def _in_front(self) -> bool:
-        """Whether the picture or the curve is being computed, which come first."""
+        """Whether the picture or the curve, which come first, is being computed."""
         return self._host.awaiting_picture or self._host.curve_computing
 
     # To the browser
@@ -183,7 +183,7 @@ class MapTab(Page):
             self._tell(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
-        """A place of the diagram was clicked: f and A0 go there."""
+        """A place of the diagram was clicked: set f and A0 to its values."""
         session = self._host.session
         self._host.show(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
 
@@ -225,7 +225,7 @@ class MapTab(Page):
 
 
 def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], None]) -> Iterator[np.ndarray]:
-    """Cells as they come, a lot at a time."""
+    """Cells as they are computed, in batches."""
     rows: list[np.ndarray] = []
     last = time.monotonic()
     for result in iter_diagram(grid, missing, stop, 1, pause):

@@ -1,4 +1,4 @@
-"""What the map tab is sent: the figure of a grid, its cells as rows of the figure's sources, attractors in words."""
+"""Messages to the map tab: the figure of a grid, its cells as rows of the figure's sources, attractors in words."""
 
 from __future__ import annotations
 

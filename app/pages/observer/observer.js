@@ -1,4 +1,4 @@
-// The Observer page: the chain above, its observer below, the force that alone goes from one to the other, their distance.
+// The Observer page: the chain above, its observer below, between them the force that couples them, and their distance.
 
 import { button, pageHead, part } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
@@ -9,7 +9,7 @@ import { Replay } from "./replay.js";
 const KEPT_A_PERIOD = 8; // points of the distance
 const KEPT_PERIODS = 80;
 
-// The foundation's stiffness: the paper's two values, and a slider between and beyond.
+// The foundation's stiffness: a slider, and a button for each of the paper's two values.
 class KappaControl {
   constructor(set) {
     this.slider = part("input", { type: "range", min: 0, max: 0.002, step: 0.00001, ariaLabel: "foundation κ" });
@@ -70,8 +70,8 @@ class ObserverPage {
         "Observer",
         this.kappa.root,
         control("nudge", "observer-nudge", "Move the observer's beads by a thousandth of A₀"),
-        control("from rest", "observer-rest", "The observer knows nothing: it starts at rest"),
-        control("start again", "observer-again", "Both on the orbit, the observer nudged"),
+        control("from rest", "observer-rest", "Start the observer at rest, with no knowledge of the chain"),
+        control("start again", "observer-again", "Start both on the orbit, with the observer nudged"),
       ),
       part("div", { className: "say" }, this.said, this.rates, this.status),
       this.chains.root,

@@ -1,4 +1,4 @@
-"""The Observer page of one visitor: computes while it is looked at, one drive period for each the browser has shown."""
+"""The Observer page of one visitor: it computes a drive period each time the browser has shown one."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class ObserverPage(Page):
         }
 
     def changed(self) -> None:
-        """A knob moved: the control on the page follows, and the next period is the new chain's."""
+        """A knob moved: the page's own control follows, and the next period belongs to the new chain."""
         scene = self._host.session.scene
         self._view.display(kappa=scene.kappa)
         if self._run is not None and self._run.scene.digest != scene.digest:
@@ -74,7 +74,7 @@ class ObserverPage(Page):
             self._more()
 
     def _work(self, scene: Scene, picture: Settled | None, job: Job) -> None:
-        """In a worker thread: one period more of this scene's run."""
+        """In a worker thread: compute one more period of this scene's run."""
         job.compile(scene, CERTIFIED, OBSERVER)
         mine = picture if picture is not None and picture.run.scene.digest == scene.digest else None
         run, began = self._run, False

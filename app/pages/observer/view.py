@@ -20,7 +20,7 @@ from ...scripts import module
 from .work import Step
 
 _TRANSIENT = 2
-"""Drive periods after a start that no multiplier describes."""
+"""Drive periods after a start during which no multiplier describes the distance."""
 
 
 @cache
@@ -41,7 +41,7 @@ class Observer(FigurePart):
         self._anchor: tuple[float, float] | None = None
 
     def step(self, step: Step, scene: Scene, began: bool, since: int, factor: float | None) -> None:
-        """Send one period, and what is predicted from where the transient is over, two periods after the start."""
+        """Send one period, and the prediction from the end of the transient, two periods after the start."""
         self.need_figures()
         if began:
             self._anchor = None
@@ -52,7 +52,7 @@ class Observer(FigurePart):
 
 
 def first_state() -> dict[str, Any]:
-    """What the page knows before anything was computed."""
+    """The state of the page before anything is computed."""
     return {"palette": PALETTE, "kappa": 0.0, "progress": "", "sentence": ""}
 
 

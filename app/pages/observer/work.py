@@ -21,7 +21,7 @@ from granchain_core.stop import Stop
 
 from ...frames import samples_for
 
-#: What a nudge moves the observer's beads by, root mean square, as a part of A0.
+#: Root-mean-square displacement of the observer's beads by a nudge, over A0.
 NUDGE = 1e-3
 _MOST_ROWS = 192
 _REMEMBERED = 400
@@ -44,7 +44,7 @@ class Step:
 
 
 class ObserverRun:
-    """One chain with one observer; `went_on` begins with the states of another run, as when a knob was turned."""
+    """One chain with one observer; it starts from the states of `went_on`, a run before a knob was turned."""
 
     def __init__(self, scene: Scene, picture: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
         self.scene = scene
@@ -62,7 +62,7 @@ class ObserverRun:
             self._begin(start, observer_start(scene, start, NUDGE))
 
     def _begin(self, chain: State, observer: State) -> None:
-        """Both go on from these states; what was measured before belongs to another start."""
+        """Continue both chains from these states, and forget what was measured before."""
         self.pair.start(State(chain.displacement, chain.velocity), State(observer.displacement, observer.velocity))
         self.since = self.number
         self.strobes: list[np.ndarray] = []
@@ -96,14 +96,14 @@ class ObserverRun:
 
     @property
     def predicted(self) -> float | None:
-        """What the distance is multiplied by in one drive period as long as it is small."""
+        """The factor by which the distance changes in a drive period while it is small; None if unknown."""
         if self.orbit is None or self.leading is None:
             return None
         return float(abs(self.leading) ** (1.0 / self.orbit.period))
 
     @property
     def measured(self) -> float | None:
-        """The same as it was since the last nudge, where enough periods were linear."""
+        """The same factor measured since the last start; None until enough periods were linear."""
         if len(self.strobes) < 8 * self._every:
             return None
         _, found = rates(self._linear)
@@ -116,13 +116,13 @@ class ObserverRun:
 
     @property
     def _linear(self) -> np.ndarray:
-        """The strobes, one an orbit, that are neither transient nor too large nor rounding."""
+        """The stroboscopic differences, one an orbit, after the transient, and neither too large nor rounding."""
         strobes = np.array(self.strobes).reshape(len(self.strobes), -1)[:: self._every]
         first, end = linear_window(np.sqrt((strobes**2).sum(axis=1)))
         return strobes[first:end]
 
     def step(self) -> Step:
-        """One period on."""
+        """Compute the next drive period."""
         engine, n = self.pair.engine, self.scene.N
         rows = engine.record(self.samples)
         difference = self.pair.difference(rows)
@@ -144,7 +144,7 @@ class ObserverRun:
 
     @property
     def sentence(self) -> str:
-        """What the multiplier predicts, in words."""
+        """What the multiplier predicts, in one sentence."""
         mu, factor = self.leading, self.predicted
         if self.in_step:
             return "The observer agrees with its chain to the last digits; nudge it to watch it catch up again."

@@ -28,7 +28,7 @@ class DisturbedChain extends ChainDrawing {
     g.stroke();
   }
 
-  // Where the bead would be on the orbit, behind everything.
+  // The places of the beads on the orbit, behind everything else.
   ground(frames, pitch, radius, y) {
     const { context: g, ink } = this;
     g.strokeStyle = ink.text;

@@ -11,7 +11,7 @@ export class MultiplierPlane {
     this.choose = (rank) => send({ do: "stability-mode", value: rank });
     this.watch = part("input", { type: "checkbox" });
     this.watch.addEventListener("change", () => send({ do: "stability-observer", value: this.watch.checked }));
-    this.host = part("div", { className: "picture", tabIndex: 0, title: "the arrow keys choose another multiplier" });
+    this.host = part("div", { className: "picture", tabIndex: 0, title: "Arrow keys choose another multiplier" });
     this.host.addEventListener("keydown", ({ key }) => this.step({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0));
     this.figure = new Embedded(this.host, (one) => this.fill(one));
     this.told = part("span", { className: "soft told" });

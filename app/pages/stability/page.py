@@ -1,4 +1,4 @@
-"""The Stability view of one visitor: when it computes, what of it is still true, and what it says."""
+"""The Stability page of one visitor: when it computes, whether that still holds, and what it says of it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _LIVE = "Only a motion that repeats has multipliers, and a live run is under way
 
 
 class StabilityPage(Page):
-    """While it is on the screen, every picture that stays is analysed; a knob that moves gives up what is under way."""
+    """While it is on the screen, it analyses every picture that stays; a moving knob cancels the analysis."""
 
     def __init__(self, host: Host, view: Stability) -> None:
         self._host = host
@@ -78,7 +78,7 @@ class StabilityPage(Page):
     # The picture in front
 
     def moved(self) -> None:
-        """Another picture is asked for: what is under way here is given up, what is shown is greyed."""
+        """Another picture is being computed: cancel the analysis, and grey what is shown."""
         self._give_up()
         self._picture = None
         if self._open and self._host.session.mode == "live":
@@ -87,7 +87,7 @@ class StabilityPage(Page):
             self._view.display(stale=True)
 
     def arrived(self, picture: Settled) -> None:
-        """The best picture for these knobs is there; it is analysed if it stays."""
+        """A picture has arrived: if it is the final one for these knobs, analyse it if it stays."""
         if not picture.final:
             return
         again = self._picture is not None and picture.state is self._picture.state  # with its energy account
@@ -119,7 +119,7 @@ class StabilityPage(Page):
             self._begin(self._due)
 
     def _begin(self, due: int) -> None:
-        """Analyse the picture, unless it was, or is not the last one, or nobody looks."""
+        """Analyse the picture, unless that was done, a newer one is awaited, or nobody looks."""
         picture = self._picture
         if due != self._due or not self._open or picture is None or self._analysed is picture.state:
             return
@@ -174,7 +174,7 @@ class StabilityPage(Page):
             self._show_evidence()
 
     def _ended(self, status: str, sentence: str) -> None:
-        """What was found has arrived by then; only what failed, or is being compiled, is left to be told."""
+        """Report a failure or a state such as "compiling"; results have arrived by themselves."""
         if status != "done":
             with unlocked():
                 self._say(status, sentence)
@@ -210,7 +210,7 @@ class StabilityPage(Page):
             self._view.display(evidence=evidence(self._picture, self._analysis, self._section))
 
     def _clear(self, sentence: str) -> None:
-        """There are no multipliers to show; why is told."""
+        """Show no multipliers, and a sentence that says why."""
         self._analysis, self.status = None, "none"
         self._view.display(**progress("stability", "none"), failure="", stale=False, sentence=sentence,
                            plane=plane_state(None), count=0, told="", searched=False, evidence=[],
@@ -240,7 +240,7 @@ class StabilityPage(Page):
         self._again()
 
     def _again(self) -> None:
-        """The same orbit with what was chosen."""
+        """Analyse the same orbit with what the visitor chose."""
         if self._open and self._target is not None and self._picture is not None:
             self._follow(self._target)
 
@@ -258,6 +258,6 @@ class StabilityPage(Page):
         self._orbits.start(partial(self._find, picture, section, period))
 
     def _back(self, _: dict[str, Any]) -> None:
-        """From an orbit that was found, or a search, back to what the chain does."""
+        """Go back from a search, or from the orbit it found, to the settled motion."""
         self._give_up()
         self._begin(self._due)

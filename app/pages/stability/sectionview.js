@@ -1,9 +1,8 @@
-// The section on the page: its picture, and which bead at which phase it is of.
+// The Poincaré section on the page: its picture, and the choice of bead and drive phase.
 
 import { part } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
-// Which bead, at which phase of the drive.
 export class SectionView {
   constructor(send, phases) {
     this.phases = phases;

@@ -1,4 +1,4 @@
-// The Stability page, over the pictures: does a disturbance die out, which way does it leave, and how one knows.
+// The Stability page, over the pictures: whether a disturbance dies out, which way it leaves, and on what evidence.
 
 import { pageHead, part } from "../../parts/dom.js";
 import { ModeView } from "./mode.js";

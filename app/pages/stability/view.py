@@ -47,7 +47,7 @@ class Stability(FigurePart):
         super().__init__(received, state={"longest_period": LONGEST_PERIOD, "phases": PHASES}, **params)
 
     def section(self, shown: SectionPoints) -> None:
-        """Show a section in place of what there is of one."""
+        """Show a section in place of an earlier one."""
         self.need_figures()
         self.tell(**section_message(shown))
 
@@ -59,7 +59,7 @@ def period_words(orbit: Orbit) -> str:
 
 
 def verdict(orbit: Orbit) -> str:
-    """Whether a disturbance of the orbit dies out, and which way it leaves if not."""
+    """Whether a disturbance of the orbit dies out and, if it does not, which way it leaves."""
     leading = complex(orbit.multipliers[0])
     size = abs(leading)
     if size < 1.0:
@@ -88,7 +88,7 @@ def _leaves(leading: complex) -> str:
 
 
 def no_multipliers(picture: Settled) -> str:
-    """What is said of a motion that does not repeat."""
+    """Why a motion that does not repeat has no multipliers."""
     regime = picture.regime
     if regime.lyapunov is None or regime.name == "unsettled":
         return (f"No multipliers: the chain has not settled after {regime.periods_run} periods, and only a motion that "
@@ -101,13 +101,13 @@ def no_multipliers(picture: Settled) -> str:
 
 
 def multiplier_sentence(orbit: Orbit, rank: int) -> str:
-    """The multiplier at a place, or the last one, in one sentence."""
+    """The multiplier of this rank, or the last one, in one sentence."""
     value, modulus, *_ = multiplier_words(complex(orbit.multipliers[:rank + 1][-1]), orbit)
     return f"ringed: μ = {value}, |μ| {modulus}"
 
 
 def evidence(picture: Settled, analysis: Analysis | None, section: Section | None) -> list[dict[str, str]]:
-    """Name, value and meaning of everything the verdict rests on; what was not computed has no row."""
+    """Name, value and meaning of everything on which the verdict rests; what was not computed has no row."""
     regime, rows = picture.regime, []
 
     def row(name: str, value: str, meaning: str) -> None:

@@ -1,4 +1,4 @@
-"""What the Stability view computes in the background: an orbit with its mode, a section, a search. No page in here."""
+"""What the Stability page computes in the background: an orbit with its mode, a section, a search."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from ...serve.queues import Stop
 PHASES = 48
 """Phases of the drive period at which the section is kept."""
 _FEWEST, _CLOUD = 24, 1200
-"""Periods of a section at least, and of one of a motion that is not periodic."""
+"""Fewest periods of a section, and those of one whose motion is not periodic."""
 _MODE_VALUES = 60_000
 """Values of one mode; beyond it its samples lie farther apart."""
 _TRUSTED = 1e-4
 """A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8."""
 _SAME_ORBIT = 1e-3
-"""Newton's method that ends farther than this from a settled motion has found another orbit."""
+"""If Newton's method ends farther than this from a settled motion, it has found another orbit."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class Target:
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """An orbit, one of its modes, its own points, how far it is from where one started, and what that took [s]."""
+    """An orbit, one of its modes, its points, its distance from the start of the search, and the time taken [s]."""
 
     target: Target
     orbit: Orbit
@@ -80,14 +80,14 @@ def _apart(one: State, other: State) -> float:
 
 
 def section_of(picture: Settled, start: State | None, stop: Stop) -> Iterator[Section]:
-    """The section from where the picture's chain was started: its transient, and a cloud of what is not periodic."""
+    """The section from the start of the picture's chain: a transient and, if it is not periodic, a cloud."""
     regime = picture.regime
     periods = max(regime.periods_run, _FEWEST) if regime.name == "periodic" else max(_CLOUD, regime.periods_run)
     yield from iter_section(picture.run.scene, start, periods, PHASES, stop=stop)
 
 
 def transient(picture: Settled, section: Section) -> int:
-    """How many of its first periods are on the way: all of them where a periodic orbit ends it."""
+    """How many of its first periods are a transient: all, if the motion is periodic or has not settled."""
     if picture.regime.name in ("periodic", "unsettled"):
         return section.periods
     return min(EXAMINED_AFTER, section.periods)
