@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import pytest
 from knobs import type_into
 from playwright.sync_api import Locator, Page, expect
 
@@ -151,11 +150,12 @@ def test_its_tab_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
     expect(page.locator("#cover")).to_be_hidden()
 
 
-@pytest.mark.parametrize("size", [(1280, 800), (1920, 1080), (390, 844)])
-def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
-    page = visit(viewport={"width": size[0], "height": size[1]})
+def test_the_page_fits(visit: Visit) -> None:
+    page = visit()
     sheet = opened(page)
-    assert page.evaluate("document.documentElement.scrollWidth") == size[0]
-    box = sheet.locator(".work .picture").bounding_box()
-    assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > 200
+    for width, height in ((1280, 800), (1920, 1080), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        box = sheet.locator(".work .picture").bounding_box()
+        assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
     sheet.get_by_role("button", name="stop").click()

@@ -159,16 +159,17 @@ def test_a_live_run_has_none(visit: Visit) -> None:
     assert marks(page, "within") == marks(page, "outside") == 0
 
 
-@pytest.mark.parametrize("size", [(1280, 800), (1920, 1080), (390, 844)])
-def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
-    page = visit(viewport={"width": size[0], "height": size[1]})
+def test_the_page_fits(visit: Visit) -> None:
+    page = visit()
     sheet = opened(page)
-    assert page.evaluate("document.documentElement.scrollWidth") == size[0]
-    for name, least in ((".plane .picture", 200), (".motion .picture", 130), (".poincare .picture", 130)):
-        box = sheet.locator(name).bounding_box()
-        assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > least
-    search = sheet.get_by_role("button", name="search").bounding_box()
-    assert search is not None and (size[0] < 500 or search["y"] + search["height"] <= size[1])
+    for width, height in ((1280, 800), (1920, 1080), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        for name, least in ((".plane .picture", 200), (".motion .picture", 130), (".poincare .picture", 130)):
+            box = sheet.locator(name).bounding_box()
+            assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > least
+        search = sheet.get_by_role("button", name="search").bounding_box()
+        assert search is not None and (width < 500 or search["y"] + search["height"] <= height)
 
 
 @pytest.mark.parametrize("width", [1280, 390])
