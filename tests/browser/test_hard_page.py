@@ -73,7 +73,7 @@ def test_run_all_is_stopped_at_once(visit: Visit) -> None:
     sheet.get_by_role("button", name="run all").click()
     expect(card(sheet, LONG)).to_contain_text("computing", timeout=20_000)
     expect(card(sheet, QUICK)).to_contain_text("waiting for its turn …")
-    sheet.get_by_role("button", name="stop").click()
+    sheet.get_by_role("button", name="stop", exact=True).click()
     expect(card(sheet, QUICK)).to_contain_text("stopped", timeout=1500)
     expect(card(sheet, LONG)).to_contain_text("stopped")
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
