@@ -13,7 +13,9 @@ import json
 import os
 import sys
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import ExitStack
+from itertools import cycle
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -158,13 +160,19 @@ def _compile(job: tuple[Scene, str]) -> str:
 
 
 def warm_presets(workers: int = 2) -> Iterable[str]:
-    """Compile all pieces of the presets' structures in `workers` processes; yields what has been finished."""
+    """Compile all pieces of the presets' structures in `workers` processes; yields what has been finished.
+
+    A structure's pieces are compiled in one process: they share parts that are compiled once a process.
+    """
     seen: dict[str, Scene] = {}
     for name in scene_names():
         seen.setdefault(structure(scene(name)), scene(name))
-    jobs = [(one, piece) for piece in PIECES for one in seen.values()]
-    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(_compile, jobs)
+    with ExitStack() as stack:
+        pools = [stack.enter_context(ProcessPoolExecutor(1, mp_context=get_context("spawn"))) for _ in range(workers)]
+        jobs = [pool.submit(_compile, (one, piece))
+                for one, pool in zip(seen.values(), cycle(pools), strict=False) for piece in PIECES]
+        for job in as_completed(jobs):
+            yield job.result()
 
 
 if __name__ == "__main__":

@@ -65,7 +65,8 @@ def test_the_glossary_names_a_place_for_every_term():
 @pytest.mark.parametrize("command", _COMMANDS)
 def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
     """The parser takes them, and the scene takes their knobs."""
-    parsed = cli._parser().parse_args(shlex.split(command)[1:])
+    words = shlex.split(command)[1:]
+    parsed = cli._parser(words).parse_args(words)
     # docs/add-an-effect.md makes the one, docs/add-a-damping-law.md the other, and their tests run them
     if "scene" in parsed and parsed.scene != "drag" and "dissipation=three-quarters" not in parsed.set:
         changes = dict(setting.split("=") for setting in parsed.set)
@@ -126,4 +127,4 @@ def test_dockerfile_copies_what_the_ignore_file_lets_through():
     copied = {word for line in re.findall(r"^COPY (?!--from)(.+) \S+$", docker, re.MULTILINE) for word in line.split()}
     assert copied == allowed and all((ROOT / name).exists() for name in copied)
     arguments = json.loads(re.sub(r"\\\n\s*", "", docker.split("ENTRYPOINT ")[1]))
-    assert cli._parser().parse_args(arguments[1:]).address == "0.0.0.0"
+    assert cli._parser(arguments[1:]).parse_args(arguments[1:]).address == "0.0.0.0"

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, Cancelled, scene
+from granchain_core.orbits import krylov, periodic_orbit
 from granchain_core.orbits import orbit as orbits
-from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.orbits.orbit import sorted_multipliers
 from granchain_core.state import rest
@@ -88,19 +90,11 @@ def test_a_long_chain_has_the_leading_multipliers_of_its_linear_modes() -> None:
 def test_krylov_and_dense_multipliers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     dense = periodic_orbit(scene("sec2"), observer=True)
     monkeypatch.setattr(orbits, "DENSE", 5)
-    monkeypatch.setattr(orbits, "leading_multipliers",
-                        lambda strobe, x, observer=False: leading(strobe, x, observer, count=6))
+    monkeypatch.setattr(krylov, "leading_multipliers", partial(krylov.leading_multipliers, count=6))
     sparse = periodic_orbit(scene("sec2"), period=1, start=dense.state, observer=True)
     assert np.abs(sparse.multipliers) == pytest.approx(np.abs(dense.multipliers[:6]), abs=1e-8)
     assert dense.observer_multipliers is not None and sparse.observer_multipliers is not None
     assert np.abs(sparse.observer_multipliers) == pytest.approx(np.abs(dense.observer_multipliers[:6]), abs=1e-8)
-
-
-def leading(strobe: StroboscopicMap, x: np.ndarray, observer: bool, count: int) -> np.ndarray:
-    """The first `count` multipliers by Arnoldi iteration."""
-    from granchain_core.orbits.krylov import leading_multipliers
-
-    return leading_multipliers(strobe, x, observer, count)
 
 
 def test_multipliers_of_any_matrix_are_sorted_by_modulus() -> None:
