@@ -21,7 +21,7 @@ from ..effects.driver import driver_acceleration
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..equations.motion import contact_force
-from ..jit import by_slot, inline_llvm, inline_numba, internal
+from ..jit import by_slot, inline_numba, internal
 from ..rk4.contact_events import GAP, RATE, TINY, hermite_turn
 from ..simd.functions import root
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
@@ -151,7 +151,7 @@ def watch_beside(slots, y, dy, e, h, event, closed, log):
     follow(log, 2, value, slope, h)
 
 
-@inline_llvm
+@internal
 def watch_state(slots, y, dy, e, h, log):
     """The same where no contact changes; only the values where none of the three can be part of a maximum."""
     last, peaks = e.size - 1, log.peaks
