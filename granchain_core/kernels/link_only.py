@@ -32,7 +32,11 @@ class _NoAddresses:
         """Nothing: kernels raise nothing and hold no objects, so that they need no environment."""
 
 
-class _LinkOnly(codegen.JITCodeLibrary):
+#: Numba's class for it; where there is none, nothing below is used.
+_LIBRARY: Any = getattr(codegen, "JITCodeLibrary", object)
+
+
+class _LinkOnly(_LIBRARY):
     """The LLVM code of one function and of what it calls, optimised, to be linked into callers."""
 
     @property
@@ -56,11 +60,13 @@ class _LinkOnlyCompiler(compiler.Compiler):
 
     def define_pipelines(self) -> Any:
         state = self.state
-        state.library = _LinkOnly(state.targetctx.codegen(), state.func_id.func_qualname)
+        state["library"] = _LinkOnly(state.targetctx.codegen(), state.func_id.func_qualname)
         return super().define_pipelines()
 
 
-def compiler_options(library: type = codegen.JITCodeLibrary) -> dict[str, Any]:
-    """Options of `numba.njit` for a function that only kernels call; none where `library` lacks what is needed."""
-    fits = all(hasattr(library, name) for name in _NEEDED) and hasattr(compiler.Compiler, "define_pipelines")
-    return {"pipeline_class": _LinkOnlyCompiler, "no_cpython_wrapper": True} if fits else {"no_cpython_wrapper": True}
+def compiler_options(library: type = _LIBRARY) -> dict[str, Any]:
+    """Options of `numba.njit` for a function that only kernels call: the compiler too, where `library` fits."""
+    options: dict[str, Any] = {"no_cpython_wrapper": True}
+    if all(hasattr(library, name) for name in _NEEDED) and hasattr(compiler.Compiler, "define_pipelines"):
+        options["pipeline_class"] = _LinkOnlyCompiler
+    return options

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import Any
 
 import numba
@@ -9,6 +10,9 @@ import pytest
 
 from granchain_core.kernels.jit import Internal
 from granchain_core.kernels.link_only import compiler_options
+
+#: What Numba keeps of a compiled function.
+code_of = attrgetter("library")
 
 
 class AnotherLibrary:
@@ -44,9 +48,9 @@ def test_only_the_kernel_is_translated() -> None:
     kernel(3.0, 4.0)
     (whole,), (part,) = kernel.overloads.values(), square.dispatcher.overloads.values()
     name = part.fndesc.llvm_func_name
-    assert whole.library.get_pointer_to_function(whole.fndesc.llvm_cpython_wrapper_name) != 0
-    assert part.library.get_pointer_to_function(name) == 0
-    assert name in part.library.get_llvm_str()
+    assert code_of(whole).get_pointer_to_function(whole.fndesc.llvm_cpython_wrapper_name) != 0
+    assert code_of(part).get_pointer_to_function(name) == 0
+    assert name in code_of(part).get_llvm_str()
 
 
 def test_where_numba_is_another_every_function_is_translated() -> None:
@@ -54,4 +58,4 @@ def test_where_numba_is_another_every_function_is_translated() -> None:
     kernel, square = sum_of_squares(compiler_options(AnotherLibrary))
     kernel(3.0, 4.0)
     (part,) = square.dispatcher.overloads.values()
-    assert part.library.get_pointer_to_function(part.fndesc.llvm_func_name) != 0
+    assert code_of(part).get_pointer_to_function(part.fndesc.llvm_func_name) != 0

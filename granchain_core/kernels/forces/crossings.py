@@ -1,8 +1,8 @@
 """Closings of contacts for methods that do not locate events: the jumps of the force between two states a step apart.
 
-Method     Without the contact's own damping the rate of an overlap is smooth across a closing; the parabola through it
-           gives the rate at the instant at which the overlap is zero. A touch within a step
-           shows as a maximum of the overlap between two negative values
+Without the contact's own damping the rate of an overlap is smooth across a closing: the parabola through it gives the
+rate at the instant at which the overlap is zero. A touch within a step is a maximum of the overlap between two negative
+values.
 """
 
 from __future__ import annotations

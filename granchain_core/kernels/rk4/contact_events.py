@@ -91,10 +91,10 @@ def first_event(ends, contacts, h):
 
 @by_slot
 def nearer_event(law, ends, c, last, part, most, h):
-    """Fraction of a step of size h, below `most`, at which contact c really opens or closes; it was stepped to `part`.
+    """Fraction of a step of size h, below `most`, at which contact c really closes; it was stepped to `part`.
 
     The cubic's end may lie beyond a kink of the velocity: its root is off by h², and so is the rate there. That matters
-    where a force jumps with the rate and is recorded. Absent, and elsewhere: `part`.
+    where a force jumps with the rate and is recorded. Other contacts, openings and laws without a jump: `part`.
     """
     return part
 

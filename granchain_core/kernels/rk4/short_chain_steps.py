@@ -12,14 +12,12 @@ from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from ..jit import inline_llvm, inline_numba, internal
 from ..simd.functions import larger
 from ..simd.subnormals import flush_subnormals, restore_subnormals
-from ..simd.vector import at, blank, positive_mask, store
+from ..simd.vector import at, blank, positive_mask
 from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
     DISPLACEMENT_ERROR,
-    GAP,
     MOMENTUM_ERROR,
     MOST_SPLITS,
-    RATE,
     add_quadrature_errors,
     first_event,
     nearer_event,
@@ -73,7 +71,7 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
                 break
         done += stepped
         add_quadrature_errors(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
-        # after it: the overlap now has the sign that it has after the event
+        # after add_quadrature_errors, which gives the overlap the sign that it has after the event
         watch_ends_at_event(slots, ends, contact, there, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
@@ -87,10 +85,7 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
 @inline_llvm
 def keep_forces(wide, row, last, k, x):
     """Write input force, output force and its elastic part at step k of a block; returns them."""
-    store(wide.ends, GAP, x.gap)
-    store(wide.ends, RATE, x.rate)
-    store(wide.rows, ELASTIC, x.elastic)
-    gap, rate, elastic = wide.ends[GAP, last], wide.ends[RATE, last], wide.rows[ELASTIC, last]
+    gap, rate, elastic = at(x.gap, last), at(x.rate, last), at(x.elastic, last)
     pushed = at(x.elastic, 0) + damping(row.dissipation, positive_part(at(x.gap, 0))) * at(x.rate, 0)
     passed = elastic + damping(row.dissipation, positive_part(gap)) * rate
     wide.forces[0, k], wide.forces[1, k], wide.forces[2, k] = pushed, passed, elastic
