@@ -61,7 +61,10 @@ class Pictures:
         if self._session.mode == "live":
             if self.live is not None:
                 self.live.change(self._session.scene)
-            self.idle()
+            if self._session.playing:
+                self.idle()
+            else:
+                self.advance(1)  # what stands still still shows the chain of these knobs
         else:
             self._jobs.submit(partial(self._settled, self._session.scene, start))
 

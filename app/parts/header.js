@@ -52,6 +52,7 @@ class Header {
     this.model = model;
     this.playing = true;
     this.themed = false; // whether the theme of the link has been taken over
+    this.begun = false; // whether the first state has come
     this.popovers = new Popovers();
     this.makeTimeControls();
     this.scene = chooser("scene", "scene", (name) => this.request("scene", name, { name }));
@@ -136,7 +137,15 @@ class Header {
     this.showPlaying(state);
     if (!state.query) return;
     window.granchain.linkReceived(state.query, ["scene", "mode", "start"]);
-    this.restore();
+    if (!this.begun) this.begin();
+    this.begun = true;
+  }
+
+  // Time goes as it went before a lost connection; for those who asked their browser for less motion it begins paused.
+  begin() {
+    const { again } = window.granchain;
+    if (again) this.restore(again);
+    else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
 
   // The theme of the link comes with the first state; from then on the button alone says it.
@@ -169,9 +178,7 @@ class Header {
   }
 
   // After a lost connection: what the share link does not carry.
-  restore() {
-    const { again } = window.granchain;
-    if (!again) return;
+  restore(again) {
     window.granchain.again = null;
     const { speed = 1, playing = true, uploaded = false } = again;
     this.send("again", { speed, playing, uploaded });

@@ -28,12 +28,16 @@ def chromium() -> Iterator[Browser]:
 
 @pytest.fixture
 def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
-    """Opens the dashboard; at the end no page may have complained or asked another host for anything."""
+    """Opens the dashboard; at the end no page may have complained or asked another host for anything.
+
+    The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
+    `reduced_motion="no-preference"` opens one that plays.
+    """
     contexts = []
     complaints: list[str] = []
 
     def open_page(query: str = "", url: str = address, script: str = "", **options: Any) -> Page:
-        context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, **options})
+        context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **options})
         contexts.append(context)
         page = context.new_page()
         page.on("console", lambda message: (message.type == "error" or "initial ranges" in message.text)

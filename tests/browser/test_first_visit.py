@@ -46,7 +46,7 @@ def test_everything_is_in_view_without_scrolling(visit: Visit) -> None:
 def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromium: Browser,
                                                             tmp_path: Path) -> None:
     with dashboard(tmp_path / "log", GRANCHAIN_CACHE=str(tmp_path / "cache"), NUMBA_OPT="1") as url:
-        page = chromium.new_page()
+        page = chromium.new_page(reduced_motion="reduce")
         page.goto(url)
         expect(page.get_by_role("alert")).to_contain_text("Compiling the kernels", timeout=10_000)
         expect(page.locator("#foot b")).to_contain_text("period 1", timeout=90_000)

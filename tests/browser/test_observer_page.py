@@ -45,7 +45,7 @@ def opened(page: Page) -> Locator:
 
 
 def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> None:
-    page = visit()
+    page = visit(reduced_motion="no-preference")
     sheet = opened(page)
     expect(sheet).to_contain_text("it drifts: an offset of its beads grows, because nothing pulls them back", timeout=COMPILED)
     expect(sheet).to_contain_text("predicted × 4.418")  # PHYSICS.md, section 3: one real multiplier outside
@@ -62,7 +62,7 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
 
 
 def test_a_new_start_is_seen_and_nobody_looking_stops_it(visit: Visit) -> None:
-    page = visit()
+    page = visit(reduced_motion="no-preference")
     sheet = opened(page)
     sheet.get_by_role("button", name="0.001").click()
     expect(sheet).to_contain_text("it synchronises", timeout=COMPILED)

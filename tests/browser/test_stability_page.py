@@ -63,7 +63,7 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
 
 
 def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Visit) -> None:
-    page = visit()
+    page = visit(reduced_motion="no-preference")
     sheet = opened(page)
     until(page, lambda: marks(page, "within") == 22)
     within = source(page, "multipliers", "within")

@@ -9,9 +9,12 @@ from playwright.sync_api import Page, expect
 
 Visit = Callable[..., Page]
 
+#: A visitor who has not asked for less motion.
+MOVING = {"reduced_motion": "no-preference"}
+
 
 def test_the_chain_moves(visit: Visit) -> None:
-    page = visit()
+    page = visit(**MOVING)
     first = page.evaluate("pixels('chain')")
     page.wait_for_function(f"pixels('chain') !== {first}")
     settled(page)
@@ -27,7 +30,7 @@ STANDS_STILL = """async () => {
 
 
 def test_pause_stops_the_chain_and_a_dragged_cursor_moves_it(visit: Visit) -> None:
-    page = visit()
+    page = visit(**MOVING)
     settled(page)
     page.get_by_role("button", name="Play or pause").click()
     page.wait_for_function(STANDS_STILL)
@@ -41,8 +44,23 @@ def test_pause_stops_the_chain_and_a_dragged_cursor_moves_it(visit: Visit) -> No
     page.wait_for_function(f"pixels('chain') !== {still}")
 
 
+def test_for_visitors_who_want_less_motion_the_chain_waits(visit: Visit) -> None:
+    page = visit(reduced_motion="reduce")
+    settled(page)
+    page.wait_for_function(STANDS_STILL)
+    play = page.get_by_role("button", name="Play or pause")
+    expect(play).to_contain_text("play")
+    page.get_by_role("button", name="The run goes on").click()
+    expect(page.locator("#foot b")).to_contain_text("live")
+    page.get_by_role("button", name="The steady state").click()
+    expect(page.locator("#foot b")).to_contain_text("period 1")
+    still = page.evaluate("pixels('chain')")
+    play.click()
+    page.wait_for_function(f"pixels('chain') !== {still}")
+
+
 def test_a_bead_has_the_colour_of_its_column(visit: Visit) -> None:
-    page = visit()
+    page = visit(**MOVING)
     settled(page)
     page.get_by_role("button", name="Play or pause").click()
     box = page.locator("#map").bounding_box()
@@ -77,7 +95,7 @@ COLOURS = """() => {
 
 
 def test_live_frames_advance(visit: Visit) -> None:
-    page = visit()
+    page = visit(**MOVING)
     page.get_by_role("button", name="The run goes on").click()
     page.wait_for_function("painted.filter((event) => event.live).length > 10")
     count = page.evaluate("painted.length")
@@ -86,7 +104,7 @@ def test_live_frames_advance(visit: Visit) -> None:
 
 
 def test_live_stops_when_paused_and_steps_by_one_period(visit: Visit) -> None:
-    page = visit()
+    page = visit(**MOVING)
     page.get_by_role("button", name="The run goes on").click()
     page.wait_for_function("painted.filter((event) => event.live).length > 10")
     page.get_by_role("button", name="Play or pause").click()
