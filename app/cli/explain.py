@@ -1,15 +1,16 @@
-"""What --explain prints: the effects compiled into a scene's kernel, those that are absent, the method and why."""
+"""What --explain prints: the effects in a scene's kernel, those that are absent, the method and why, the machine."""
 
 from __future__ import annotations
 
 from granchain_core.integrate.methods import METHODS, method_for, setting_of
+from granchain_core.kernels.simd.width import machine
 from granchain_core.lower import lower, slots_of
 from granchain_core.scene import Scene
 from granchain_core.warm import structure
 
 
 def explanation(scene: Scene, method: str | None, samples: int) -> str:
-    """The slots of the kernel that `run` uses, and its method, in a few lines; `samples` a period may set its steps."""
+    """The slots of the kernel that `run` uses, its method and the machine; `samples` a period may set its steps."""
     lowered = lower(scene)
     slots = slots_of(scene, balance=True)
     present = [f"{title} ({kind})" for _, title, kind in slots if kind is not None]
@@ -25,4 +26,5 @@ def explanation(scene: Scene, method: str | None, samples: int) -> str:
         f"structure: {structure(scene)}",
         f"method: {chosen.title}, {why}; first {fineness}, then finer until two computations agree to that accuracy",
         f"restrictions: {chosen.restrictions}; reference: {chosen.reference}",
+        f"machine: {machine()}",
     ))

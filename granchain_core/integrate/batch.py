@@ -1,4 +1,4 @@
-"""A block of eight lanes: scenes are put into lanes, run together, and taken out with their strobes and forces."""
+"""A block of lanes: scenes are put into lanes, run together, and taken out with their strobes and forces."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 from ..errors import Cancelled
 from ..kernels.batch import run as kernels
 from ..kernels.batch.period_end import FINE, FORCES, FORGET, REMEMBERED
-from ..kernels.batch.run import LANES
 from ..kernels.effects.unequal import Unequal
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.simd.vector import aligned
+from ..kernels.simd.width import BATCH_LANES
 from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
@@ -40,8 +40,13 @@ def is_uniform(lowered: Lowered) -> bool:
     return bool((chain.inverse_mass[1:-1] == 1.0).all() and (chain.stiffness[:-1] == 1.0).all())
 
 
+def _rows(rows: int) -> np.ndarray:
+    """Zeros, one row of all lanes' numbers after another."""
+    return aligned(rows, BATCH_LANES)
+
+
 class Batch:
-    """Eight places for scenes of one structure and one N, run by one thread."""
+    """A place in every lane for scenes of one structure and one N, run by one thread."""
 
     def __init__(self, example: Scene, stop: Stop) -> None:
         lowered = lower(example)
@@ -49,26 +54,26 @@ class Batch:
         n, slots = example.N, lowered.slots
         dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
         self.lanes = kernels.Lanes(
-            wall=aligned(1), unequal=None if is_uniform(lowered) else Unequal(aligned(n + 2), aligned(n + 1)),
-            dissipation=None if dissipation is None else type(dissipation)(aligned(1)),
-            foundation=None if foundation is None else type(foundation)(aligned(1)),
-            preload=None if preload is None else type(preload)(aligned(n + 1)),
-            turn=aligned(2), beta=aligned(1), h=aligned(1),
+            wall=_rows(1), unequal=None if is_uniform(lowered) else Unequal(_rows(n + 2), _rows(n + 1)),
+            dissipation=None if dissipation is None else type(dissipation)(_rows(1)),
+            foundation=None if foundation is None else type(foundation)(_rows(1)),
+            preload=None if preload is None else type(preload)(_rows(n + 1)),
+            turn=_rows(2), beta=_rows(1), h=_rows(1),
         )
         rows = 2 * (n + 2)
-        whole = [np.zeros(LANES, dtype=np.int64) for _ in range(9)]
-        parts = [np.zeros(LANES) for _ in range(2)]
+        whole = [np.zeros(BATCH_LANES, dtype=np.int64) for _ in range(9)]
+        parts = [np.zeros(BATCH_LANES) for _ in range(2)]
         self.state = kernels.BatchState(
-            y=aligned(rows), gaps=aligned(n + 1), ends=aligned(4), phase=aligned(2), peaks=aligned(PEAKS),
+            y=_rows(rows), gaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
             steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
             wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], unproved=parts[1],
-            before=np.zeros((LANES, 2, n + 2)),
-            fine=np.zeros((LANES, FINE)), strobes=np.zeros((LANES, 2 * REMEMBERED, 2, n + 2)),
-            tops=np.zeros((LANES, REMEMBERED, 5)), seen=np.zeros((LANES, 3)), scale=np.zeros(2),
+            before=np.zeros((BATCH_LANES, 2, n + 2)),
+            fine=np.zeros((BATCH_LANES, FINE)), strobes=np.zeros((BATCH_LANES, 2 * REMEMBERED, 2, n + 2)),
+            tops=np.zeros((BATCH_LANES, REMEMBERED, 5)), seen=np.zeros((BATCH_LANES, 3)), scale=np.zeros(2),
             change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
             triangle=np.zeros((ORBITS, ORBITS)),
         )
-        for lane in range(LANES):  # an empty lane runs the example at rest and is never checked
+        for lane in range(BATCH_LANES):  # an empty lane runs the example at rest and is never checked
             self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
 
     def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, look: int, earliest: int = 0) -> None:
@@ -117,8 +122,8 @@ class Batch:
         return int(lane), status == DONE
 
     def run_pairs(self, start: float, periods: int) -> np.ndarray:
-        """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (4, periods)."""
-        growth = np.zeros((LANES // 2, periods))
+        """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (pairs, periods)."""
+        growth = np.zeros((BATCH_LANES // 2, periods))
         status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop.flag)
         if status == CANCELLED:
             raise Cancelled

@@ -25,6 +25,7 @@ from numba.core import event
 from numba.extending import overload
 
 from .link_only import compiler_options
+from .simd.width import BATCH_LANES
 
 #: Kernels allocate nothing, so arrays in them are not counted, and they are never passed as function pointers, so they
 #: need no C entry: that is less code to compile and to run.
@@ -63,7 +64,7 @@ event.register("numba:compile", _CollectorPause())
 
 
 def _sources_hash() -> str:
-    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()} {BATCH_LANES}".encode())
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(path.name.encode())
         digest.update(path.read_bytes())

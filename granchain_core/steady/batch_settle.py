@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..integrate.batch import NEVER, Batch
-from ..kernels.batch.run import LANES
+from ..kernels.simd.width import BATCH_LANES
 from ..lower import lower
 from ..scene import Scene
 from ..state import rest
@@ -35,7 +35,7 @@ _SLOW = 0.998
 #: Largest |μ|, by one-sided differences, that settles it.
 _SURE = 0.995
 #: Scenes whose exponents are found at once.
-_PAIRS = LANES // 2
+_PAIRS = BATCH_LANES // 2
 
 
 class _Lanes:
@@ -52,7 +52,7 @@ class _Lanes:
 
     def fill(self) -> None:
         """Put jobs into all free lanes."""
-        for lane in range(LANES):
+        for lane in range(BATCH_LANES):
             if lane not in self.jobs:
                 job = self.waiting.pop() if self.waiting else _job_or_none(self.starts)
                 if job is not None:

@@ -28,6 +28,7 @@ import numpy as np
 from ..errors import BadInput
 from ..integrate.batch import can_share_batch
 from ..integrate.methods import CERTIFIED, LIVE
+from ..kernels.simd.width import machine
 from ..quantities import QUANTITIES
 from ..result import Cost, ForceErrors, Jumps, Run
 from ..scene import Scene
@@ -235,6 +236,7 @@ def _provenance(file: h5py.File, scene: Scene, method: str, reached: float | Non
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "versions": json.dumps({"numpy": np.__version__, "numba": numba.__version__, "h5py": h5py.__version__,
                                 "python": platform.python_version()}),
+        "machine": machine(),
         "scene_name": scene.name, "scene": json.dumps(scene.to_json()), "scene_digest": scene.digest,
         "method": method, "accuracy_asked": scene.accuracy, "accuracy_reached": _or_nan(reached),
     })

@@ -10,7 +10,8 @@ import numpy as np
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
-from granchain_core.kernels.batch.run import LANES, batch_steps
+from granchain_core.kernels.batch.run import batch_steps
+from granchain_core.kernels.simd.width import BATCH_LANES
 from granchain_core.stop import Stop
 
 from . import problem
@@ -28,11 +29,11 @@ _LONGEST_C = 100
 def lanes(beads: int, evaluations: float) -> float:
     """Contact evaluations a second of eight chains in lanes, from a chain already in motion."""
     block = Batch(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Stop())
-    steps = max(4, round(evaluations / (4 * LANES * (beads + 1))))
+    steps = max(4, round(evaluations / (4 * BATCH_LANES * (beads + 1))))
     stirred(block.state.y, beads)
     batch_steps(block.lanes, block.state, 2)
     spent = timed(lambda: batch_steps(block.lanes, block.state, steps), 0.1, 7)
-    return 4 * LANES * (beads + 1) * steps / spent.median
+    return 4 * BATCH_LANES * (beads + 1) * steps / spent.median
 
 
 def stirred(y: np.ndarray, beads: int) -> None:
@@ -53,9 +54,9 @@ def along(beads: int, evaluations: float) -> float:
 def in_c(beads: int, evaluations: float) -> float:
     """The same of the C program, on eight equal scenes."""
     period = problem.period_of(problem.FREQUENCY) / c_program.STEP
-    periods = max(1, round(evaluations / (4 * LANES * (beads + 1) * period)))
+    periods = max(1, round(evaluations / (4 * BATCH_LANES * (beads + 1) * period)))
     shape = (1, max(1, (beads + 1) // 3))
-    same = np.full(LANES, problem.FREQUENCY)
+    same = np.full(BATCH_LANES, problem.FREQUENCY)
     c_program.sweep_peaks(same, c_program.STEP, shape, beads, (1, 1))
     peaks = [c_program.sweep_peaks(same, c_program.STEP, shape, beads, (periods, 1)) for _ in range(3)]
     return float(np.median([(p.evaluations or 0) * (beads + 1) / p.seconds for p in peaks]))

@@ -18,6 +18,7 @@ from app.cli import main
 from app.page.share import decode
 from granchain_core import BadInput, NumbersFailed, run, scene
 from granchain_core.experiment import read_measured_csv
+from granchain_core.kernels.simd.width import machine
 from granchain_core.store import load, save
 
 SHORT = ["--set", "N=2", "--periods", "0", "--record", "1", "--samples", "4", "--set", "f=3000"]
@@ -106,6 +107,7 @@ def test_explain_names_present_and_absent_effects_and_the_method(capsys):
     assert "Hertz contact" in present and "contact damping (LinearDashpot)" in present and "driver" in present
     assert all(name in absent for name in ("foundation", "preload", "tension cut"))
     assert "method:" in said and "accuracy of 1e-06" in said
+    assert f"machine: {machine()}" in said
 
 
 # --- share links ----------------------------------------------------------------------------------------------

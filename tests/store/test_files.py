@@ -37,7 +37,8 @@ def test_xarray_opens_a_run_with_labelled_axes_and_units(tmp_path: Path, result)
         for name in ("drive_displacement", "input_force", "output_force", "output_force_elastic"):
             assert data[name].dims == ("time",)
     with xarray.open_dataset(file, engine="h5netcdf") as root:
-        for name in ("granchain_schema", "scene", "method", "accuracy_asked", "accuracy_reached", "cost", "versions"):
+        for name in ("granchain_schema", "scene", "method", "accuracy_asked", "accuracy_reached", "cost", "versions",
+                     "machine"):
             assert name in root.attrs
 
 

@@ -42,6 +42,7 @@ class AccuracyPage {
     this.status = part("span", { className: "status" });
     this.said = part("b");
     this.agreement = part("span", { className: "soft" });
+    this.machine = part("span", { className: "soft", title: "The processor that the kernels are compiled for" });
     this.warning = part("span", { className: "warn" });
     this.picture = part("div", { className: "picture" });
     this.figure = new Embedded(this.picture, (one) => fillAccuracy(one, window.granchain.accuracy));
@@ -51,7 +52,7 @@ class AccuracyPage {
       "div",
       { className: "part sheet" },
       pageHead("What accuracy costs", this.status, this.meter, this.stop, this.again),
-      part("div", { className: "say" }, this.said, this.agreement, this.warning),
+      part("div", { className: "say" }, this.said, this.agreement, this.machine, this.warning),
       part("div", { className: "work" }, this.picture),
       this.naive.root,
       this.methods,
@@ -80,6 +81,7 @@ class AccuracyPage {
     this.meter.value = state.done ?? 0;
     this.agreement.textContent = state.agreement_words ?? "";
     this.agreement.title = state.reference ? `Reference: ${state.reference}. Second: ${state.second}.` : "";
+    this.machine.textContent = state.machine ? `on this machine: ${state.machine}` : "";
     this.methods.replaceChildren(methodTable(state.ways ?? [], state.rows ?? []));
     this.redraw();
   }

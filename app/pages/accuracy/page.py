@@ -11,6 +11,7 @@ from panel.io import unlocked
 
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
+from granchain_core.kernels.simd.width import machine
 from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
 from ...format import duration, short_error
@@ -88,7 +89,7 @@ class AccuracyPage(Page):
 
     def open(self) -> None:
         """The page or its tab was opened: measure if nothing has been measured yet."""
-        self._view.display(ways=described_ways())
+        self._view.display(ways=described_ways(), machine=machine())
         if self.status == "none":
             self._measure()
         self.describe()

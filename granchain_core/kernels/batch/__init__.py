@@ -1,1 +1,1 @@
-"""Eight scenes at a time, one in each SIMD lane."""
+"""Several scenes at a time, one in each SIMD lane."""

@@ -17,7 +17,7 @@ from ..effects.preload import batch_overlap
 from ..effects.unequal import over_mass, times_stiffness
 from ..jit import by_slot, inline_llvm
 from ..simd.functions import clip, gate, larger
-from ..simd.vector import blank, load, positive_mask, store
+from ..simd.vector import blank, load_batch, positive_mask, store
 
 
 @inline_llvm
@@ -57,9 +57,9 @@ def _(law, values, y, c, changed, path):
 def correct_state(values, y, c, row, excess):
     """Correct the beads beside contact c by the error `excess`, in the row of y that begins at `row`."""
     if c > 0:
-        store(y, row + c, load(y, row + c) + over_mass(values.unequal, c, excess))
+        store(y, row + c, load_batch(y, row + c) + over_mass(values.unequal, c, excess))
     if c < values.last:
-        store(y, row + c + 1, load(y, row + c + 1) - over_mass(values.unequal, c + 1, excess))
+        store(y, row + c + 1, load_batch(y, row + c + 1) - over_mass(values.unequal, c + 1, excess))
 
 
 @inline_llvm
@@ -68,9 +68,9 @@ def correct_contacts(values, y, gaps, h, u0):
     m = values.last + 2
     left = u0
     for c in range(values.last + 1):
-        right = load(y, c + 1)
+        right = load_batch(y, c + 1)
         gap = batch_overlap(values.preload, left, right, c)
-        before = load(gaps, c)
+        before = load_batch(gaps, c)
         store(gaps, c, gap)
         changed = blank(gap) - before * gap
         if positive_mask(changed) != 0:
@@ -84,5 +84,5 @@ def correct_contacts(values, y, gaps, h, u0):
             path = displacement_error(values.law, r, half, speed, h)
             correct_state(values, y, c, m, gate(changed, impulse))
             correct_displacement(values.law, values, y, c, changed, path)
-            right = load(y, c + 1)
+            right = load_batch(y, c + 1)
         left = right

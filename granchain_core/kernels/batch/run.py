@@ -1,4 +1,4 @@
-"""Eight chains at once, one a SIMD lane: RK4 in w with a fixed step, for curves and maps.
+"""Several chains at once, one a SIMD lane: RK4 in w with a fixed step, for curves and maps.
 
 All members share the effects and N; every value may differ, the step and the number of steps in a period too. Each
 member is checked at the end of its own periods. One that may have settled, or that is due for a check,
@@ -17,7 +17,8 @@ from ..effects.foundation import lane_foundation
 from ..effects.preload import batch_overlap
 from ..jit import inline_numba, kernel
 from ..simd.subnormals import flush_subnormals, restore_subnormals
-from ..simd.vector import LANES, load, store
+from ..simd.vector import load_batch, store
+from ..simd.width import BATCH_LANES
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .contact_correction import correct_contacts
 from .period_end import end_period
@@ -25,7 +26,7 @@ from .step import Values, batch_step, watch_batch_ends
 
 
 class Lanes(NamedTuple):
-    """Values of eight scenes: the wall's stiffness, effect slots with (1, 8) or (rows, 8) arrays or None, step data.
+    """Values of the lanes' scenes: the wall's stiffness, slots with (1, L) or (rows, L) arrays or None, step data.
 
     `turn` is cos and sin of half a step's phase, `beta` the scaled drive rate, `h` the step.
     """
@@ -41,26 +42,26 @@ class Lanes(NamedTuple):
 
 
 class BatchState(NamedTuple):
-    """State of the eight members.
+    """State of the members, L of them.
 
-    y (2(N+2), 8)            displacements and w
-    gaps (N+1, 8)            overlaps one step ago
-    ends (4, 8)              overlap and rate of the first and of the last contact one step ago
-    phase (2, 8)             sin and cos of the drive phase
-    peaks (17, 8)            largest forces
-    steps, left (8,)         steps in a period, and those left of it
-    periods, look (8,)       periods run, and the period at which the kernel returns at the latest
-    earliest (8,)            next period at which the strobes are checked
-    ready, wait (8,)         period from which a transient may be extrapolated, and the pause after a failed attempt
-    kept (8,)                number of strobes
-    slowest (8,)             slowest decay known
-    unproved (8,)            change before an extrapolation that is not yet confirmed, else 0
-    testing (8,)             period of an orbit that is being disturbed, else 0
-    before (8, 2, N+2)       state before the last extrapolation
-    fine (8, 7)              record of a fine member (period_end.py)
-    strobes (8, 2R, 2, N+2)  stroboscopic states
-    tops (8, R, 5)           largest forces and jumps of the last periods, a ring
-    seen (8, 3)              result of the last check: period, rate, distance
+    y (2(N+2), L)            displacements and w
+    gaps (N+1, L)            overlaps one step ago
+    ends (4, L)              overlap and rate of the first and of the last contact one step ago
+    phase (2, L)             sin and cos of the drive phase
+    peaks (17, L)            largest forces
+    steps, left (L,)         steps in a period, and those left of it
+    periods, look (L,)       periods run, and the period at which the kernel returns at the latest
+    earliest (L,)            next period at which the strobes are checked
+    ready, wait (L,)         period from which a transient may be extrapolated, and the pause after a failed attempt
+    kept (L,)                number of strobes
+    slowest (L,)             slowest decay known
+    unproved (L,)            change before an extrapolation that is not yet confirmed, else 0
+    testing (L,)             period of an orbit that is being disturbed, else 0
+    before (L, 2, N+2)       state before the last extrapolation
+    fine (L, 7)              record of a fine member (period_end.py)
+    strobes (L, 2R, 2, N+2)  stroboscopic states
+    tops (L, R, 5)           largest forces and jumps of the last periods, a ring
+    seen (L, 3)              result of the last check: period, rate, distance
 
     The others are workspaces of period_end.py.
     """
@@ -98,17 +99,17 @@ def batch_steps(lanes, state, count):
     """Take `count` steps in all lanes."""
     y, before = state.y, flush_subnormals()
     last = y.shape[0] // 2 - 2
-    values = Values(load(lanes.wall, 0), batch_values(lanes.dissipation), lane_foundation(lanes.foundation),
+    values = Values(load_batch(lanes.wall, 0), batch_values(lanes.dissipation), lane_foundation(lanes.foundation),
                     lanes.preload, lanes.unequal, last)
-    h, beta = load(lanes.h, 0), load(lanes.beta, 0)
-    c, s = load(lanes.turn, 0), load(lanes.turn, 1)
-    sine, cosine = load(state.phase, 0), load(state.phase, 1)
+    h, beta = load_batch(lanes.h, 0), load_batch(lanes.beta, 0)
+    c, s = load_batch(lanes.turn, 0), load_batch(lanes.turn, 1)
+    sine, cosine = load_batch(state.phase, 0), load_batch(state.phase, 1)
     for _ in range(count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
         end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
         correct_contacts(values, y, state.gaps, h, sine)
-        gap_first = batch_overlap(values.preload, sine, load(y, 1), 0)
-        gap_last = batch_overlap(values.preload, load(y, last), load(y, last + 1), last)
+        gap_first = batch_overlap(values.preload, sine, load_batch(y, 1), 0)
+        gap_last = batch_overlap(values.preload, load_batch(y, last), load_batch(y, last + 1), last)
         ends = batch_step(values, y, h, sine, middle, end)
         watch_batch_ends(values, h, gap_first, gap_last, beta * cosine, ends, state.ends, state.peaks)
         sine, cosine = end, end_cosine
@@ -122,11 +123,11 @@ def run_batch(lanes, state, stop):
     """Run until a lane is due for a check; returns (status, lane)."""
     while True:
         count = STEPS_BETWEEN_STOP_CHECKS
-        for lane in range(LANES):
+        for lane in range(BATCH_LANES):
             count = min(count, state.left[lane])
         batch_steps(lanes, state, count)
         found = -1
-        for lane in range(LANES):
+        for lane in range(BATCH_LANES):
             state.left[lane] -= count
             if state.left[lane] == 0 and end_period(state, lane) and found < 0:
                 found = lane
@@ -158,11 +159,11 @@ def run_pairs(lanes, state, start, growth, stop):
     m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
     while busy:
         count = STEPS_BETWEEN_STOP_CHECKS
-        for lane in range(LANES):
+        for lane in range(BATCH_LANES):
             count = min(count, state.left[lane])
         batch_steps(lanes, state, count)
         busy = False
-        for lane in range(0, LANES, 2):
+        for lane in range(0, BATCH_LANES, 2):
             counted = state.periods[lane] < periods and state.look[lane] == periods
             for one in range(lane, lane + 2):
                 state.left[one] -= count

@@ -1,4 +1,4 @@
-"""One Runge–Kutta step of eight chains, one a SIMD lane, in a single sweep along them."""
+"""One Runge–Kutta step of several chains, one a SIMD lane, in a single sweep along them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..forces.crossings import Approach, brief_touch, closing_rate
 from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_lanes
 from ..jit import by_slot, inline_llvm
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
-from ..simd.vector import blank, load, positive_mask, store
+from ..simd.vector import blank, load_batch, positive_mask, store
 
 
 class Values(NamedTuple):
@@ -104,14 +104,14 @@ def batch_step(values, y, h, u0, middle, end):
     zero = blank(h)
     nothing = Bead(zero, zero, zero, shape(values.law, zero, zero))
     two, three, four = nothing, nothing, nothing
-    one = first_bead(values, by_multipliers, u0, load(y, 1), load(y, m + 1))
+    one = first_bead(values, by_multipliers, u0, load_batch(y, 1), load_batch(y, m + 1))
     pushed, v_first, v_last = one.e, zero, zero
     sum_u, sum_w, whole_u, whole_w = zero, zero, zero, zero
     for i in range(1, n + 4):
         u1, w1, u2, w2, u3, w3 = zero, zero, zero, zero, zero, zero
         if i <= n:
             u, w = one.u, one.w
-            v_last, dw, one = bead_slope(values, by_multipliers, one, i, load(y, i + 1), load(y, m + i + 1))
+            v_last, dw, one = bead_slope(values, by_multipliers, one, i, load_batch(y, i + 1), load_batch(y, m + i + 1))
             u1, w1 = u + half * v_last, w + half * dw
         if i == 1:
             v_first = v_last
@@ -120,7 +120,7 @@ def batch_step(values, y, h, u0, middle, end):
         if i <= n + 1:
             before = two
             du, dw, two = bead_slope(values, by_divider, two, i - 1, u1, w1)
-            u2, w2 = load(y, i - 1) + half * du, load(y, m + i - 1) + half * dw
+            u2, w2 = load_batch(y, i - 1) + half * du, load_batch(y, m + i - 1) + half * dw
             new_u, new_w = before.u + 2.0 * u2, before.w + 2.0 * w2
         else:
             new_u, new_w = zero, zero
@@ -130,7 +130,7 @@ def batch_step(values, y, h, u0, middle, end):
             continue
         if i <= n + 2:
             du, dw, three = bead_slope(values, by_multipliers, three, i - 2, u2, w2)
-            u, w = load(y, i - 2), load(y, m + i - 2)
+            u, w = load_batch(y, i - 2), load_batch(y, m + i - 2)
             u3, w3 = u + h * du, w + h * dw
             newer_u, newer_w = sum_u + (u3 - u), sum_w + (w3 - w)
         else:
@@ -175,15 +175,15 @@ watch_jumps.absent_for(*SMOOTH_LAWS)
 def watch_jump(law, own, h, approach, before, row, peaks, peak):
     """Follow the jump of one contact; overlap and rate a step ago are rows of `before`, and become those of now."""
     gap, rate = approach
-    gap_before, rate_before = load(before, row), load(before, row + 1)
+    gap_before, rate_before = load_batch(before, row), load_batch(before, row + 1)
     store(before, row, gap)
     store(before, row + 1, rate)
     zero, was, now = blank(gap), positive_mask(gap_before), positive_mask(gap)
     if now & ~was != 0:
         _, closing = closing_rate(gap_before, gap, rate_before, rate + own * clip(gap), own, h)
         closed = gate(zero - gap_before, gate(gap, law.coefficient * closing))
-        store(peaks, peak, larger(load(peaks, peak), closed))
+        store(peaks, peak, larger(load_batch(peaks, peak), closed))
     if ~now & ~was & positive_mask(rate_before) & positive_mask(zero - rate) != 0:
         touched = law.coefficient * brief_touch(gap_before, gap, rate_before, rate, h)
         open_still = gate(zero - gap_before, gate(zero - gap, gate(rate_before, gate(zero - rate, touched))))
-        store(peaks, peak, larger(load(peaks, peak), open_still))
+        store(peaks, peak, larger(load_batch(peaks, peak), open_still))

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from ..jit import by_slot, by_slot_inlined, in_simd_kernels, inline_llvm, require_terms
 from ..simd.functions import gate, root
-from ..simd.vector import load
+from ..simd.vector import load_batch
 
 
 @by_slot_inlined
@@ -222,7 +222,7 @@ def _(law, inverse_mass, v, G, i):
 
 @by_slot
 def batch_values(law):
-    """The law with the values of all lanes, read from its (1, 8) arrays."""
+    """The law with the values of all lanes, read from its (1, lanes) arrays."""
     return None
 
 
@@ -231,7 +231,7 @@ def _read_by_lane(slot):
 
     @batch_values.of(slot)
     def _(law):
-        return slot(load(law.coefficient, 0))
+        return slot(load_batch(law.coefficient, 0))
 
 
 for _law in LAWS:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from ..jit import by_slot, in_simd_kernels
-from ..simd.vector import load
+from ..simd.vector import load_batch
 
 
 @in_simd_kernels
@@ -44,13 +44,13 @@ def _(foundation, u):
 
 @by_slot
 def lane_foundation(foundation):
-    """The foundation with the stiffness of all lanes, read from its (1, 8) array."""
+    """The foundation with the stiffness of all lanes, read from its (1, lanes) array."""
     return None
 
 
 @lane_foundation.of(Foundation)
 def _(foundation):
-    return Foundation(load(foundation.stiffness, 0))
+    return Foundation(load_batch(foundation.stiffness, 0))
 
 
 @by_slot

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import by_slot, in_simd_kernels
-from ..simd.vector import load
+from ..simd.vector import load_like
 
 
 @in_simd_kernels
@@ -40,7 +40,7 @@ def batch_overlap(preload, left, right, c):
 
 @batch_overlap.of(Preload)
 def _(preload, left, right, c):
-    return left - right + load(preload.static, c)
+    return left - right + load_like(left, preload.static, c)
 
 
 @by_slot

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import by_slot
-from ..simd.vector import load
+from ..simd.vector import load_like
 
 
 class Unequal(NamedTuple):
@@ -30,7 +30,7 @@ def over_mass(unequal, i, force):
 
 @over_mass.of(Unequal)
 def _(unequal, i, force):
-    return load(unequal.inverse_mass, i) * force
+    return load_like(force, unequal.inverse_mass, i) * force
 
 
 @by_slot
@@ -41,4 +41,4 @@ def times_stiffness(unequal, wall, i, last, elastic):
 
 @times_stiffness.of(Unequal)
 def _(unequal, wall, i, last, elastic):
-    return load(unequal.stiffness, i) * elastic
+    return load_like(elastic, unequal.stiffness, i) * elastic

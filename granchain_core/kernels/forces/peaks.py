@@ -6,7 +6,7 @@ import numpy as np
 
 from ..jit import inline_llvm, internal, kernel
 from ..simd.functions import choose_peak, larger
-from ..simd.vector import load, positive_mask, store
+from ..simd.vector import load_batch, positive_mask, store
 
 #: Values kept of one force: the largest so far, then the last four values, newest first.
 ROWS = 5
@@ -65,10 +65,10 @@ def next_period(peaks):
 
 @inline_llvm
 def watch_lanes(peaks, row, value):
-    """Follow one force in all lanes; its memory starts at row `row` of a (rows, 8) array."""
-    d, c = load(peaks, row + 1), load(peaks, row + 2)
-    b, a = load(peaks, row + 3), load(peaks, row + 4)
-    largest = larger(load(peaks, row), value)
+    """Follow one force in all lanes; its memory starts at row `row` of a (rows, lanes) array."""
+    d, c = load_batch(peaks, row + 1), load_batch(peaks, row + 2)
+    b, a = load_batch(peaks, row + 3), load_batch(peaks, row + 4)
+    largest = larger(load_batch(peaks, row), value)
     if positive_mask(HIGHEST * c - largest) & positive_mask(c - b) & ~positive_mask(d - c) != 0:
         largest = larger(largest, choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value)))
     store(peaks, row, largest)

@@ -9,17 +9,15 @@ from __future__ import annotations
 
 import math
 
-import llvmlite.binding
-import numba
 from llvmlite import ir
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
 from .vector import FLAGS, LANES, VectorType, as_vector, vector
+from .width import has_avx512
 
-#: Whether kernels are compiled for this very machine and it has the instruction.
-_HAS_RSQRT14 = (numba.config.CPU_NAME is None and numba.config.CPU_FEATURES is None
-                and bool(llvmlite.binding.get_host_cpu_features().get("avx512f", False)))
+#: Whether the machine has the instruction for eight lanes.
+_HAS_RSQRT14 = has_avx512()
 #: Smallest number whose root is computed; smaller ones count as this. The force of such an overlap, with its power 3/2,
 #: underflows to zero.
 _LEAST = 1e-280
@@ -63,7 +61,7 @@ def root_by_series(typingctx, value):
     """√ of every lane, all above zero; where the machine has `vrsqrt14pd`, without the divider."""
 
     def codegen(context, builder, sig, args):
-        if _HAS_RSQRT14:
+        if _HAS_RSQRT14 and sig.return_type.lanes == LANES:
             return _fast_root(builder, args[0])
         return _llvm_root(builder, sig.args[0].ir, args[0])
 
@@ -104,14 +102,15 @@ def _vector_larger(typingctx, a, b):
 def _vector_peak(typingctx, a, b, c, d, e, top):
     def codegen(context, builder, sig, args):
         a, b, c, d, e, top = args
-        near = builder.fmul(c, ir.Constant(vector.ir, [NEAR] * LANES))
-        far = builder.fmul(c, ir.Constant(vector.ir, [FAR] * LANES))
+        kind = sig.return_type.ir
+        near = builder.fmul(c, ir.Constant(kind, [NEAR] * kind.count))
+        far = builder.fmul(c, ir.Constant(kind, [FAR] * kind.count))
         smooth = builder.and_(builder.fcmp_ordered(">", c, b), builder.fcmp_ordered(">=", c, d))
         for value, least in ((b, near), (d, near), (a, far), (e, far)):
             smooth = builder.and_(smooth, builder.fcmp_ordered(">", value, least))
         return builder.select(smooth, top, c)
 
-    return vector(vector, vector, vector, vector, vector, vector), codegen
+    return c(c, c, c, c, c, c), codegen
 
 
 #: A maximum is smooth if its two neighbours are above this part of it: the jump of a dashpot force is not one.

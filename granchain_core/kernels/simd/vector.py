@@ -1,8 +1,9 @@
-"""Vectors of 8, 16 or 32 doubles as Numba types: explicit SIMD over scenes or along a chain.
+"""Vectors of 4, 8, 16 or 32 doubles as Numba types: explicit SIMD over scenes or along a chain.
 
 LLVM turns eight of them into one 512-bit register, two of 256 bits or four of 128, whatever the machine has.
 Arithmetic, square root, maximum and comparison are single LLVM instructions with the same flags as the scalar
-kernels; a NaN stays a NaN. `load` and `store` move one row of a C-ordered (rows, 8) array, `load_row` of a wider one.
+kernels; a NaN stays a NaN. `load`, `load16` and `load32` read one row of a C-ordered
+(rows, 8), (rows, 16) or (rows, 32) array, `load_batch` one of a batch, whose width is the machine's (width.py).
 """
 
 from __future__ import annotations
@@ -20,9 +21,12 @@ from numba.extending import (
     register_model,
 )
 
+from .width import BATCH_LANES
+
+#: Numbers in a vector along a chain or of tangents.
 LANES = 8
 #: Widths there are vectors of.
-WIDTHS = (8, 16, 32)
+WIDTHS = (4, 8, 16, 32)
 FLAGS = ("nsz", "arcp", "contract", "reassoc")
 
 
@@ -118,7 +122,19 @@ def loader(lanes):
     return load_lanes
 
 
-load, load16, load32 = (loader(lanes) for lanes in WIDTHS)
+load, load16, load32 = (loader(lanes) for lanes in (LANES, 16, 32))
+#: Reads one row of the arrays of a batch.
+load_batch = loader(BATCH_LANES)
+
+
+@intrinsic
+def load_like(typingctx, value, array, row):
+    """One row of an array as wide as the vector `value`."""
+
+    def codegen(context, builder, sig, args):
+        return builder.load(_row_pointer(context, builder, sig.args[1:], args[1:], sig.return_type.ir), align=8)
+
+    return value(value, array, row), codegen
 
 
 @intrinsic

@@ -12,7 +12,7 @@ from granchain_core import Scene, scene
 from granchain_core.errors import NumbersFailed
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.kernels.batch.run import LANES
+from granchain_core.kernels.simd.width import BATCH_LANES
 from granchain_core.lower import lower
 from granchain_core.stop import Stop
 
@@ -100,7 +100,7 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
             place[lane] = number
             block.put(lane, lowered[number], rest, refine, total, NEVER)
 
-    for lane in range(LANES):
+    for lane in range(BATCH_LANES):
         fill(lane)
     while place:
         lane, _ = block.run()

@@ -1,0 +1,44 @@
+"""A batch of four scenes and one of eight say the same of every scene, on every machine."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from granchain_core import resonance_curve, scene
+from granchain_core.kernels.simd import width
+
+FREQUENCIES = [130.0, 255.0, 340.0, 470.0, 850.0, 1130.0, 1576.0, 2000.0, 2500.0]
+#: In a process of its own, because kernels are compiled for one number of lanes.
+OTHER = """
+import json, sys
+from granchain_core import resonance_curve, scene
+found = resonance_curve(scene("sec2"), json.loads(sys.argv[1]), workers=1)
+print(json.dumps([[p.regime.name, p.regime.period, p.max_output_force, p.error_estimate] for p in found.points]))
+"""
+
+
+def test_both_numbers_of_lanes_give_the_same_curve() -> None:
+    other = str(12 - width.BATCH_LANES)
+    said = subprocess.run([sys.executable, "-c", OTHER, json.dumps(FREQUENCIES)], capture_output=True, text=True,
+                          check=True, env={**os.environ, width.VARIABLE: other}).stdout
+    here = resonance_curve(scene("sec2"), FREQUENCIES, workers=1).points
+    for mine, (regime, period, force, error) in zip(here, json.loads(said), strict=True):
+        assert (mine.regime.name, mine.regime.period) == (regime, period)
+        if mine.error_estimate is None or error is None:  # 130 Hz is quasi-periodic: a maximum of no period
+            assert mine.error_estimate is error
+            continue
+        assert mine.max_output_force == pytest.approx(force, rel=mine.error_estimate + error)
+
+
+def test_the_number_of_lanes_is_the_machines_or_the_one_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    for found, lanes in ((True, 8), (False, 4)):
+        monkeypatch.setattr(width, "has_avx512", lambda found=found: found)
+        assert width.batch_lanes(None) == lanes
+    assert width.batch_lanes("4") == 4 and width.batch_lanes("8") == 8
+    with pytest.raises(ValueError, match="GRANCHAIN_LANES = '7' is not one of 4, 8"):
+        width.batch_lanes("7")
