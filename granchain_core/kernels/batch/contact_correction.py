@@ -3,8 +3,8 @@
 A contact is closed for a part r of the step, at its beginning or at its end, and its overlap grows or falls as v s.
 Simpson's rule integrates its force and its damping through the kink; the quadrature errors are
 
-    impulse  K v^{3/2} h^{5/2} (S_{3/2}(r) + E(r)),   path  c v^p h^{p+1} S_p(r)   for G = c δ^p, p = 1 + a
-    S_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1),   E: the same of s^{3/2} over the whole step on the closed side
+    impulse  K v^{3/2} h^{5/2} (B_{3/2}(r) + E(r)),   path  c v^p h^{p+1} B_p(r)   for G = c δ^p, p = 1 + a
+    B_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1),   E: that of s^{3/2} over the whole step on the closed side
 
 and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/model.md).
 """
@@ -22,7 +22,7 @@ from ..simd.vector import blank, load, positive_mask, store
 
 @inline_llvm
 def momentum_error(r, power, half_power):
-    """S_{3/2}(r) + E(r) from r, r^{3/2} and [r − 1/2]_+^{3/2}."""
+    """B_{3/2}(r) + E(r) from r, r^{3/2} and [r − 1/2]_+^{3/2}."""
     inside = (power + 4.0 * half_power) * (1.0 / 6.0) - 0.4 * r * power
     one = r + 1.0
     far = three_halves(one)
@@ -32,7 +32,7 @@ def momentum_error(r, power, half_power):
 
 @by_slot
 def displacement_error(law, r, half, speed, h):
-    """c v^p h^{p+1} S_p(r) in all lanes; `half` is [r − 1/2]_+. Absent: nothing."""
+    """c v^p h^{p+1} B_p(r) in all lanes; `half` is [r − 1/2]_+. Absent: nothing."""
     return None
 
 

@@ -38,7 +38,6 @@ def test_the_rate_at_a_closing_is_of_third_order(part: float) -> None:
     """Against the exact solution with constant pull; without its own damping the rate is then a parabola but for the
     trapezium of the small correction, of order h⁴: the error falls 8-fold or more with half the step."""
     errors = [abs(crossing(h, part)[1] / 0.9 - 1.0) for h in (0.2, 0.1)]
-    print(errors)
     assert errors[0] < 2e-4
     assert errors[1] < max(errors[0] / 6.0, 1e-12)
     assert crossing(0.1, part)[0] == pytest.approx(part, abs=1e-4)
@@ -113,7 +112,6 @@ def test_a_jump_is_read_where_the_overlap_vanishes(beads: int) -> None:
     exact = jump_and_force(chain, certified(1e-11), on_its_way.state)[1]
     for refine in (4, 6, 8, 12, 16):
         least, force = jump_and_force(chain, live(refine), on_its_way.state)
-        print(refine, force / exact - 1.0, least)
         assert abs(force / exact - 1.0) < least
 
 
