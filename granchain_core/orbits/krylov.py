@@ -25,20 +25,21 @@ _RESTART = 80
 _ROUNDS = 5
 
 
-def derivative_at(strobe: StroboscopicMap, x: np.ndarray, observer: bool = False) -> LinearOperator:
+def derivative_at(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bool = False) -> LinearOperator:
     """The derivative of the map at x as an operator (2N, 2N)."""
     def product(direction: np.ndarray) -> np.ndarray:
-        return strobe(x, observer, directions=np.asarray(direction, dtype=float).reshape(-1, 1)).derivative[:, 0]
+        column = np.asarray(direction, dtype=float).reshape(-1, 1)
+        return stroboscopic_map(x, observer, directions=column).derivative[:, 0]
 
     return LinearOperator((len(x), len(x)), matvec=product, dtype=float)
 
 
-def newton_step(strobe: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.ndarray:
+def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.ndarray:
     """The step d of Newton's method towards a fixed point: (M − I) d = x − end, by GMRES.
 
     Raises `NumbersFailed` where it does not converge: the derivative then has a multiplier close to 1.
     """
-    derivative = derivative_at(strobe, x)
+    derivative = derivative_at(stroboscopic_map, x)
     system = LinearOperator(derivative.shape, matvec=lambda d: derivative @ d - d, dtype=float)
     step, status = gmres(system, x - end, rtol=_SOLVED, restart=_RESTART, maxiter=_ROUNDS)
     if status != 0:
@@ -47,7 +48,7 @@ def newton_step(strobe: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.n
     return np.asarray(step)
 
 
-def leading_multipliers(strobe: StroboscopicMap, x: np.ndarray, observer: bool = False,
+def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bool = False,
                         count: int = LEADING) -> np.ndarray:
     """The `count` multipliers of largest modulus at the fixed point x, largest first, by Arnoldi iteration.
 
@@ -56,7 +57,7 @@ def leading_multipliers(strobe: StroboscopicMap, x: np.ndarray, observer: bool =
     # the start is fixed, so that the same chain gives the same digits
     start = np.random.default_rng(0).standard_normal(len(x))
     try:
-        found = eigs(derivative_at(strobe, x, observer), k=count, which="LM", v0=start, tol=_EXACT,
+        found = eigs(derivative_at(stroboscopic_map, x, observer), k=count, which="LM", v0=start, tol=_EXACT,
                      return_eigenvectors=False)
     except ArpackNoConvergence as problem:
         raise NumbersFailed(f"Only {len(problem.eigenvalues)} of {count} leading multipliers converged; the others are "

@@ -79,9 +79,9 @@ def least_period(orbit: Orbit, stop: Stop | None = None) -> int:
     for shorter in range(1, orbit.period):
         if orbit.period % shorter:
             continue
-        strobe = StroboscopicMap(orbit.scene, shorter, stop)
-        x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
-        end = strobe(x, directions=np.zeros((len(x), 0))).end
+        stroboscopic_map = StroboscopicMap(orbit.scene, shorter, stop)
+        x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+        end = stroboscopic_map(x, directions=np.zeros((len(x), 0))).end
         if np.abs(end - x).max() < _SAME * np.abs(x).max():
             return shorter
     return orbit.period

@@ -82,7 +82,7 @@ class Stopwatch:
 
 
 @functools.cache
-def slowness() -> float:
+def machine_factor() -> float:
     """Time of 4096 square roots over that where step costs were measured; takes about a millisecond, once."""
     values, out, best = np.linspace(1.0, 2.0, 4096), np.empty(4096), np.inf
     for _ in range(100):
@@ -114,7 +114,7 @@ def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, re
     often = np.sqrt(1.0 + _share(finer.finer_than(lowered, samples)) / twice)
     steps, seconds = steps * often, seconds * often
     seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
-    return Estimate(seconds * slowness(), steps)
+    return Estimate(seconds * machine_factor(), steps)
 
 
 def _share(setting: Setting) -> float:

@@ -10,7 +10,7 @@ from granchain_core.diagram import Attractor, attractors, listing
 from granchain_core.diagram.attractors import _regime as irregular_regime
 from granchain_core.diagram.attractors import share
 from granchain_core.orbits import periodic_orbit, response
-from granchain_core.steady.regime import Regime
+from granchain_core.regime import Regime
 
 #: Where rest, a sweep up and a sweep down lead to three different motions of sec2.
 MANY = 893.0

@@ -34,7 +34,7 @@ CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follow
 CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
 CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cut")
 CUT_LAWS = ("tests/physics/test_energy.py", "-k", "account_closes and kuwabara-kono-cut")
-SLACK = ("tests/numerics/test_slack.py", "-k", "not linear")
+FORCE_FREE = ("tests/numerics/test_force_free.py", "-k", "not linear")
 CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.

@@ -49,18 +49,19 @@ class BatchState(NamedTuple):
     phase (2, 8)             sin and cos of the drive phase
     peaks (17, 8)            largest forces
     steps, left (8,)         steps in a period, and those left of it
-    periods, look (8,)       periods run, and the period at which the kernel returns at the latest
+    periods, return_at (8,)  periods run, and the period at which the kernel returns at the latest
     earliest (8,)            next period at which the strobes are checked
-    ready, wait (8,)         period from which a transient may be extrapolated, and the pause after a failed attempt
+    extrapolate_from (8,)    period from which a transient may be extrapolated
+    pause (8,)               periods without an attempt after one that failed
     kept (8,)                number of strobes
     slowest (8,)             slowest decay known
-    unproved (8,)            change before an extrapolation that is not yet confirmed, else 0
+    change_before_extrapolation (8,)   that before an extrapolation that is not yet confirmed, else 0
     testing (8,)             period of an orbit that is being disturbed, else 0
     before (8, 2, N+2)       state before the last extrapolation
-    fine (8, 7)              record of a fine member (period_end.py)
+    fine_record (8, 7)       record of a fine member (period_end.py)
     strobes (8, 2R, 2, N+2)  stroboscopic states
     tops (8, R, 5)           largest forces and jumps of the last periods, a ring
-    seen (8, 3)              result of the last check: period, rate, distance
+    last_check (8, 3)        result of the last check: period, rate, distance
 
     The others are workspaces of period_end.py.
     """
@@ -73,19 +74,19 @@ class BatchState(NamedTuple):
     steps: np.ndarray
     left: np.ndarray
     periods: np.ndarray
-    look: np.ndarray
+    return_at: np.ndarray
     earliest: np.ndarray
-    ready: np.ndarray
-    wait: np.ndarray
+    extrapolate_from: np.ndarray
+    pause: np.ndarray
     kept: np.ndarray
     slowest: np.ndarray
-    unproved: np.ndarray
+    change_before_extrapolation: np.ndarray
     testing: np.ndarray
     before: np.ndarray
-    fine: np.ndarray
+    fine_record: np.ndarray
     strobes: np.ndarray
     tops: np.ndarray
-    seen: np.ndarray
+    last_check: np.ndarray
     scale: np.ndarray
     change: np.ndarray
     limit: np.ndarray
@@ -152,7 +153,7 @@ def renormalise(state, m, start, growth, lane):
 def run_pairs(lanes, state, start, growth, stop):
     """Run lanes in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
 
-    growth (4, P) holds the logarithm of each period's growth; only pairs whose `look` is P count,
+    growth (4, P) holds the logarithm of each period's growth; only pairs whose `return_at` is P count,
     the others are not in use.
     """
     m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
@@ -163,7 +164,7 @@ def run_pairs(lanes, state, start, growth, stop):
         batch_steps(lanes, state, count)
         busy = False
         for lane in range(0, LANES, 2):
-            counted = state.periods[lane] < periods and state.look[lane] == periods
+            counted = state.periods[lane] < periods and state.return_at[lane] == periods
             for one in range(lane, lane + 2):
                 state.left[one] -= count
                 if state.left[one] == 0:

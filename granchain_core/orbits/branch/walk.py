@@ -126,7 +126,7 @@ class Walk(Iterator[BranchPoint]):
         """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
         x, value, n = self.equations.state(solved.z), self.equations.value(solved.z), self.equations.period
         for d in range(1, n):
-            if n % d == 0 and relative_change(self.equations.strobe(value, d).end(x) - x, x) < SHORTER:
+            if n % d == 0 and relative_change(self.equations.stroboscopic_map(value, d).end(x) - x, x) < SHORTER:
                 raise NumbersFailed(f"the step leads to an orbit that repeats after {d} of {n} drive periods",
                                     "no-convergence")
 
@@ -206,7 +206,7 @@ class Walk(Iterator[BranchPoint]):
 
     def _halves(self, point: BranchPoint) -> np.ndarray:
         """Difference of the state half an orbit later from the state now."""
-        return self.equations.strobe(point.knob, self.equations.period // 2).end(point.x) - point.x
+        return self.equations.stroboscopic_map(point.knob, self.equations.period // 2).end(point.x) - point.x
 
     def _closing(self, last: BranchPoint, point: BranchPoint) -> BranchPoint | None:
         """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
@@ -229,7 +229,7 @@ def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
     x, images = seed.x, []
     for _ in range(equations.period):
         images.append(equations.point(x, seed.knob))
-        x = equations.strobe(seed.knob, 1).end(x)
+        x = equations.stroboscopic_map(seed.knob, 1).end(x)
     return images
 
 

@@ -119,7 +119,7 @@ def jump_and_force(chain: Scene, setting: Setting, state: State) -> tuple[float,
     """Lower bound of the relative error of the largest input force, which is at a jump, and that force [scaled]."""
     engine = Engine(chain, setting, 1)
     engine.start(state)
-    engine.forget_peaks()
+    engine.reset_peaks()
     tops = engine.largest_forces(1)
     assert engine.jumps[0] == tops[0]
     return jump_errors(setting, engine.lowered, 1, engine.jumps, tops)[0], tops[0]
@@ -168,7 +168,7 @@ def test_a_long_chain_sees_the_jumps_at_its_ends() -> None:
         assert abs(force / true - 1.0) < stated < 2e-3  # of which 1/(1 − |μ|) is a part
 
 
-#: How near the top of the driver's way a bead stands that it brushes.
+#: How near the top of the driver's way a bead stands that it just touches.
 NEAR = 2e-3
 
 
