@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,9 @@ from ..stop import Stop
 
 #: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
 TOLERANCE = 1e-13
+#: Relative change after a part of its period at which an orbit is one of that shorter period: far above the map's own
+#: error, far below the distance of two orbits.
+_BACK = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +157,17 @@ def relative_change(change: np.ndarray, x: np.ndarray) -> float:
     half = len(x) // 2
     return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
                for part in (slice(0, half), slice(half, None)))
+
+
+def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int) -> int:
+    """The smallest part of `period` drive periods after which a state is back at x; `after(n)` is that n periods later.
+
+    `period` itself where no part of it is enough.
+    """
+    for shorter in range(1, period):
+        if period % shorter == 0 and relative_change(after(shorter) - x, x) < _BACK:
+            return shorter
+    return period
 
 
 def _columns(tangent: Tangent, columns: int) -> np.ndarray:

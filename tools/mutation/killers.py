@@ -82,7 +82,7 @@ STIFFEST = ("tests/integrate/test_failures.py", "-k", "stiffest")
 #: What is claimed of a motion.
 HONESTY = ("tests/numerics/test_honesty.py", "-k", "not curve")
 SAME_STEPS = ("tests/numerics/test_honesty.py", "-k", "same_steps")
-REGIMES = ("tests/steady/test_regimes.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
+REGIMES = ("tests/kernels/strobes/test_periodicity.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
 SETTLED = ("tests/steady/test_regimes.py", "-k", "section_2_from_rest")
 CLAIMS = ("tests/steady/test_claims.py", "-k", "not largest and not summed and not fixed_point and not relaxing")
 CLAIMS_TIME = ("tests/steady/test_claims.py", "-k", "counted_and_not_summed")

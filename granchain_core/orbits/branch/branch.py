@@ -18,13 +18,12 @@ from ...errors import BadInput, check_range
 from ...integrate import State
 from ...scene import Scene
 from ...stop import Stop
-from ..flow import relative_change
 from ..orbit import periodic_orbit
 from .axis import KnobAxis
 from .equations import BranchEquations
 from .point import BranchPoint, branch_point, state_at
 from .special import SpecialPoint
-from .walk import SHORTER, Arm, Walk
+from .walk import Arm, Walk
 
 #: Points of one arm at most: a branch that folds without end has to stop somewhere.
 MOST_POINTS = 20_000
@@ -218,10 +217,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
 
 def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> None:
     """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
-    n = equations.period
-    for d in range(1, n):
-        if n % d == 0:
-            end = equations.stroboscopic_map(value, d).end(x)
-            if relative_change(end - x, x) < SHORTER:
-                raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after "
-                               f"{d} already; give period {d}.")
+    n, least = equations.period, equations.least_period(x, value)
+    if least < n:
+        raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after {least} "
+                       f"already; give period {least}.")

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...stop import Stop
-from ..flow import Flow, StroboscopicMap, relative_change
+from ..flow import Flow, StroboscopicMap, least_period, relative_change
 from .axis import KnobAxis
 
 #: Relative residual at which Newton's method stops.
@@ -63,6 +63,10 @@ class BranchEquations:
     def stroboscopic_map(self, value: float, periods: int | None = None) -> StroboscopicMap:
         """The map at a knob value, always a new one, so that equal calls give equal bits."""
         return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop)
+
+    def least_period(self, x: np.ndarray, value: float) -> int:
+        """The drive periods after which the orbit through x repeats, at most `period`."""
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:

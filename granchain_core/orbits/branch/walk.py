@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...errors import NumbersFailed
-from ..flow import relative_change
 from .equations import BranchEquations, Solved, said
 from .point import BranchPoint, branch_point
 from .special import SpecialPoint, special_between
@@ -40,8 +39,6 @@ _OFF = 0.3
 _PASSES = 0.2
 #: The branch has closed if the corrected point is this near to the seed.
 _CLOSED = 1e-7
-#: A state that comes back this near, relative to its largest entry, before its period has a shorter one.
-SHORTER = 1e-8
 #: Points from the seed on before the branch may close on itself.
 _AWAY = 4
 
@@ -124,11 +121,11 @@ class Walk(Iterator[BranchPoint]):
 
     def _refuse_shorter(self, solved: Solved) -> None:
         """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
-        x, value, n = self.equations.state(solved.z), self.equations.value(solved.z), self.equations.period
-        for d in range(1, n):
-            if n % d == 0 and relative_change(self.equations.stroboscopic_map(value, d).end(x) - x, x) < SHORTER:
-                raise NumbersFailed(f"the step leads to an orbit that repeats after {d} of {n} drive periods",
-                                    "no-convergence")
+        n = self.equations.period
+        least = self.equations.least_period(self.equations.state(solved.z), self.equations.value(solved.z))
+        if least < n:
+            raise NumbersFailed(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
+                                "no-convergence")
 
     def _predicted(self, last: BranchPoint) -> np.ndarray:
         """A step along the tangent, bent as the branch has bent since the point before."""
