@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from pathlib import Path
 
 import pytest
+from source import ROOT, imports_in
 
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
 #: Folder → the folders of its last column.
 ROWS = {row[1]: re.findall(r"`(\w+)`", row[2])
@@ -32,13 +31,11 @@ def allowed(layer: str, layers: dict[str, list[str]] = LAYERS) -> set[str]:
 
 def imported(path: Path) -> set[str]:
     """The core's modules that a file imports, dotted, without `granchain_core`."""
-    package, found = path.relative_to(ROOT).parts[:-1], set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom):
-            names = [*package[: len(package) - node.level + 1]] if node.level else []
-            names += (node.module or "").split(".") if node.module else []
-            if names[0] == "granchain_core":
-                found |= {".".join(names[1:])} if names[1:] else {alias.name for alias in node.names}
+    found: set[str] = set()
+    for module, names in imports_in(path):
+        if module.split(".")[0] == "granchain_core":
+            inside = module.partition(".")[2]
+            found |= {inside} if inside else {name for name, _ in names}
     return found
 
 
