@@ -7,6 +7,8 @@ suffices.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, gmres
 
@@ -54,12 +56,23 @@ def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observ
 
     Raises `NumbersFailed` where they do not converge.
     """
+    found = arnoldi(stroboscopic_map, x, count, observer)
+    return found[np.argsort(-np.abs(found), kind="stable")]
+
+
+def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observer: bool = False,
+            vectors: bool = False) -> Any:
+    """The `count` multipliers of largest modulus at the fixed point x, in any order.
+
+    With `vectors` a pair: they, and their eigenvectors (2N, count).
+
+    Raises `NumbersFailed` where they do not converge.
+    """
     # the start is fixed, so that the same chain gives the same digits
     start = np.random.default_rng(0).standard_normal(len(x))
     try:
-        found = eigs(derivative_at(stroboscopic_map, x, observer), k=count, which="LM", v0=start, tol=_EXACT,
-                     return_eigenvectors=False)
+        return eigs(derivative_at(stroboscopic_map, x, observer), k=count, which="LM", v0=start, tol=_EXACT,
+                    return_eigenvectors=vectors)
     except ArpackNoConvergence as problem:
         raise NumbersFailed(f"Only {len(problem.eigenvalues)} of {count} leading multipliers converged; the others are "
                             f"too close together.", "no-convergence") from None
-    return found[np.argsort(-np.abs(found), kind="stable")]

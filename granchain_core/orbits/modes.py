@@ -14,22 +14,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
-from ..errors import NumbersFailed, check_range
+from ..errors import check_range
 from ..integrate import Engine, certified
 from ..steady.poincare import Section
 from ..stop import Stop
 from .flow import TOLERANCE, StroboscopicMap
-from .krylov import derivative_at
+from .krylov import arnoldi
 from .orbit import MOST_BEADS_DENSE, Orbit
 
 #: Size of the carried disturbance relative to the motion.
 _SMALL = 1e-5
 #: Fewest eigenpairs that Arnoldi iteration computes.
 _FEWEST = 6
-#: Their error, relative to the largest.
-_EXACT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,21 +75,9 @@ def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
     if len(x) <= 2 * MOST_BEADS_DENSE:
         values, vectors = np.linalg.eig(stroboscopic_map(x, observer=observer).derivative)
     else:
-        values, vectors = leading_pairs(stroboscopic_map, x, rank + 2, observer)
+        values, vectors = arnoldi(stroboscopic_map, x, max(rank + 2, _FEWEST), observer, vectors=True)
     place = np.argsort(-np.abs(values), kind="stable")[rank]
     return complex(values[place]), vectors[:, place]
-
-
-def leading_pairs(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int,
-                  observer: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """At least `count` leading multipliers with their eigenvectors (2N, count). Raises `NumbersFailed`."""
-    start = np.random.default_rng(0).standard_normal(len(x))
-    try:
-        return tuple(eigs(derivative_at(stroboscopic_map, x, observer), k=max(count, _FEWEST), which="LM", v0=start,
-                          tol=_EXACT))
-    except ArpackNoConvergence:
-        raise NumbersFailed(f"The mode of multiplier {count - 1} did not converge: too many lie close together.",
-                            "no-convergence") from None
 
 
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
