@@ -26,12 +26,12 @@ if TYPE_CHECKING:
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
     from .orbits import periodic_orbit as orbit
+    from .regime import Regime
     from .result import Cost, Run
     from .run.live import LiveChain
     from .run.run import run
     from .state import State
     from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
-    from .steady.regime import Regime
     from .steady.settled import Settled, settled, settling
     from .steady.settled import settled as settle
     from .stop import Stop
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
     "stop": ("Stop",),
-    "steady.settled": ("Settled", "settled", "settling"), "steady.regime": ("Regime",),
+    "steady.settled": ("Settled", "settled", "settling"), "regime": ("Regime",),
     "steady.curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"),
     "diagram": ("Attractor", "Diagram", "attractors", "diagram"), "observe": ("Observation", "observe"),

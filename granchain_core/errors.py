@@ -120,3 +120,10 @@ def unknown_name(kind: str, name: object, known: Iterable[str]) -> BadInput:
     near = difflib.get_close_matches(str(name), names, n=1, cutoff=0.0)
     hint = f"; the nearest is {near[0]!r}" if near else ""
     return BadInput(f"Unknown {kind} {str(name)[:60]!r}{hint}; known: {', '.join(names)}.")
+
+
+def check_range(what: str, value: float, low: float, high: float) -> None:
+    """`BadInput` with the range and the nearest valid value if `value` is outside; `what` stands before it."""
+    if not low <= value <= high:
+        raise BadInput(f"{what} {value} is outside {low} to {high}; the nearest valid value is "
+                       f"{min(max(value, low), high)}.")

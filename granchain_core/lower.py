@@ -70,7 +70,7 @@ class Lowered:
     @property
     def beads(self) -> int:
         """Number of bodies that move: N; for a chain with its observer, the beads of both and the wall between them."""
-        return self.row - 2
+        return self.bodies - 2
 
     @property
     def period(self) -> float:
@@ -78,29 +78,29 @@ class Lowered:
         return 2 * math.pi / self.beta
 
     @property
-    def row(self) -> int:
-        """Length of one row of the state: all bodies, N + 2 for one chain."""
+    def bodies(self) -> int:
+        """Number of bodies, N + 2 for one chain: beads, driver and wall."""
         return len(self.slots.chain.inverse_mass)
 
     @property
     def size(self) -> int:
         """Length of the whole state array."""
-        return 2 * self.row + (2 if self.slots.balance is not None else 0)
+        return 2 * self.bodies + (2 if self.slots.balance is not None else 0)
 
     def own(self) -> Lowered:
-        """A copy with its own flags of slack contacts, if there are any: an engine writes into them."""
+        """A copy with its own flags of force-free contacts, if there are any: an engine writes into them."""
         if self.slots.tension is None:
             return self
-        return replace(self, slots=self.slots._replace(tension=new_tension_cut(self.row - 1)))
+        return replace(self, slots=self.slots._replace(tension=new_tension_cut(self.bodies - 1)))
 
     def forces(self) -> Forces:
         """A workspace for one evaluation."""
-        contacts = self.row - 1
+        contacts = self.bodies - 1
         return Forces(np.zeros(contacts), np.zeros(contacts) if self.slots.dissipation is not None else None)
 
     def rows(self, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Displacements and w of the beads (N,), as views into a state array y."""
-        row = self.row
+        row = self.bodies
         return y[1 : row - 1], y[row + 1 : 2 * row - 1]
 
     def beads_of(self, y: np.ndarray) -> np.ndarray:
@@ -109,14 +109,14 @@ class Lowered:
 
     def embed(self, x: np.ndarray) -> np.ndarray:
         """The state array (2(N + 2),) of x (2N,), the driver and the wall at zero."""
-        y = np.zeros(2 * self.row)
+        y = np.zeros(2 * self.bodies)
         for row, values in zip(self.rows(y), (x[: self.beads], x[self.beads :]), strict=True):
             row[:] = values
         return y
 
     def scaled(self, state: State) -> np.ndarray:
         """The scaled (u, w) array (2(N + 2),) of a state at phase 0."""
-        y = np.zeros(2 * self.row)
+        y = np.zeros(2 * self.bodies)
         displacement, velocity = self.rows(y)
         displacement[:] = state.displacement / self.scales.length
         velocity[:] = state.velocity / self.scales.velocity

@@ -9,8 +9,8 @@ import numpy as np
 from .integrate import Counts
 from .integrate.engine import Engine
 from .kernels.samples import Samples
+from .regime import Regime
 from .scene import Scene
-from .steady.regime import Regime
 
 
 @dataclass(frozen=True)
@@ -200,8 +200,13 @@ class Run:
     @property
     def output_force_elastic(self) -> np.ndarray:
         """Elastic part of the force on the wall, the paper's F_out (T,) [N]."""
-        last = np.maximum(self.displacement[:, -1] + self.scene.static_overlap()[-1], 0.0)
-        return self.scene.contact_stiffness()[-1] * last**1.5
+        return elastic_output(self.scene, self.displacement[:, -1])
+
+
+def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:
+    """Elastic force on the wall [N] for displacements of the last bead [m]."""
+    overlap = np.maximum(last + scene.static_overlap()[-1], 0.0)
+    return np.asarray(scene.contact_stiffness()[-1] * overlap**1.5)
 
 
 def residual(energy: np.ndarray | None) -> float | None:

@@ -81,7 +81,7 @@ def _curve(short: Scene) -> None:
         block = Batch(short, Stop())
         lowered = lower(short)
         y = lowered.scaled(rest(short))
-        block.put(0, lowered, y, 1, look=1)
+        block.put(0, lowered, y, 1, return_at=1)
         block.run()
         exponents_in_pairs([(lowered, y)], 1, 1, Stop())
 
@@ -95,9 +95,9 @@ def _branch(short: Scene) -> None:
     """Orbits continued over a knob."""
     equations = BranchEquations(KnobAxis.of(short, "f", short.f, 2.0 * short.f), 1)
     x = np.zeros(equations.size)
-    strobe = equations.strobe(short.f)
-    strobe.end(x)
-    strobe(x)
+    stroboscopic_map = equations.stroboscopic_map(short.f)
+    stroboscopic_map.end(x)
+    stroboscopic_map(x)
     record_along(equations, x, short.f)
 
 

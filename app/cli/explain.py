@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from granchain_core.integrate.methods import METHODS, method_for, setting_of
-from granchain_core.kernels.simd.width import machine
+from granchain_core.kernels.width import machine
 from granchain_core.lower import lower, slots_of
 from granchain_core.scene import Scene
 from granchain_core.warm import structure

@@ -35,7 +35,7 @@ def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
         return method_for(scene.accuracy, scene.cuts_tension)
     if picture.preview or picture.regime.name != "periodic":
         return Setting(picture.run.cost.method)
-    return orbit_setting(scene, scene.accuracy, picture.regime.slowness).finer()
+    return orbit_setting(scene, scene.accuracy, picture.regime.contraction).finer()
 
 
 def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:

@@ -9,7 +9,7 @@ from bokeh.models import ColumnDataSource, DataRange1d, HoverTool, Legend, Legen
 from bokeh.plotting import figure
 
 from granchain_core.orbits import Branch, BranchPoint, SpecialPoint
-from granchain_core.steady.regime import modulus_words
+from granchain_core.regime import modulus_words
 
 from ..format import short_error
 from .axes import Scale, force_scale, in_words, knob_scale

@@ -58,7 +58,7 @@ class Motion:
         self.lowered = lowered
         self.stop = stop
         self.evaluations = 0
-        self._row = lowered.row
+        self._row = lowered.bodies
         self._whole, self._slope, self._forces = np.zeros(lowered.size), np.zeros(lowered.size), lowered.forces()
 
     def inner(self, y: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ SCIPY = "scipy "
 
 
 @dataclass(frozen=True)
-class Way:
+class MeasuredMethod:
     """A method as it is presented: `family` is "granchain", "naive" (in (u, v)) or "scipy"."""
 
     name: str
@@ -32,20 +32,21 @@ class Way:
 
 @dataclass(frozen=True)
 class Choice:
-    """One setting of one way; `value` is its refinement of the live steps, or its tolerance."""
+    """One setting of one method; `value` is its refinement of the live steps, or its tolerance."""
 
-    way: str
+    method: str
     label: str
     value: float
     setting: Setting | None
 
 
-def ways() -> dict[str, Way]:
+def ways() -> dict[str, MeasuredMethod]:
     """Everything that can be measured, by name: the table of methods as it is now, then SciPy's solvers."""
-    own = [Way(m.name, m.title, "naive" if m.variables == "uv" else "granchain", m.order, m.restrictions, m.reference)
-           for m in METHODS.values()]
-    others = [Way(SCIPY + s.name, s.title, "scipy", s.order, s.restrictions, s.reference) for s in SOLVERS.values()]
-    return {way.name: way for way in (*own, *others)}
+    own = [MeasuredMethod(m.name, m.title, "naive" if m.variables == "uv" else "granchain", m.order, m.restrictions,
+                          m.reference) for m in METHODS.values()]
+    others = [MeasuredMethod(SCIPY + s.name, s.title, "scipy", s.order, s.restrictions, s.reference)
+              for s in SOLVERS.values()]
+    return {method.name: method for method in (*own, *others)}
 
 
 def label(setting: Setting) -> str:

@@ -205,13 +205,13 @@ def _row(scene: Scene, choice: Choice, exact: np.ndarray, stop: Stop) -> Row:
     def measure(limit: Stop) -> Measured:
         if choice.setting is not None:
             return _ours(scene, choice.setting, limit)
-        return _scipys(scene, choice.way.removeprefix(SCIPY), choice.value, limit)
+        return _scipys(scene, choice.method.removeprefix(SCIPY), choice.value, limit)
 
     try:
         best = _fastest(stop, measure)
     except (NumbersFailed, BadInput) as problem:
-        return Row(choice.way, choice.label, float("inf"), 0.0, 0, choice.value, str(problem))
-    return Row(choice.way, choice.label, _distance(best.moved, exact), best.seconds, best.rhs, choice.value)
+        return Row(choice.method, choice.label, float("inf"), 0.0, 0, choice.value, str(problem))
+    return Row(choice.method, choice.label, _distance(best.moved, exact), best.seconds, best.rhs, choice.value)
 
 
 def _faster(before: Row, scene: Scene, choice: Choice, exact: np.ndarray, stop: Stop) -> Row:

@@ -12,18 +12,19 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed
+from ..errors import NumbersFailed, check_range
 from ..integrate import Engine, State
 from ..orbits import Orbit
+from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
 from ..state import rest
 from ..steady.batch_job import Start
-from ..steady.regime import Regime, grows, is_neutral
+from ..steady.regime import grows, is_neutral
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .compute import settle_on_all_cores
-from .sameness import LIVE, Found, found, merged
+from .sameness import LIVE_SETTING, Found, found, merged
 
 #: Frequencies of a sweep before the one asked for.
 _SWEEP = 8
@@ -141,9 +142,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     >>> [(one.regime.period, one.share) for one in attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=4)]
     [(1, 1.0)]
     """
-    if not 0 <= random_states <= MOST_STATES:
-        raise BadInput(f"random_states = {random_states} is outside 0 to {MOST_STATES}; the nearest valid value is "
-                       f"{min(max(random_states, 0), MOST_STATES)}.")
+    check_range("random_states =", random_states, 0, MOST_STATES)
     origins = _origins(scene, random_states, seed, stop)
     starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
     results = _settled(starts, stop, progress)
@@ -181,7 +180,7 @@ def _beside(group: list[Found]) -> Iterator[Start]:
     u, v = orbit.state.displacement, orbit.state.velocity
     for one in group:
         shape = np.random.default_rng(one.result.number).standard_normal((2, len(u)))
-        engine = Engine(orbit.scene, LIVE, 1)
+        engine = Engine(orbit.scene, LIVE_SETTING, 1)
         engine.start(State(u + _BESIDE * np.abs(u).max() * shape[0], v + _BESIDE * np.abs(v).max() * shape[1]))
         engine.periods(_RUN_ON)
         yield Start(orbit.scene, engine.state, one.result.number)
@@ -222,7 +221,7 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
 
 def _run_on(scene: Scene, state: State) -> tuple[State, np.ndarray, float]:
     """State after `_PASS` periods by the live method, scaled strobes on the way, and the unit of velocity [m/s]."""
-    engine = Engine(scene, LIVE, 1)
+    engine = Engine(scene, LIVE_SETTING, 1)
     engine.start(state)
     strobes, _ = engine.periods(_PASS)
     return engine.state, strobes, engine.lowered.scales.velocity

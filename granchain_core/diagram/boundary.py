@@ -150,8 +150,9 @@ def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: i
     """
     _check(scene, kind, x, y)
     branch = _Branch(scene, x, float(scene.knobs[x]), period, stop)
-    strobe = StroboscopicMap(scene, period, stop)
-    inner = state if isinstance(state, np.ndarray) else strobe.inner(strobe.engine.lowered.scaled(state))
+    stroboscopic_map = StroboscopicMap(scene, period, stop)
+    inner = (state if isinstance(state, np.ndarray)
+             else stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(state)))
     along = np.append(np.zeros(len(inner)), 1.0)
     return _nearest(branch, kind, np.append(inner, 1.0), along, y)
 

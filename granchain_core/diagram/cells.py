@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..regime import Regime
 from ..result import ForceErrors
-from ..steady.regime import Regime
 from ..steady.steady_state import SteadyState
 from .grid import Grid
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..integrate.batch import can_share_batch
 from ..scene import Scene
-from ..steady.alone import safe_state, second_look
+from ..steady.alone import safe_state, settled_alone
 from ..steady.batch_job import Start
 from ..steady.batch_settle import batch_states
 from ..steady.steady_state import SteadyState
@@ -42,7 +42,7 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
     together = _chained(first, rest_of_them)
     if can_share_batch(first.scene):
         for result in batch_states(together, stop):
-            yield second_look(result, stop) if result.doubtful else result
+            yield settled_alone(result, stop) if result.doubtful else result
         return
     for one in together:
         yield replace(safe_state(one.scene, one.state, stop), number=one.number)

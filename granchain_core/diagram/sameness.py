@@ -30,8 +30,8 @@ _APART = 3.0
 #: States in the section of a motion that is not periodic, taken after as many further periods.
 _SECTION = 400
 #: Method by which a motion's section is taken, and the tolerance for that of an orbit.
-LIVE = live()
-_CERTIFIED = certified(1e-11)
+LIVE_SETTING = live()
+_CERTIFIED_SETTING = certified(1e-11)
 
 
 @dataclass(eq=False)
@@ -58,12 +58,12 @@ class Found:
 def found(result: SteadyState) -> Found:
     """A result with the section of its motion."""
     period = result.regime.period
-    return Found(result, _strobes(result.scene, result.state, period, LIVE) if period else _section(result))
+    return Found(result, _strobes(result.scene, result.state, period, LIVE_SETTING) if period else _section(result))
 
 
 def _section(result: SteadyState) -> np.ndarray:
     """Stroboscopic states of displacement and velocity of a motion that is not periodic, scaled, (P, 2, N)."""
-    engine = Engine(result.scene, LIVE, 1)
+    engine = Engine(result.scene, LIVE_SETTING, 1)
     engine.start(result.state)
     engine.periods(_SECTION)
     return engine.periods(_SECTION)[0][1:]
@@ -106,7 +106,7 @@ def _polished(one: Found) -> Found:
         return one
     try:
         orbit = periodic_orbit(one.result.scene, period, one.result.state)
-        section = _strobes(orbit.scene, orbit.state, period, _CERTIFIED)
+        section = _strobes(orbit.scene, orbit.state, period, _CERTIFIED_SETTING)
         shortest = next(n for n in range(1, period + 1)
                         if period % n == 0 and np.abs(section - np.roll(section, n, axis=0)).max() <= _REPEATS)
         if shortest < period:  # in the batch a slow approach with alternating sign looked like twice the period

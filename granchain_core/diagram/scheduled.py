@@ -14,7 +14,7 @@ from .compute import block_cells
 from .grid import Axis, Grid
 
 #: Cells of one block: some seconds of work, so that sending it costs nothing.
-BLOCK = 256
+CELLS_IN_TASK = 256
 #: Time in which a scheduler must answer [s].
 _ANSWERS = 4.0
 #: Time between two checks whether the map is still wanted [s].
@@ -33,7 +33,7 @@ def describe(grid: Grid) -> dict[str, Any]:
     return {"scene": grid.scene.to_json(), "x": (grid.x.knob, grid.x.values), "y": (grid.y.knob, grid.y.values)}
 
 
-def blocks_of(numbers: Sequence[int], size: int = BLOCK) -> list[list[int]]:
+def blocks_of(numbers: Sequence[int], size: int = CELLS_IN_TASK) -> list[list[int]]:
     """Cell numbers in blocks; each takes cells from all over, so that all blocks cost about the same."""
     count = max(1, -(-len(numbers) // size))
     return [list(numbers[first::count]) for first in range(count) if len(numbers)]

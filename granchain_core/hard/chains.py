@@ -17,11 +17,7 @@ from ..kernels.effects.preload import Preload
 from ..kernels.effects.tension import new_tension_cut
 from ..kernels.samples import Samples
 from ..scene import Scene, scene
-
-#: Contact time of a loss-free Hertz collision at v, in units of (m*/K)^{2/5} v^{-1/5} with the reduced mass m*.
-HERTZ_DURATION = 3.2180655
-#: Its peak force, (5/4)^{3/5}, in units of K^{2/5} (m* v²)^{3/5}.
-HERTZ_FORCE = 1.1432626
+from ..scene.hertz import HERTZ_DURATION
 
 
 def contact_time(speed: float, reduced_mass: float = 0.5, stiffness: float = 1.0) -> float:

@@ -5,36 +5,37 @@ from __future__ import annotations
 import numpy as np
 
 from ..kernels.effects.dissipation import LinearDashpot
-from . import brushes
+from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE
+from . import touches
 from .case import Figure, Picture, Trace
-from .chains import HERTZ_DURATION, HERTZ_FORCE, Bench, contact_time
-from .drafts import euler, one_after_another, plain_slope
+from .chains import Bench, contact_time
+from .naive_solvers import euler, one_after_another, plain_slope
 from .oracle import Plain, solved
 
 
 def brushed(quick: bool) -> list[Figure]:
-    """Random brushes: none missed, none invented, and the times of contact exact."""
+    """Random grazing touches: none missed, none invented, and the times of contact exact."""
     count = 4_000 if quick else 100_000
-    driver, thrown = (brushes.draw(count // 2, 11, True), brushes.draw(count // 2, 12, False))
-    by_driver, by_throw = brushes.run(driver, True), brushes.run(thrown, False)
-    wrong = len(brushes.missed(driver, by_driver)) + len(brushes.missed(thrown, by_throw))
-    touched, hit = driver[:, brushes.DEPTH] > 0.0, thrown[:, brushes.DEPTH] > 0.0
-    still = touched & (brushes.moved(driver) < 1e-10)
-    onset = max(by_driver[touched, brushes.ONSET_ERROR].max(), by_throw[hit, brushes.ONSET_ERROR].max())
+    driver, thrown = (touches.draw(count // 2, 11, True), touches.draw(count // 2, 12, False))
+    by_driver, by_throw = touches.run(driver, True), touches.run(thrown, False)
+    wrong = len(touches.missed(driver, by_driver)) + len(touches.missed(thrown, by_throw))
+    touched, hit = driver[:, touches.DEPTH] > 0.0, thrown[:, touches.DEPTH] > 0.0
+    still = touched & (touches.moved(driver) < 1e-10)
+    onset = max(by_driver[touched, touches.ONSET_ERROR].max(), by_throw[hit, touches.ONSET_ERROR].max())
     return [
         Figure(f"of {count} random brushes missed or invented", float(wrong), 0.0),
         Figure("moment of the onset, in periods", float(onset), 1e-9),
-        Figure("moment of the release, in periods", float(by_driver[still, brushes.RELEASE_ERROR].max()), 1e-9),
+        Figure("moment of the release, in periods", float(by_driver[still, touches.RELEASE_ERROR].max()), 1e-9),
     ]
 
 
 def brushed_picture() -> Picture:
-    """Fraction of brushes that 100 and 1000 samples a period detect, over their depth, and ours."""
+    """Fraction of touches that 100 and 1000 samples a period detect, over their depth, and ours."""
     depths = np.linspace(-7.0, -2.0, 21)
-    cases = brushes.draw(2_000, 5, True)
-    cases[:, brushes.DEPTH] = np.abs(cases[:, brushes.DEPTH])
-    seen = brushes.run(cases, True)[:, brushes.ONSETS] == 1
-    logs = np.log10(cases[:, brushes.DEPTH])
+    cases = touches.draw(2_000, 5, True)
+    cases[:, touches.DEPTH] = np.abs(cases[:, touches.DEPTH])
+    seen = touches.run(cases, True)[:, touches.ONSETS] == 1
+    logs = np.log10(cases[:, touches.DEPTH])
     ours = np.array([seen[np.abs(logs - d) < 0.25].mean() for d in depths])
     traces = [Trace("granchain", ours)]
     for looks in (100, 1000):

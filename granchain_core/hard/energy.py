@@ -15,7 +15,7 @@ from ..steady.curve import iter_curve
 from ..steady.lyapunov import exponents
 from .case import Figure, Picture, Trace
 from .chains import Bench, contact_time
-from .drafts import plain_slope, rk4
+from .naive_solvers import plain_slope, rk4
 from .oracle import Plain
 
 _BEADS = 7
@@ -97,13 +97,13 @@ def two_exponents(blocks: int) -> tuple[float, tuple[float, float], tuple[float,
     chosen = undamped(1000.0, 3)
     engine = Engine(chosen, live(), 1)
     engine.periods(100)
-    strobe = StroboscopicMap(chosen, 1)
-    x = strobe.inner(engine.y)
+    stroboscopic_map = StroboscopicMap(chosen, 1)
+    x = stroboscopic_map.inner(engine.y)
     found, _ = exponents(engine, blocks, 10)
     vector = np.ones(len(x)) / np.sqrt(len(x))
     growth = np.zeros((blocks + 1) * 10)
     for p in range(len(growth)):
-        flow = strobe(x)
+        flow = stroboscopic_map(x)
         x, vector = flow.end, flow.derivative @ vector
         growth[p] = np.log(np.linalg.norm(vector))
         vector /= np.linalg.norm(vector)

@@ -12,7 +12,7 @@ from ..kernels.effects.driver import Harmonic
 from ..run.run import run
 from ..scene import Scene, scene
 from .case import Figure, Picture, Trace
-from .drafts import plain_slope, rk4
+from .naive_solvers import plain_slope, rk4
 from .oracle import Plain, solved
 
 

@@ -42,7 +42,7 @@ class Injector:
 
     def into_state(self, rng: np.random.Generator) -> bool:
         """Whether a bad displacement or w of a bead is reported at once, with bead, time and step."""
-        row, bead = self.engine.lowered.row, int(rng.integers(1, self.beads + 1))
+        row, bead = self.engine.lowered.bodies, int(rng.integers(1, self.beads + 1))
         self.engine.y[bead + row * int(rng.integers(2))] = _VALUES[rng.integers(3)]
         found = self.outcome()
         step = None if METHODS[self.method].adaptive else self._kept[2]
@@ -110,7 +110,7 @@ def slowing(method: str, beads: int, rounds: int) -> float:
     for _ in range(rounds):
         for i, last in enumerate((-310.0, -280.0)):
             engine = Engine(chosen, Setting(method, 1.0, 1e-6), 1)
-            row = engine.lowered.row
+            row = engine.lowered.bodies
             engine.y[1 : row - 1] = -10.0 ** np.maximum(np.linspace(0.0, 2.0 * last, beads), last)
             engine.place()
             before, began = engine.counts.rhs, time.thread_time()

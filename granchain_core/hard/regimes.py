@@ -14,7 +14,7 @@ from ..steady.curve import CurvePoint, iter_curve
 from ..steady.regime import find_period
 from ..steady.settled import settled
 from .case import Figure, Picture, Trace
-from .drafts import observed_apart
+from .naive_solvers import observed_apart
 from .oracle import Plain
 
 #: Strobes of a normal form.
@@ -218,9 +218,9 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
     Also the size of its leading multiplier.
     """
     orbit = periodic_orbit(scene(base), observer=True)
-    strobe = StroboscopicMap(orbit.scene, orbit.period)
-    start = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
-    derivative, beads = strobe(start, observer=True).derivative, orbit.scene.N
+    stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
+    start = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    derivative, beads = stroboscopic_map(start, observer=True).derivative, orbit.scene.N
     difference, found = np.concatenate([np.full(beads, 1e-6), np.zeros(beads)]), np.empty(count)
     for i in range(count):
         found[i] = np.abs(difference[:beads]).max()

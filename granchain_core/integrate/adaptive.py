@@ -8,10 +8,9 @@ from ..kernels.dop853.run import Stretch, run_certified
 from ..kernels.dop853.step import ALL_STAGES, Cycle, Dop853, Work
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.peaks import MEMORY, ROWS, next_period
-from ..kernels.samples import Output, Samples
+from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE
 from ..lower import Lowered
-from .failure import not_finite
 from .stepper import Start, empty_samples
 
 #: At least this many steps are made in a period, so that the driver is never stepped over.
@@ -60,7 +59,7 @@ class Adaptive:
     def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
         """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
-        keep, row = empty_samples(self.lowered, 2), self.lowered.row
+        keep, row = empty_samples(self.lowered, 2), self.lowered.bodies
         strobes[0] = y[:row], self.work.k[0, :row]
         for p in range(len(tops)):
             next_period(out.log.peaks)
@@ -84,6 +83,6 @@ class Adaptive:
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
         """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
-        row = self.lowered.row
-        first = next((bead for bead in (not_finite(slope, row) for slope in self.work.k) if bead), 0)
-        return first or max(1, not_finite(y, row)), None
+        row = self.lowered.bodies
+        first = next((bead for bead in (first_not_finite(slope, row) for slope in self.work.k) if bead), 0)
+        return first or max(1, first_not_finite(y, row)), None

@@ -8,15 +8,15 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..kernels.batch import run as kernels
-from ..kernels.batch.period_end import FINE, FORCES, FORGET, REMEMBERED
-from ..kernels.effects.unequal import Unequal
+from ..kernels.batch.period_end import COARSE_ERROR_LEFT, FINE, FORCES, STROBES_PER_LANE
+from ..kernels.batch.unequal import Unequal
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.simd.vector import aligned
-from ..kernels.simd.width import BATCH_LANES
 from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
+from ..kernels.width import BATCH_LANES
 from ..lower import Lowered, lower
 from ..scene import Scene
 from ..stop import Stop
@@ -24,7 +24,7 @@ from ..stop import Stop
 #: A period that no lane reaches.
 NEVER = int(np.iinfo(np.int64).max)
 #: Drive periods until the next extrapolation after a failed one, at the start.
-_WAIT = 16
+_PAUSE = 16
 #: Fewest orbits in one round of a finer run.
 _FEWEST = 2
 
@@ -65,21 +65,21 @@ class Batch:
         parts = [np.zeros(BATCH_LANES) for _ in range(2)]
         self.state = kernels.BatchState(
             y=_rows(rows), gaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
-            steps=whole[0], left=whole[1], periods=whole[2], look=whole[3], earliest=whole[4], ready=whole[5],
-            wait=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0], unproved=parts[1],
-            before=np.zeros((BATCH_LANES, 2, n + 2)),
-            fine=np.zeros((BATCH_LANES, FINE)), strobes=np.zeros((BATCH_LANES, 2 * REMEMBERED, 2, n + 2)),
-            tops=np.zeros((BATCH_LANES, REMEMBERED, 5)), seen=np.zeros((BATCH_LANES, 3)), scale=np.zeros(2),
+            steps=whole[0], left=whole[1], periods=whole[2], return_at=whole[3], earliest=whole[4],
+            extrapolate_from=whole[5], pause=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0],
+            change_before_extrapolation=parts[1], before=np.zeros((BATCH_LANES, 2, n + 2)),
+            fine_record=np.zeros((BATCH_LANES, FINE)), strobes=np.zeros((BATCH_LANES, 2 * STROBES_PER_LANE, 2, n + 2)),
+            tops=np.zeros((BATCH_LANES, STROBES_PER_LANE, 5)), last_check=np.zeros((BATCH_LANES, 3)), scale=np.zeros(2),
             change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
             triangle=np.zeros((ORBITS, ORBITS)),
         )
         for lane in range(BATCH_LANES):  # an empty lane runs the example at rest and is never checked
             self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
 
-    def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, look: int, earliest: int = 0) -> None:
+    def put(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, return_at: int, earliest: int = 0) -> None:
         """Start a scene in a lane from the scaled state y at phase 0, with `refine` times the live method's steps.
 
-        It is checked after `look` periods, or from `earliest` on once it may have settled.
+        It is checked after `return_at` periods, or from `earliest` on once it may have settled.
         """
         slots, lanes, state = lowered.slots, self.lanes, self.state
         steps = math.ceil(refine * lowered.steps_per_period())
@@ -100,9 +100,10 @@ class Batch:
         state.y[:, lane], state.gaps[:, lane] = y, 0.0
         state.ends[:, lane] = 1.0  # counts as closed, so that no closing is recorded here
         state.strobes[lane, 0], state.kept[lane] = y.reshape(2, -1), 1
-        state.periods[lane], state.look[lane], state.earliest[lane] = 0, look, earliest
-        state.ready[lane], state.wait[lane], state.slowest[lane], state.unproved[lane] = 0, _WAIT, 0.0, 0.0
-        state.fine[lane], state.testing[lane] = 0.0, 0
+        state.periods[lane], state.return_at[lane], state.earliest[lane] = 0, return_at, earliest
+        state.extrapolate_from[lane], state.pause[lane] = 0, _PAUSE
+        state.slowest[lane], state.change_before_extrapolation[lane] = 0.0, 0.0
+        state.fine_record[lane], state.testing[lane] = 0.0, 0
 
     def put_fine(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, period: int, rate: float,
                  tops: np.ndarray) -> None:
@@ -110,9 +111,9 @@ class Batch:
 
         It is checked once the difference from that orbit has decayed.
         """
-        orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(FORGET) / math.log(rate))))
+        orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(COARSE_ERROR_LEFT) / math.log(rate))))
         self.put(lane, lowered, y, refine, NEVER, orbits * period)
-        self.state.fine[lane] = period, rate, *tops, orbits, 0.0
+        self.state.fine_record[lane] = period, rate, *tops, orbits, 0.0
 
     def run(self) -> tuple[int, bool]:
         """Run until a lane is due for a check; its number, and whether it is finite."""
@@ -129,7 +130,7 @@ class Batch:
             raise Cancelled
         return growth if status == DONE else np.full_like(growth, np.nan)
 
-    def strobes(self, lane: int, most: int = REMEMBERED) -> np.ndarray:
+    def strobes(self, lane: int, most: int = STROBES_PER_LANE) -> np.ndarray:
         """The last `most` remembered strobes of a lane in order, (P, 2, N), displacement and w in scaled units."""
         kept = int(self.state.kept[lane])
         return self.state.strobes[lane, max(0, kept - most) : kept, :, 1:-1]
@@ -137,7 +138,7 @@ class Batch:
     def settled_tops(self, lane: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse lane has settled on: from before it was disturbed, if it was."""
         disturbed = self.state.slowest[lane] > 0.0
-        return self.state.fine[lane, FORCES : FORCES + 3].copy() if disturbed else self.tops(lane, period)
+        return self.state.fine_record[lane, FORCES : FORCES + 3].copy() if disturbed else self.tops(lane, period)
 
     def tops(self, lane: int, periods: int) -> np.ndarray:
         """Largest input, output and elastic output force of the last `periods` periods, in scaled units."""
@@ -149,5 +150,5 @@ class Batch:
 
     def _last(self, lane: int, periods: int) -> np.ndarray:
         run = int(self.state.periods[lane])
-        places = np.arange(max(1, run - min(periods, REMEMBERED) + 1), run + 1) % REMEMBERED
+        places = np.arange(max(1, run - min(periods, STROBES_PER_LANE) + 1), run + 1) % STROBES_PER_LANE
         return self.state.tops[lane, places].max(axis=0)

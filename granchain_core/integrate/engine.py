@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 
 from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
-from ..kernels.forces.peaks import MEMORY, ROWS, forget
-from ..kernels.samples import Output, Samples
+from ..kernels.forces.peaks import MEMORY, ROWS, reset_peaks
+from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE, NOT_FINITE
 from ..lower import Lowered, lower
 from ..scene import Scene
 from ..state import State, rest
 from ..stop import Stop
 from .counts import Counts
-from .failure import Failure, not_finite
+from .failure import Failure
 from .flushed import flushed
 from .methods import METHODS, Setting
 from .stepper import Start, empty_samples
@@ -78,12 +78,12 @@ class Engine:
         self.elapsed = 0.0
         self.place(from_velocity)
         self.stepper.prepare(self.y)
-        self.forget_peaks()
+        self.reset_peaks()
 
     def place(self, from_velocity: bool = False) -> None:
         """Put the driver and the slope, where every kernel expects it, in step with y."""
         if self.lowered.slots.tension is not None:  # flags of the last step
-            self.lowered.slots.tension.slack[:] = 0
+            self.lowered.slots.tension.force_free[:] = 0
         self.stepper.place(2 * np.pi * self.grid_index / self.grid, self.y, from_velocity)
 
     @property
@@ -109,7 +109,7 @@ class Engine:
         self._remember()
         stepper, periods = self.stepper, count / self.samples
         samples = empty_samples(stepper.lowered, count + 1)
-        out = self._output(round(_CLOSINGS * (1.0 + periods) * stepper.lowered.row))
+        out = self._output(round(_CLOSINGS * (1.0 + periods) * stepper.lowered.bodies))
         status, rows = stepper.samples(self.y, self.grid_index, samples, out)
         self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid
         if status != DONE:
@@ -127,7 +127,7 @@ class Engine:
         """
         self._remember()
         stepper = self.stepper
-        strobes, tops = np.zeros((count + 1, 2, stepper.lowered.row)), np.full((count, 3), np.nan)
+        strobes, tops = np.zeros((count + 1, 2, stepper.lowered.bodies)), np.full((count, 3), np.nan)
         status, done = stepper.periods(self.y, strobes, tops, watch, self._output())
         if status != DONE:
             self.raise_for(status, done, self._before)
@@ -141,9 +141,9 @@ class Engine:
 
     # --- largest forces ------------------------------------------------------------------------------------
 
-    def forget_peaks(self) -> None:
+    def reset_peaks(self) -> None:
         """Reset the largest forces."""
-        forget(self.log.peaks)
+        reset_peaks(self.log.peaks)
 
     @property
     def tops(self) -> np.ndarray:
@@ -158,21 +158,21 @@ class Engine:
     @property
     def closings(self) -> np.ndarray:
         """The jumps of the last record (J, 4): sample before it, drive phase θ, contact, scaled force just after."""
-        return self.log.closings[: self.log.met[CLOSED]]
+        return self.log.closings[: self.log.counts[CLOSED]]
 
     @property
     def unresolved(self) -> int:
         """How many of them were touches within a step, by a method that does not locate events."""
-        return int(self.log.met[UNRESOLVED])
+        return int(self.log.counts[UNRESOLVED])
 
     @property
     def closings_missing(self) -> int:
         """How many further jumps there were, for which there was no place."""
-        return max(0, int(self.log.met[CLOSED]) - len(self.log.closings))
+        return max(0, int(self.log.counts[CLOSED]) - len(self.log.closings))
 
     def largest_forces(self, periods: int) -> np.ndarray:
         """Advance by whole periods: the largest input, output and elastic output force on the way (3,), scaled."""
-        self.forget_peaks()
+        self.reset_peaks()
         self.record(periods * self.samples)
         return self.tops
 
@@ -191,7 +191,7 @@ class Engine:
     def _remember(self) -> None:
         """Keep where a call begins; a number that is not finite there already is reported at once."""
         stepper = self.stepper
-        bead = not_finite(self.y, stepper.lowered.row)
+        bead = first_not_finite(self.y, stepper.lowered.bodies)
         if bead:
             raise self._failure(NOT_FINITE, 0.0, bead, stepper.step_at(self.grid_index)).error
         self._before: Start = self.y.copy(), stepper.work.k[0].copy(), self.grid_index

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..errors import Cancelled, NumbersFailed
 from ..kernels.status import CANCELLED, CHATTER, NOT_FINITE, STEP_TOO_SMALL, TOO_MANY_STEPS
 from ..scene import Scene
@@ -50,9 +48,3 @@ class Failure:
             return NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D "
                                  f"or use method rk4-split.", "chatter", time=time, cost=self.cost)
         raise ValueError(f"{self.status} is not the status of a computation that failed")
-
-
-def not_finite(state: np.ndarray, row: int) -> int:
-    """Number of the first bead whose displacement or w is not finite, or 0."""
-    beads = np.isfinite(state[1 : row - 1]) & np.isfinite(state[row + 1 : 2 * row - 1])
-    return 0 if beads.all() else int(np.argmin(beads)) + 1

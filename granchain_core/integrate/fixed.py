@@ -11,20 +11,19 @@ from typing import Any
 
 import numpy as np
 
+from ..kernels.contact_cubic import ENDS
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.naive import naive_motion
-from ..kernels.rk4.contact_events import ENDS
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import Kept, run_steps
-from ..kernels.rk4.short_chain import BLOCK, KEPT, WIDTHS, ShortChain
+from ..kernels.rk4.short_chain import KEPT, STEPS_IN_BLOCK, WIDTHS, ShortChain
 from ..kernels.rk4.step import DriveTable, Stages
-from ..kernels.samples import Output, Samples
+from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.simd.vector import LANES, aligned
 from ..lower import Lowered
 from ..stop import Stop
-from .failure import not_finite
 from .stepper import Start, empty_samples
 
 #: Steps in a period up to which the driver's motion is tabulated.
@@ -45,7 +44,7 @@ class FixedStep:
         self._no_periods = np.zeros((0, 2, 0)), np.zeros((0, 3))
         self.drive = self._driver_table()
         self.work: Any = Stages(np.zeros((4, lowered.size)), np.zeros(lowered.size), np.zeros(lowered.size),
-                                np.zeros((ENDS, lowered.row - 1)), lowered.forces(), self.new_simd_workspace())
+                                np.zeros((ENDS, lowered.bodies - 1)), lowered.forces(), self.new_simd_workspace())
 
     def _driver_table(self) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
@@ -61,7 +60,7 @@ class FixedStep:
         lo, slots = self.lowered, self.lowered.slots
         if not self._simd or not all_in_simd_kernels(slots) or slots.driver is None:
             return None
-        width = next((lanes for lanes in WIDTHS if lo.row <= lanes), 0)
+        width = next((lanes for lanes in WIDTHS if lo.bodies <= lanes), 0)
         return _short_chain(lo, width) if width else _long_chain(lo)
 
     def use(self, lowered: Lowered) -> None:
@@ -102,9 +101,9 @@ class FixedStep:
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
         """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it."""
-        n, row = self.grid, self.lowered.row
+        n, row = self.grid, self.lowered.bodies
         if start is None:
-            return max(1, not_finite(y, row)), None
+            return max(1, first_not_finite(y, row)), None
         here, slope, first = start
         low = first + round(done * n)
         here, slopes = self._again(here, slope, first, low, vectors=True)
@@ -113,14 +112,14 @@ class FixedStep:
         while high - low > 1:
             middle = (low + high) // 2
             there, slopes = self._again(here, slope, low, middle, vectors=True)
-            if not_finite(there, row):
+            if first_not_finite(there, row):
                 high = middle
             else:
                 low, here, slope = middle, there, slopes[0]
         _, slopes = self._again(here, slope, low, high)
         end, _ = self._again(here, slope, low, high, vectors=True)
         # each stage spreads to the next beads only: the earliest stage names the bead
-        return next((b for b in (not_finite(k, row) for k in (*slopes[1:], end)) if b), 1), low % n
+        return next((b for b in (first_not_finite(k, row) for k in (*slopes[1:], end)) if b), 1), low % n
 
     def _again(self, y: np.ndarray, slope: np.ndarray, first: int, last: int,
                vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:
@@ -160,12 +159,12 @@ def _short_chain(lowered: Lowered, width: int) -> ShortChain:
 
     preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
     return ShortChain(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
-                      aligned(2 * KEPT, width), aligned(ENDS, width), np.zeros((3, BLOCK)))
+                      aligned(2 * KEPT, width), aligned(ENDS, width), np.zeros((3, STEPS_IN_BLOCK)))
 
 
 def _long_chain(lowered: Lowered) -> LongChain:
     """The workspace of a chain in blocks of eight bodies."""
-    slots, blocks = lowered.slots, -(-lowered.row // LANES)
+    slots, blocks = lowered.slots, -(-lowered.bodies // LANES)
 
     def padded(values: np.ndarray) -> np.ndarray:
         return np.pad(values, (0, blocks * LANES - len(values))).reshape(blocks, LANES)

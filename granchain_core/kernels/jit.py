@@ -25,11 +25,13 @@ from numba.core import event
 from numba.extending import overload
 
 from .link_only import compiler_options
-from .simd.width import BATCH_LANES
+from .width import BATCH_LANES
 
+#: What the compiler may do with floating-point numbers: not assume that none is NaN or infinite.
+FAST_MATH = ("nsz", "arcp", "contract", "reassoc")
 #: Kernels allocate nothing, so arrays in them are not counted, and they are never passed as function pointers, so they
 #: need no C entry: that is less code to compile and to run.
-_OPTIONS: Any = {"fastmath": {"nsz", "arcp", "contract", "reassoc"}, "error_model": "numpy", "_nrt": False,
+_OPTIONS: Any = {"fastmath": set(FAST_MATH), "error_model": "numpy", "_nrt": False,
                  "no_cfunc_wrapper": True}
 
 

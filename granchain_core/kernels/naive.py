@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from .effects.balance import force_on_bead
 from .effects.contact import elastic_force, positive_part
 from .effects.dissipation import damping
 from .effects.preload import overlap
 from .effects.tension import cut_at_zero
+from .equations.motion import force_on_bead
 from .forces.crossings import end_overlaps, watch_crossings
 from .forces.largest import Instant
 from .jit import kernel
-from .rk4.step import drive_displacement, drive_velocity, span_of, step
+from .rk4.step import span_of, step, tabulated_displacement, tabulated_velocity
 from .status import EVALUATIONS, STEPS
 
 
@@ -58,8 +58,8 @@ def _(method, trajectory, j, out):
     k, stage, forces, h = stages.k, stages.stage, stages.forces, drive.h
     now = Instant(y, k[0])
     before = end_overlaps(slots.dissipation, slots, now)
-    ua, va = drive_displacement(slots, drive, 2 * j + 1), drive_velocity(slots, drive, 2 * j + 1)
-    ub, vb = drive_displacement(slots, drive, 2 * j + 2), drive_velocity(slots, drive, 2 * j + 2)
+    ua, va = tabulated_displacement(slots, drive, 2 * j + 1), tabulated_velocity(slots, drive, 2 * j + 1)
+    ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)
     for i in range(y.size):
         stage[i] = y[i] + 0.5 * h * k[0, i]
     naive_motion(slots, ua, va, stage, k[1], forces)
@@ -87,7 +87,7 @@ def _(method, trajectory, j, out):
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]
         y[i] += h * y[m + i]
-    ub, vb = drive_displacement(slots, drive, 2 * j + 2), drive_velocity(slots, drive, 2 * j + 2)
+    ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)
     naive_motion(slots, ub, vb, y, k[0], stages.forces)
     for i in range(1, m - 1):
         y[m + i] += 0.5 * h * k[0, m + i]

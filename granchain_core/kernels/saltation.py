@@ -4,25 +4,25 @@ Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + λ_{i-1} δδ̇_{i-
 Saltation  at the onset of contact c   δv_c −= (λ/m_c) δδ_c,   δv_{c+1} += (λ/m_{c+1}) δδ_c,   at release the reverse:
            the velocity of neighbouring motions changes its slope there at another time than that of this one
 Source     saltation matrices: Leine & Nijmeijer 2004, chapter 7; for this force they are constant shears
-Use        a check of equations/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
+Use        a check of dop853/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
            Liouville's formula cannot see whether it is there; the columns do. Linear dashpot or no damping.
 """
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 
+from .contact_cubic import TINY
 from .dop853.flow import jump
 from .dop853.flow_attempt import keep_gaps
 from .dop853.tableau import STAGES, A, C
+from .dop853.tangent import carry, stage_gaps
 from .dop853.time_map import rate_at
-from .effects.contact import positive_part
+from .effects.contact import elastic_slope, positive_part
 from .effects.dissipation import damping
 from .effects.foundation import foundation_pull
-from .equations.tangent import carry, stage_gaps
 from .jit import inline_numba
 
 
@@ -56,7 +56,7 @@ def velocity_slope(slots, rate, gaps, closed, T, out):
         if closed[c] == 0:
             continue
         d = positive_part(gaps[c])
-        s, g = 1.5 * slots.chain.stiffness[c] * sqrt(d), damping(slots.dissipation, d + 1e-300)
+        s, g = elastic_slope(slots.chain.stiffness[c], d), damping(slots.dissipation, d + TINY)
         for q in range(columns):
             push = 0.0
             if c > 0:
@@ -70,7 +70,7 @@ def velocity_slope(slots, rate, gaps, closed, T, out):
 
 
 @carry.of(VelocityTangent)
-def _(tangent, slots, time, h, path):
+def _(tangent, slots, time, h, contacts):
     rows, columns = tangent.matrix.shape
     for stage in range(STAGES + 1):
         for i in range(rows):
@@ -80,7 +80,7 @@ def _(tangent, slots, time, h, path):
                     value += h * A[stage, earlier] * tangent.slopes[earlier, i, q]
                 tangent.state[i, q] = value
         if stage < STAGES:
-            velocity_slope(slots, rate_at(time, C[stage] * h), tangent.gaps[stage], path.closed, tangent.state,
+            velocity_slope(slots, rate_at(time, C[stage] * h), tangent.gaps[stage], contacts.closed, tangent.state,
                            tangent.slopes[stage])
     for i in range(rows):
         for q in range(columns):

@@ -21,7 +21,7 @@ FULL = 6
 #: A step was aimed at a release, but the contact does not open there; the step is taken in another way.
 LOST = -1
 
-#: Most fixed steps between two readings of the stop flag; with error control it is read after every step.
+#: Most fixed steps between two readings of the stop flag; with error control it is read before every step.
 STEPS_BETWEEN_STOP_CHECKS = 4096
 
 #: Places in an array of counts (4,): accepted steps, evaluations of the equations, contact events, rejected steps.

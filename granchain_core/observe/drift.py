@@ -21,8 +21,9 @@ def observer_drift(orbit: Orbit) -> str | None:
     found = orbit.observer_multipliers
     if found is None or abs(found[0]) < 1.0 - _NEAR:
         return None
-    strobe = StroboscopicMap(orbit.scene, orbit.period)
-    value, vector = eigenpair(strobe, strobe.inner(strobe.engine.lowered.scaled(orbit.state)), 0, observer=True)
+    stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
+    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    value, vector = eigenpair(stroboscopic_map, x, 0, observer=True)
     moved = vector[: orbit.scene.N].real
     if value.imag != 0.0 or not ((moved > 0.0).all() or (moved < 0.0).all()):
         return None

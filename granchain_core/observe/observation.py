@@ -20,7 +20,7 @@ from ..errors import BadInput
 from ..integrate import State
 from ..integrate.caution import EVEN, UNEVEN
 from ..integrate.methods import LIVE
-from ..result import Cost
+from ..result import Cost, elastic_output
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
@@ -215,12 +215,6 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
 def _difference(one: np.ndarray, other: np.ndarray) -> float:
     largest = float(np.abs(one).max())
     return float(np.abs(one - other).max()) / largest if largest > 0.0 else 0.0
-
-
-def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:
-    """Elastic force on the wall [N] for displacements of the last bead [m]."""
-    overlap = np.maximum(last + scene.static_overlap()[-1], 0.0)
-    return np.asarray(scene.contact_stiffness()[-1] * overlap**1.5)
 
 
 def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..integrate import Engine, State, certified
 from ..kernels.effects.contact import Chain
-from ..kernels.effects.driver import FAR
+from ..kernels.effects.driver import BODY_FAR_AWAY
 from ..kernels.effects.given_force import ObserverCoupling
 from ..kernels.effects.preload import Preload
 from ..kernels.samples import Samples
@@ -28,14 +28,14 @@ TOLERANCE = 1e-13
 def lower_pair(scene: Scene) -> Lowered:
     """Scaled arrays and slots of a chain with its observer.
 
-    The contact that carries F_in has no overlap of its own: its bodies stand FAR apart, and its stiffness is 0.
+    The contact that carries F_in has no overlap of its own: its bodies are BODY_FAR_AWAY apart, and its stiffness is 0.
     """
     one = lower(scene)
     mass, stiffness = one.slots.chain
     static = np.zeros(scene.N + 1) if one.slots.preload is None else one.slots.preload.static
     slots = one.slots._replace(
         chain=Chain(np.concatenate([mass, mass[1:]]), np.concatenate([stiffness, [0.0], stiffness[1:]])),
-        preload=Preload(np.concatenate([static, [-FAR], static[1:]])),
+        preload=Preload(np.concatenate([static, [-BODY_FAR_AWAY], static[1:]])),
         driver=ObserverCoupling(1.0, one.beta, scene.N + 1),
     )
     return replace(one, slots=slots)

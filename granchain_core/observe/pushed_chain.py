@@ -8,11 +8,11 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..integrate import Counts, State
+from ..kernels.contact_cubic import ENDS
 from ..kernels.effects.given_force import Sampled
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
-from ..kernels.forces.peaks import MEMORY, ROWS, forget
-from ..kernels.rk4.contact_events import ENDS
+from ..kernels.forces.peaks import MEMORY, ROWS, reset_peaks
 from ..kernels.rk4.observed import SampledForce, run_observed
 from ..kernels.rk4.step import DriveTable, Rk4Split, Stages
 from ..kernels.samples import Output, Samples, first_not_finite
@@ -50,7 +50,7 @@ class PushedChain:
 
     def run(self, start: State, halvings: int) -> Samples:
         """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
-        lo, n, row = self.lowered, self.lowered.beads, self.lowered.row
+        lo, n, row = self.lowered, self.lowered.beads, self.lowered.bodies
         if len(start.displacement) != n:
             raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
         substeps = self._substeps * 2**halvings
@@ -64,7 +64,7 @@ class PushedChain:
                         lo.forces(), None)
         lo.slots.driver.piece[:] = self._pieces[0]
         place(lo.slots, 0.0, y, stages.k[0], stages.forces, True)
-        forget(self._log.peaks)
+        reset_peaks(self._log.peaks)
         rows = len(self._spans) + 1
         samples = Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
         nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)

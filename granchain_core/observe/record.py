@@ -16,6 +16,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..scene import Scene
+from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE
 
 #: A spacing of more than this factor times the median one is a gap.
 GAP = 1.5
@@ -25,9 +26,8 @@ GAPS = ("refuse", "zero", "interpolate")
 PULSE_SAMPLES = 4
 #: Fewest samples in all.
 FEWEST = 8
-#: Duration of a collision of two free beads with peak force F is this times √(m/2) K^{−1/3} F^{−1/6}: from Hertz'
-#: 3.2180655 (m*/K)^{2/5} v^{−1/5} and F = 1.1432626 K^{2/5} m*^{3/5} v^{6/5} with m* = m/2.
-_HERTZ = 3.2180655 * 1.1432626 ** (1.0 / 6.0)
+#: Duration of a collision of two free beads with peak force F is this times √(m/2) K^{−1/3} F^{−1/6}, m* being m/2.
+_HERTZ = HERTZ_DURATION * HERTZ_FORCE ** (1.0 / 6.0)
 
 
 def _number(index: int) -> str:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, NumbersFailed
-from ..orbits import Orbit, periodic_orbit
+from ..orbits import CONTINUOUS, Orbit, periodic_orbit
 from ..scene import Scene
 from ..stop import Stop
 
@@ -65,12 +65,12 @@ class ObserverStability:
 
 def observer_stability(scene: Scene, knob: str, values: Sequence[float], period: int | None = None,
                        stop: Stop | None = None) -> ObserverStability:
-    """Largest observer multiplier of `scene` with `knob` (kappa, k, D, f, A0, F0) at each of `values`.
+    """Largest observer multiplier of `scene` with `knob`, one of `CONTINUOUS`, at each of `values`.
 
     `period` of the orbit in drive periods; else that of the steady state at the first value. Raises `BadInput`.
     """
-    if knob not in ("kappa", "k", "D", "f", "A0", "F0"):
-        raise BadInput(f"{knob!r} is no knob an observer is followed along; known: kappa, k, D, f, A0, F0.")
+    if knob not in CONTINUOUS:
+        raise BadInput(f"{knob!r} is no knob an observer is followed along; known: {', '.join(CONTINUOUS)}.")
     if not 1 <= len(values) <= MOST_VALUES:
         raise BadInput(f"{len(values)} values are outside 1 to {MOST_VALUES}; the nearest valid number is "
                        f"{min(max(len(values), 1), MOST_VALUES)}.")

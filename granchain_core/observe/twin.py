@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput
+from ..errors import BadInput, check_range
 from ..integrate import State
 from ..integrate.methods import CERTIFIED
 from ..orbits import Orbit, periodic_orbit
@@ -28,7 +28,7 @@ LINEAR = 0.03
 #: Smallest distance that is not rounding.
 ROUNDING = 1e-11
 #: Differences below this, all through a period, are rounding: the observer is in step and is followed no further.
-IN_STEP = 1e-12
+SYNCHRONISED = 1e-12
 #: Most periods of one twin: a minute or so.
 MOST_PERIODS = 20_000
 #: Fraction of the usable periods after which fast multipliers count as decayed.
@@ -124,9 +124,9 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     """
     _check(periods, samples)
     began = time.perf_counter()
-    way = run_until_settled(scene, None, stop)
-    orbit, start, n = None, way.engine.state, way.regime.period or 1
-    if way.regime.period is not None and not scene.cuts_tension:
+    settling = run_until_settled(scene, None, stop)
+    orbit, start, n = None, settling.engine.state, settling.regime.period or 1
+    if settling.regime.period is not None and not scene.cuts_tension:
         orbit = periodic_orbit(scene, n, start, observer=True, stop=stop)
         start = orbit.state
     pair = Pair(scene, samples, stop)
@@ -155,7 +155,7 @@ def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarra
     rows = engine.record(engine.samples)
     parts, difference = [rows], [pair.difference(rows)]
     for _ in range(1, periods):
-        if np.abs(difference[-1]).max() < IN_STEP:
+        if np.abs(difference[-1]).max() < SYNCHRONISED:
             break
         rows = engine.record(engine.samples)
         parts.append(rows)
@@ -169,9 +169,7 @@ def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 def _check(periods: int, samples: int) -> None:
     for name, value, low, high in (("periods", periods, 1, MOST_PERIODS), ("samples", samples, 1, 1000)):
-        if not low <= value <= high:
-            raise BadInput(f"{name} = {value} is outside {low} to {high}; the nearest valid value is "
-                           f"{min(max(value, low), high)}.")
+        check_range(f"{name} =", value, low, high)
 
 
 def observer_start(scene: Scene, chain: State, perturbation: float | State) -> State:

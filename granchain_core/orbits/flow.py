@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,11 +10,11 @@ import numpy as np
 from ..errors import BadInput
 from ..integrate import Engine, certified
 from ..kernels.dop853.flow import run_flow
-from ..kernels.dop853.flow_attempt import Course, Path
+from ..kernels.dop853.flow_attempt import ContactStatus, Course
 from ..kernels.dop853.tableau import STAGES
+from ..kernels.dop853.tangent import Tangent
 from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
-from ..kernels.equations.tangent import Tangent
 from ..kernels.saltation import VelocityTangent
 from ..kernels.simd.vector import LANES, aligned
 from ..kernels.status import EVENTS_PER_CONTACT
@@ -23,6 +24,9 @@ from ..stop import Stop
 
 #: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
 TOLERANCE = 1e-13
+#: Relative change after a part of its period at which an orbit is one of that shorter period: far above the map's own
+#: error, far below the distance of two orbits.
+_BACK = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +61,10 @@ class StroboscopicMap:
         refuse_cut(scene)
         self.engine = Engine(scene, certified(TOLERANCE), 1, stop=stop)
         self.periods = periods
-        row = self.engine.lowered.row
-        self._path = Path(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
+        row = self.engine.lowered.bodies
+        self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
                           np.zeros((EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))
-        held = self.engine.stepper.work.forces._replace(held=Held(self._path.closed))
+        held = self.engine.stepper.work.forces._replace(held=Held(self._contacts.closed))
         self._work = self.engine.stepper.work._replace(forces=held)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
@@ -73,11 +77,11 @@ class StroboscopicMap:
         With `observer` the tangents are those of a chain pushed by the recorded input force.
         """
         start = np.eye(len(x)) if directions is None else directions
-        tangent = _tangent(start, self.engine.lowered.row - 1, 1 if observer else 0)
+        tangent = _tangent(start, self.engine.lowered.bodies - 1, 1 if observer else 0)
         trace = self._run(x, tangent)
         return Flow(self.inner(self.engine.y), _columns(tangent, start.shape[1]), trace, self.changes)
 
-    def second_route(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
+    def derivative_by_saltation(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
 
         Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests ask for it. Its
@@ -91,7 +95,7 @@ class StroboscopicMap:
                            "linear and none.")
         rows = len(x)
         before = velocity_from_w(lo, x)
-        tangent = VelocityTangent(before, np.zeros((STAGES + 1, lo.row - 1)), np.zeros((STAGES, rows, rows)),
+        tangent = VelocityTangent(before, np.zeros((STAGES + 1, lo.bodies - 1)), np.zeros((STAGES, rows, rows)),
                                   np.zeros((rows, rows)), float(jumps))
         self._run(x, tangent)
         return np.linalg.solve(velocity_from_w(lo, self.inner(self.engine.y)), tangent.matrix)
@@ -104,7 +108,7 @@ class StroboscopicMap:
     @property
     def changes(self) -> np.ndarray:
         """The contact events of the last run, as in `Flow`."""
-        found = self._path.log[: self._path.logged[0]].copy()
+        found = self._contacts.log[: self._contacts.logged[0]].copy()
         found[:, 1] /= self.engine.lowered.period
         return found
 
@@ -113,7 +117,7 @@ class StroboscopicMap:
         engine.start_scaled(x)
         self._work.next_step[0] = min(0.1, engine.lowered.period / STAGES)
         trajectory = engine.stepper.trajectory(engine.y)._replace(work=self._work)
-        status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._path, tangent), self.periods,
+        status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._contacts, tangent), self.periods,
                                        engine.counts.array, engine.stop.flag)
         engine.raise_for(status, done)
         return float(trace)
@@ -153,6 +157,17 @@ def relative_change(change: np.ndarray, x: np.ndarray) -> float:
     half = len(x) // 2
     return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
                for part in (slice(0, half), slice(half, None)))
+
+
+def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int) -> int:
+    """The smallest part of `period` drive periods after which a state is back at x; `after(n)` is that n periods later.
+
+    `period` itself where no part of it is enough.
+    """
+    for shorter in range(1, period):
+        if period % shorter == 0 and relative_change(after(shorter) - x, x) < _BACK:
+            return shorter
+    return period
 
 
 def _columns(tangent: Tangent, columns: int) -> np.ndarray:

@@ -7,6 +7,8 @@ suffices.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, gmres
 
@@ -25,20 +27,21 @@ _RESTART = 80
 _ROUNDS = 5
 
 
-def derivative_at(strobe: StroboscopicMap, x: np.ndarray, observer: bool = False) -> LinearOperator:
+def derivative_at(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bool = False) -> LinearOperator:
     """The derivative of the map at x as an operator (2N, 2N)."""
     def product(direction: np.ndarray) -> np.ndarray:
-        return strobe(x, observer, directions=np.asarray(direction, dtype=float).reshape(-1, 1)).derivative[:, 0]
+        column = np.asarray(direction, dtype=float).reshape(-1, 1)
+        return stroboscopic_map(x, observer, directions=column).derivative[:, 0]
 
     return LinearOperator((len(x), len(x)), matvec=product, dtype=float)
 
 
-def newton_step(strobe: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.ndarray:
+def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.ndarray:
     """The step d of Newton's method towards a fixed point: (M − I) d = x − end, by GMRES.
 
     Raises `NumbersFailed` where it does not converge: the derivative then has a multiplier close to 1.
     """
-    derivative = derivative_at(strobe, x)
+    derivative = derivative_at(stroboscopic_map, x)
     system = LinearOperator(derivative.shape, matvec=lambda d: derivative @ d - d, dtype=float)
     step, status = gmres(system, x - end, rtol=_SOLVED, restart=_RESTART, maxiter=_ROUNDS)
     if status != 0:
@@ -47,18 +50,29 @@ def newton_step(strobe: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.n
     return np.asarray(step)
 
 
-def leading_multipliers(strobe: StroboscopicMap, x: np.ndarray, observer: bool = False,
+def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bool = False,
                         count: int = LEADING) -> np.ndarray:
     """The `count` multipliers of largest modulus at the fixed point x, largest first, by Arnoldi iteration.
+
+    Raises `NumbersFailed` where they do not converge.
+    """
+    found = arnoldi(stroboscopic_map, x, count, observer)
+    return found[np.argsort(-np.abs(found), kind="stable")]
+
+
+def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observer: bool = False,
+            vectors: bool = False) -> Any:
+    """The `count` multipliers of largest modulus at the fixed point x, in any order.
+
+    With `vectors` a pair: they, and their eigenvectors (2N, count).
 
     Raises `NumbersFailed` where they do not converge.
     """
     # the start is fixed, so that the same chain gives the same digits
     start = np.random.default_rng(0).standard_normal(len(x))
     try:
-        found = eigs(derivative_at(strobe, x, observer), k=count, which="LM", v0=start, tol=_EXACT,
-                     return_eigenvectors=False)
+        return eigs(derivative_at(stroboscopic_map, x, observer), k=count, which="LM", v0=start, tol=_EXACT,
+                    return_eigenvectors=vectors)
     except ArpackNoConvergence as problem:
         raise NumbersFailed(f"Only {len(problem.eigenvalues)} of {count} leading multipliers converged; the others are "
                             f"too close together.", "no-convergence") from None
-    return found[np.argsort(-np.abs(found), kind="stable")]

@@ -14,22 +14,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
-from ..errors import BadInput, NumbersFailed
+from ..errors import check_range
 from ..integrate import Engine, certified
 from ..steady.poincare import Section
 from ..stop import Stop
 from .flow import TOLERANCE, StroboscopicMap
-from .krylov import derivative_at
-from .orbit import DENSE, Orbit
+from .krylov import arnoldi
+from .orbit import MOST_BEADS_DENSE, Orbit
 
 #: Size of the carried disturbance relative to the motion.
 _SMALL = 1e-5
 #: Fewest eigenpairs that Arnoldi iteration computes.
 _FEWEST = 6
-#: Their error, relative to the largest.
-_EXACT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,12 +49,10 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
 
     Raises `BadInput` for a rank that is not there, `NumbersFailed`, `Cancelled`.
     """
-    if not 0 <= rank < len(orbit.multipliers):
-        raise BadInput(f"mode {rank} is outside 0 to {len(orbit.multipliers) - 1}; the nearest valid value is "
-                       f"{min(max(rank, 0), len(orbit.multipliers) - 1)}.")
-    strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
-    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
-    value, vector = eigenpair(strobe, x, rank)
+    check_range("mode", rank, 0, len(orbit.multipliers) - 1)
+    stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
+    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    value, vector = eigenpair(stroboscopic_map, x, rank)
     if value.imag < 0.0:
         value, vector = value.conjugate(), vector.conj()
     beads = len(x) // 2
@@ -71,28 +66,18 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
     return Mode(complex(value), orbit.period, samples, moved / np.abs(moved).max(), closure)
 
 
-def eigenpair(strobe: StroboscopicMap, x: np.ndarray, rank: int, observer: bool = False) -> tuple[complex, np.ndarray]:
+def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
+              observer: bool = False) -> tuple[complex, np.ndarray]:
     """The multiplier at place `rank` by modulus with its eigenvector; of a long chain by Arnoldi iteration.
 
     With `observer`, those of the observer of model (4), Zhang et al. 2016.
     """
-    if len(x) <= 2 * DENSE:
-        values, vectors = np.linalg.eig(strobe(x, observer=observer).derivative)
+    if len(x) <= 2 * MOST_BEADS_DENSE:
+        values, vectors = np.linalg.eig(stroboscopic_map(x, observer=observer).derivative)
     else:
-        values, vectors = leading_pairs(strobe, x, rank + 2, observer)
+        values, vectors = arnoldi(stroboscopic_map, x, max(rank + 2, _FEWEST), observer, vectors=True)
     place = np.argsort(-np.abs(values), kind="stable")[rank]
     return complex(values[place]), vectors[:, place]
-
-
-def leading_pairs(strobe: StroboscopicMap, x: np.ndarray, count: int,
-                  observer: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """At least `count` leading multipliers with their eigenvectors (2N, count). Raises `NumbersFailed`."""
-    start = np.random.default_rng(0).standard_normal(len(x))
-    try:
-        return tuple(eigs(derivative_at(strobe, x, observer), k=max(count, _FEWEST), which="LM", v0=start, tol=_EXACT))
-    except ArpackNoConvergence:
-        raise NumbersFailed(f"The mode of multiplier {count - 1} did not converge: too many lie close together.",
-                            "no-convergence") from None
 
 
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
@@ -110,9 +95,9 @@ def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, sa
 
 def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
     """The orbit's own n points at every phase, by the certified method: n periods of an unstable orbit stay on it."""
-    strobe = StroboscopicMap(orbit.scene, orbit.period, stop)
+    stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
     engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
-    engine.start_scaled(strobe.inner(strobe.engine.lowered.scaled(orbit.state)))
+    engine.start_scaled(stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state)))
     record, scales = engine.record(orbit.period * samples), engine.lowered.scales
     shape = (orbit.period, samples, -1)
     return Section(orbit.scene, record.displacement[:-1].reshape(shape) * scales.length,

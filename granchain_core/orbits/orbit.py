@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed
+from ..errors import NumbersFailed, check_range
 from ..integrate import State
 from ..lower import scales_of
 from ..scene import Scene
@@ -26,7 +26,7 @@ CONVERGED = 1e-11
 #: Newton's iterations at most.
 MOST_ITERATIONS = 12
 #: Beads up to which the whole derivative is computed; of longer chains only the leading multipliers are.
-DENSE = 100
+MOST_BEADS_DENSE = 100
 #: Multipliers smaller than this part of the largest are rounding.
 _ROUNDING = 1e-13
 #: Most halvings of a Newton step before the iteration fails.
@@ -132,20 +132,19 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     >>> bool(abs(found.multipliers[0]) < 1.0)
     True
     """
-    if period is not None and not 1 <= period <= LONGEST_PERIOD:
-        raise BadInput(f"period {period} is outside 1 to {LONGEST_PERIOD}; the nearest valid value is "
-                       f"{min(max(period, 1), LONGEST_PERIOD)}.")
+    if period is not None:
+        check_range("period", period, 1, LONGEST_PERIOD)
     refuse_cut(scene)
     n = period
     if start is None:
-        way = run_until_settled(scene, None, stop)
-        n = n or way.regime.period or 1
-        start = way.engine.state
+        settling = run_until_settled(scene, None, stop)
+        n = n or settling.regime.period or 1
+        start = settling.engine.state
     n = n or 1
-    strobe = StroboscopicMap(scene, n, stop)
-    x = strobe.inner(strobe.engine.lowered.scaled(start))
-    x, flow, history = _newton(strobe, x)
-    return _orbit(scene, n, strobe, x, flow, history, observer)
+    stroboscopic_map = StroboscopicMap(scene, n, stop)
+    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(start))
+    x, flow, history = _newton(stroboscopic_map, x)
+    return _orbit(scene, n, stroboscopic_map, x, flow, history, observer)
 
 
 def random_state(scene: Scene, seed: int) -> State:
@@ -155,16 +154,16 @@ def random_state(scene: Scene, seed: int) -> State:
     return State(draw[0] * scales.length, draw[1] * scales.velocity)
 
 
-def _newton(strobe: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, list[float]]:
+def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, list[float]]:
     """Damped Newton iterations; the residual is taken relative to the largest displacement and the largest w."""
-    flow = _flow(strobe, x)
+    flow = _flow(stroboscopic_map, x)
     history = [relative_change(flow.end - x, x)]
     while history[-1] > CONVERGED and len(history) <= MOST_ITERATIONS:
-        step = _newton_step(strobe, x, flow)
+        step = _newton_step(stroboscopic_map, x, flow)
         for halving in range(_MOST_HALVINGS):
             trial = x + step / 2**halving
             try:
-                after = _flow(strobe, trial)
+                after = _flow(stroboscopic_map, trial)
             except NumbersFailed:  # a state too far away to be followed: a shorter step is nearer
                 continue
             if relative_change(after.end - trial, trial) < history[-1]:
@@ -175,25 +174,25 @@ def _newton(strobe: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarray, Flow, l
         history.append(relative_change(flow.end - x, x))
     if history[-1] > 100.0 * CONVERGED:
         shown = ", ".join(f"{r:.1e}" for r in history)
-        raise NumbersFailed(f"Newton's method found no orbit of {strobe.periods} drive periods near this start: its "
-                            f"residuals were {shown}; give another period or start.", "no-convergence")
+        raise NumbersFailed(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "
+                            f"start: its residuals were {shown}; give another period or start.", "no-convergence")
     return x, flow, history
 
 
 def _dense(x: np.ndarray) -> bool:
-    return len(x) <= 2 * DENSE
+    return len(x) <= 2 * MOST_BEADS_DENSE
 
 
-def _flow(strobe: StroboscopicMap, x: np.ndarray) -> Flow:
+def _flow(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Flow:
     """The flow from x, with the derivative where it is computed as a whole."""
-    return strobe(x) if _dense(x) else strobe(x, directions=np.zeros((len(x), 0)))
+    return stroboscopic_map(x) if _dense(x) else stroboscopic_map(x, directions=np.zeros((len(x), 0)))
 
 
-def _newton_step(strobe: StroboscopicMap, x: np.ndarray, flow: Flow) -> np.ndarray:
+def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -> np.ndarray:
     if not _dense(x):
         from .krylov import newton_step  # scipy.sparse.linalg takes 0.2 s to load, which only long chains need
 
-        return newton_step(strobe, x, flow.end)
+        return newton_step(stroboscopic_map, x, flow.end)
     try:
         return np.linalg.solve(flow.derivative - np.eye(len(x)), x - flow.end)
     except np.linalg.LinAlgError:
@@ -201,19 +200,19 @@ def _newton_step(strobe: StroboscopicMap, x: np.ndarray, flow: Flow) -> np.ndarr
                             "no-convergence") from None
 
 
-def _orbit(scene: Scene, n: int, strobe: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
+def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
            observer: bool) -> Orbit:
     liouville = None
     if _dense(x):
         multipliers = sorted_multipliers(flow.derivative)
         liouville = _liouville(multipliers, flow.log_determinant)
-        watched = sorted_multipliers(strobe(x, observer=True).derivative) if observer else None
+        watched = sorted_multipliers(stroboscopic_map(x, observer=True).derivative) if observer else None
     else:
         from .krylov import leading_multipliers
 
-        multipliers = leading_multipliers(strobe, x)
-        watched = leading_multipliers(strobe, x, observer=True) if observer else None
-    lowered = strobe.engine.lowered
+        multipliers = leading_multipliers(stroboscopic_map, x)
+        watched = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
+    lowered = stroboscopic_map.engine.lowered
     return Orbit(scene, n, lowered.unscaled(lowered.embed(x)), history[-1], tuple(history), multipliers, liouville,
                  flow.changes, watched)
 

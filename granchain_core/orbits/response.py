@@ -1,4 +1,6 @@
-"""Classification of a periodic orbit's response: 1:n resonance, 1:1 anti-resonance, or neither.
+"""Classification of a periodic orbit's response by the orbit alone: 1:n resonance, 1:1 anti-resonance, or neither.
+
+The place of a state on a resonance curve is another matter (steady/resonance.py).
 
 Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives one strong push every n periods, at the
 moment at which the pulse reflected by the wall comes back to it; in an anti-resonance pulses interfere destructively,
@@ -24,13 +26,13 @@ import numpy as np
 
 from ..integrate import Engine, certified
 from ..integrate.methods import CERTIFIED
+from ..regime import Regime
 from ..result import Cost, Run, run_from
-from ..steady.regime import Regime
 from ..steady.resonance import ENDED, STOPS, pushes
 from .orbit import Orbit
 
 #: The reflected pulse is in step if bead 1 comes back with this fraction of the drive's largest speed.
-IN_STEP = 1.0 / 3.0
+RETURNS_IN_STEP = 1.0 / 3.0
 #: Samples a period: events are placed to about a degree of the drive.
 _SAMPLES = 480
 #: Tolerance of a step.
@@ -75,7 +77,7 @@ def response(orbit: Orbit) -> Response:
     transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
     kind = ""
     if strong == 1 and transmission >= STOPS:
-        kind = "resonance" if periods > 1 or returning >= IN_STEP else "anti-resonance"
+        kind = "resonance" if periods > 1 or returning >= RETURNS_IN_STEP else "anti-resonance"
     return Response(strong, periods, kind, None if begin is None else _phase(begin), _phase(peak), returning,
                     transmission)
 

@@ -14,9 +14,10 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import State
+from ..lower import lower
 from ..scene import Scene
 from ..stop import Stop
-from .flow import StroboscopicMap
+from .flow import StroboscopicMap, least_period
 from .orbit import Orbit, periodic_orbit
 
 #: Closest returns from which Newton's method is started.
@@ -25,8 +26,6 @@ _STARTS = 4
 _APART = 5
 #: States of the section whose mean is its middle: a multiple of all short periods.
 _MIDDLE = 120
-#: Relative change after a part of the period at which the orbit is one of that shorter period.
-_SAME = 1e-8
 
 
 def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
@@ -46,7 +45,7 @@ def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
             if failure.status != "no-convergence":
                 raise
             continue
-        least = least_period(found, stop)
+        least = least_period_of(found, stop)
         return found if least == period else periodic_orbit(scene, least, found.state, stop=stop)
     raise NumbersFailed(f"Newton's method found no orbit of {period} drive periods from the present state or from "
                         f"{tried - 1} places of the section; try another period.", "no-convergence")
@@ -74,14 +73,12 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
             return
 
 
-def least_period(orbit: Orbit, stop: Stop | None = None) -> int:
-    """The smallest number of drive periods after which the orbit is back."""
-    for shorter in range(1, orbit.period):
-        if orbit.period % shorter:
-            continue
-        strobe = StroboscopicMap(orbit.scene, shorter, stop)
-        x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
-        end = strobe(x, directions=np.zeros((len(x), 0))).end
-        if np.abs(end - x).max() < _SAME * np.abs(x).max():
-            return shorter
-    return orbit.period
+def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
+    """The smallest number of drive periods after which an orbit is back."""
+    lowered = lower(orbit.scene)
+    x = lowered.beads_of(lowered.scaled(orbit.state))
+
+    def after(periods: int) -> np.ndarray:
+        return StroboscopicMap(orbit.scene, periods, stop)(x, directions=np.zeros((len(x), 0))).end
+
+    return least_period(after, x, orbit.period)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import functools
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,11 +40,11 @@ class Estimate:
     steps: float
 
 
-class _Compiler(event.Listener):
+class CompilerClock(event.Listener):
     """Seconds that each thread has spent in Numba's compiler, waiting for it, or loading what it compiled before."""
 
-    def __init__(self) -> None:
-        self._own = threading.local()
+    def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._clock, self._own = clock, threading.local()
 
     @property
     def seconds(self) -> float:
@@ -54,33 +55,34 @@ class _Compiler(event.Listener):
         """The compiler starts; kernels that call others start it again meanwhile."""
         self._own.depth = getattr(self._own, "depth", 0) + 1
         if self._own.depth == 1:
-            self._own.began = time.perf_counter()
+            self._own.began = self._clock()
 
     def on_end(self, event: event.Event) -> None:
         """The compiler is done."""
         self._own.depth -= 1
         if self._own.depth == 0:
-            self._own.seconds = self.seconds + time.perf_counter() - self._own.began
+            self._own.seconds = self.seconds + self._clock() - self._own.began
 
 
-_COMPILER = _Compiler()
-event.register("numba:compiler_lock", _COMPILER)
+COMPILER = CompilerClock()
+event.register("numba:compiler_lock", COMPILER)
 
 
 class Stopwatch:
     """Time of a computation in this thread, without that of compiling kernels at their first use."""
 
-    def __init__(self) -> None:
-        self._began, self._compiled = time.perf_counter(), _COMPILER.seconds
+    def __init__(self, clock: Callable[[], float] = time.perf_counter, compiler: CompilerClock = COMPILER) -> None:
+        self._clock, self._compiler = clock, compiler
+        self._began, self._compiled = clock(), compiler.seconds
 
     @property
     def seconds(self) -> float:
         """Seconds since the stopwatch was made, without those of the compiler."""
-        return time.perf_counter() - self._began - (_COMPILER.seconds - self._compiled)
+        return self._clock() - self._began - (self._compiler.seconds - self._compiled)
 
 
 @functools.cache
-def slowness() -> float:
+def machine_factor() -> float:
     """Time of 4096 square roots over that where step costs were measured; takes about a millisecond, once."""
     values, out, best = np.linspace(1.0, 2.0, 4096), np.empty(4096), np.inf
     for _ in range(100):
@@ -112,7 +114,7 @@ def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, re
     often = np.sqrt(1.0 + _share(finer.finer_than(lowered, samples)) / twice)
     steps, seconds = steps * often, seconds * often
     seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
-    return Estimate(seconds * slowness(), steps)
+    return Estimate(seconds * machine_factor(), steps)
 
 
 def _share(setting: Setting) -> float:

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..integrate import Engine, State, live
 from ..kernels.forces.peaks import next_period
+from ..regime import Regime
 from ..result import Cost, Jumps, Run, run_from
 from ..scene import Scene
 from ..state import rest
-from ..steady.regime import Regime
 from ..stop import Stop
 
 _NOT_ASKED = Regime.unsettled(0)

@@ -11,17 +11,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import BadInput
+from ..errors import BadInput, check_range
 from ..integrate import Counts, Engine, Setting, State, live, method_for
 from ..integrate.caution import RUN_FORCES, RUN_FORCES_THAT_JUMP
 from ..integrate.methods import jump_errors, setting_of, typical_error
 from ..kernels.samples import Samples
+from ..regime import Regime
 from ..result import Cost, Run, relative_changes, residual, run_from
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..state import rest
-from ..steady.decide import as_it_stands
-from ..steady.regime import Regime, find_period
+from ..steady.decide import REMEMBERED, regime_without_continuing
+from ..steady.regime import find_period
 from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
 from .stated import Computations
@@ -34,8 +35,6 @@ MOST_ROWS = 50_000_000
 _LOST = 0.3
 #: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.
 _CLOSES = 10.0
-#: Periods whose stroboscopic states are kept to decide the regime, however long a run is.
-_KEPT = 420
 #: Time of the next finer computation over that of the last.
 _TWICE = 2.0
 #: Fewest periods after which multipliers or a Lyapunov exponent are computed; a shorter run is judged by its strobes.
@@ -161,9 +160,7 @@ def _origin(scene: Scene, start: State | None) -> str:
 def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
     for name, value, low, high in (("periods", periods, 0, MOST_PERIODS), ("record", record, 1, MOST_PERIODS),
                                    ("samples", samples, 1, 1_000_000)):
-        if not low <= value <= high:
-            raise BadInput(f"{name} = {value} is outside {low} to {high}; the nearest valid value is "
-                           f"{min(max(value, low), high)}.")
+        check_range(f"{name} =", value, low, high)
     rows = record * samples * scene.N
     if rows > MOST_ROWS:
         raise BadInput(f"{record} periods of {samples} samples for {scene.N} beads are {rows:.1e} values; at most "
@@ -176,23 +173,23 @@ def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int
     engine = Engine(scene, setting, samples, balance=True, stop=stop)
     engine.start(start)
     strobes = [engine.periods(0)[0]]
-    chunk = min(max(1, periods // 50), _KEPT)
+    chunk = min(max(1, periods // 50), REMEMBERED)
     for done in range(0, periods, chunk):
         now = min(chunk, periods - done)
         if start.phase == 0.0:
             passed, _ = engine.periods(now, watch=False)
         else:
             passed = _strobes(engine.record(now * samples), samples)
-        strobes = [*strobes[-_KEPT // chunk - 1 :], passed[1:]]
+        strobes = [*strobes[-REMEMBERED // chunk - 1 :], passed[1:]]
         if progress is not None:
             progress(min(done + chunk, periods) / (periods + record))
-    engine.forget_peaks()
+    engine.reset_peaks()
     rows = engine.record(record * samples)
     if progress is not None:
         progress(1.0)
     total.array += engine.counts.array
     strobes.append(_strobes(rows, samples)[1:])
-    return _Attempt(engine, rows, np.concatenate(strobes)[-_KEPT - 1 :])
+    return _Attempt(engine, rows, np.concatenate(strobes)[-REMEMBERED - 1 :])
 
 
 def _strobes(rows: Samples, samples: int) -> np.ndarray:
@@ -232,7 +229,7 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime
         return regime
     engine = Engine(scene, live(), 1, stop=stop)
     engine.start(attempt.engine.state)
-    return as_it_stands(engine, attempt.strobes, regime)
+    return regime_without_continuing(engine, attempt.strobes, regime)
 
 
 def warnings(result: Run) -> list[str]:

@@ -41,13 +41,18 @@ class Bead:
     poisson: float
 
 
+def reduced(left: Bead, right: Bead) -> tuple[float, float]:
+    """E* [Pa] and R* [m] of two spheres in contact: 1/E* = Σ(1−ν²)/E, 1/R* = Σ1/R."""
+    modulus = 1.0 / ((1 - left.poisson**2) / left.young + (1 - right.poisson**2) / right.young)
+    return modulus, 1.0 / (1.0 / left.radius + 1.0 / right.radius)
+
+
 def hertz_stiffness(left: Bead, right: Bead) -> float:
     """Stiffness K of F = K δ^{3/2} between two spheres [N/m^{3/2}].
 
-    K = (4/3) E* √R*, 1/E* = Σ(1−ν²)/E, 1/R* = Σ1/R; equal spheres give E√(2R)/(3(1−ν²)), Zhang et al. 2016, eq. (1).
+    K = (4/3) E* √R*; equal spheres give E√(2R)/(3(1−ν²)), Zhang et al. 2016, eq. (1).
     """
-    modulus = 1.0 / ((1 - left.poisson**2) / left.young + (1 - right.poisson**2) / right.young)
-    radius = 1.0 / (1.0 / left.radius + 1.0 / right.radius)
+    modulus, radius = reduced(left, right)
     return 4.0 / 3.0 * modulus * math.sqrt(radius)
 
 

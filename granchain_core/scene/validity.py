@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from .description import Description
+from .description import Description, reduced
 
 #: Hertz's theory assumes a contact patch that is small compared with the sphere; at an overlap of 1 % of the radius the
 #: patch radius √(Rδ/2) is already 7 % of R.
@@ -26,9 +26,7 @@ def contact_geometry(scene: Description) -> tuple[np.ndarray, np.ndarray]:
     number times K counts as a bead.
     """
     beads = (scene.beads[0], *scene.beads, scene.beads[-1])
-    modulus = np.array([1.0 / ((1 - a.poisson**2) / a.young + (1 - b.poisson**2) / b.young)
-                        for a, b in itertools.pairwise(beads)])
-    radius = np.array([1.0 / (1.0 / a.radius + 1.0 / b.radius) for a, b in itertools.pairwise(beads)])
+    modulus, radius = np.array([reduced(left, right) for left, right in itertools.pairwise(beads)]).T.copy()
     if scene.wall in ("same-material", "rigid"):
         radius[-1] = beads[-1].radius
     if scene.wall == "rigid":

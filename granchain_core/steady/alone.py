@@ -8,10 +8,10 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import Engine, State
+from ..regime import Regime
 from ..scene import Scene
 from ..stop import Stop
 from .orbit_errors import errors_between
-from .regime import Regime
 from .relax import relax
 from .settle import Settling, run_until_settled
 from .steady_state import SteadyState
@@ -22,24 +22,24 @@ CURVE_ACCURACY = 1e-5
 
 def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     """The steady state of `scene` from rest or from `start`, refined where it is periodic."""
-    way = run_until_settled(scene, start, stop)
-    if way.regime.name == "periodic":
-        return _on_its_orbit(way)
-    tops = way.tops[-min(len(way.tops), 100) :].max(axis=0) * way.engine.lowered.scales.force
-    return SteadyState(scene, tops, way.regime, None, way.engine.state)
+    settling = run_until_settled(scene, start, stop)
+    if settling.regime.name == "periodic":
+        return _on_its_orbit(settling)
+    tops = settling.tops[-min(len(settling.tops), 100) :].max(axis=0) * settling.engine.lowered.scales.force
+    return SteadyState(scene, tops, settling.regime, None, settling.engine.state)
 
 
-def _on_its_orbit(way: Settling) -> SteadyState:
+def _on_its_orbit(settling: Settling) -> SteadyState:
     """Largest forces on the refined orbit, and their errors from a finer computation of it."""
-    engine, distance = relax(way, max(way.scene.accuracy, CURVE_ACCURACY))
-    n = way.regime.period
+    engine, distance = relax(settling, max(settling.scene.accuracy, CURVE_ACCURACY))
+    n = settling.regime.period
     assert n is not None
     before = engine.largest_forces(n)
-    finer = Engine(way.scene, engine.setting.finer(), 1, stop=way.stop)
+    finer = Engine(settling.scene, engine.setting.finer(), 1, stop=settling.stop)
     finer.start(engine.state)
     tops = finer.largest_forces(n)
-    errors = errors_between(finer, before, way.regime.slowness, distance)
-    return SteadyState(way.scene, tops * finer.lowered.scales.force, way.regime, errors, finer.state)
+    errors = errors_between(finer, before, settling.regime.contraction, distance)
+    return SteadyState(settling.scene, tops * finer.lowered.scales.force, settling.regime, errors, finer.state)
 
 
 def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
@@ -52,7 +52,7 @@ def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
                            failed.status)
 
 
-def second_look(doubtful: SteadyState, stop: Stop) -> SteadyState:
+def settled_alone(doubtful: SteadyState, stop: Stop) -> SteadyState:
     """The steady state of a chain that a batch left in doubt, settled alone from its last state."""
     found = safe_state(doubtful.scene, doubtful.state, stop)
     run = doubtful.regime.periods_run + found.regime.periods_run

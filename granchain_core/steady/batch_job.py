@@ -10,13 +10,14 @@ from ..integrate import Engine, State, live
 from ..integrate.batch import Batch
 from ..integrate.methods import AT_A_JUMP, typical_error
 from ..lower import Lowered
+from ..regime import Regime
 from ..result import relative_changes
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 from .decide import EXAMINED_AFTER, MOST_PERIODS
 from .orbit_errors import errors_between, force_distances, orbit_force_errors
-from .regime import SLOW_RECORD, Regime, shrinking
+from .regime import SLOW_RECORD, shrinking
 from .settle import MOST_STEPS
 from .steady_state import SteadyState
 
@@ -71,13 +72,13 @@ class Job:
         assert self.coarse is not None
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
-        y, distance = block.state.y[:, lane], float(block.state.seen[lane, 2])
+        y, distance = block.state.y[:, lane], float(block.state.last_check[lane, 2])
         tops, jumps = block.tops(lane, regime.period), block.jumps(lane, regime.period)
         farther = max(distance, regime.distance)
         left = force_distances(farther, self.lowered, tops, y)
         # each of the two runs has come to its own orbit: the change is the difference of these orbits
         errors = orbit_force_errors(relative_changes(tops, before), left,
-                                    least=typical_error(live(FINER)) / (1.0 - regime.slowness))
+                                    least=typical_error(live(FINER)) / (1.0 - regime.contraction))
         at_jump = np.append(jumps > AT_A_JUMP * tops[:2], False)
         if at_jump.any():
             located, apart = self._located_tops(y, regime, farther, block.stop)
@@ -100,13 +101,13 @@ class Job:
         first = engine.largest_forces(regime.period)
         finer = Engine(self.scene, _LOCATED.finer(), 1, stop=stop, lowered=self.lowered)
         finer.start(engine.state)
-        return finer.largest_forces(regime.period), errors_between(finer, first, regime.slowness, distance)
+        return finer.largest_forces(regime.period), errors_between(finer, first, regime.contraction, distance)
 
 
 def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:
     """The result of the coarse run alone."""
     run = int(block.state.periods[lane])
-    period = block.state.seen[lane, 0]
+    period = block.state.last_check[lane, 0]
     if period <= 0:
         return unsettled(job, block, lane, run)
     regime = _periodic(block, lane, run)
@@ -118,7 +119,7 @@ def outcome_of_coarse_run(job: Job, block: Batch, lane: int) -> SteadyState | Jo
     """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
     here = int(block.state.periods[lane])
     run = job.run + here
-    period = block.state.seen[lane, 0]
+    period = block.state.last_check[lane, 0]
     if period > 0:
         regime = _periodic(block, lane, run)
         settled = (regime, block.settled_tops(lane, int(period)))
@@ -128,14 +129,14 @@ def outcome_of_coarse_run(job: Job, block: Batch, lane: int) -> SteadyState | Jo
     record = block.strobes(lane)
     if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not shrinking(record)):
         return _in_doubt(job, block, lane, run, record.copy())
-    block.state.look[lane] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
+    block.state.return_at[lane] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)
     return None
 
 
 def _periodic(block: Batch, lane: int, run: int) -> Regime:
     """The periodic regime of a coarse lane; `followed` where extrapolations led to it."""
-    period, rate, distance = block.state.seen[lane]
+    period, rate, distance = block.state.last_check[lane]
     return Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run,
                   followed=bool(block.state.slowest[lane] > 0.0))
 

@@ -16,16 +16,16 @@ from dataclasses import replace
 import numpy as np
 
 from ..integrate.batch import NEVER, Batch
-from ..kernels.simd.width import BATCH_LANES
+from ..kernels.width import BATCH_LANES
 from ..lower import lower
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 from .batch_job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
-from .decide import BLOCK, BLOCKS, EXAMINED_AFTER, MOST_PERIODS
+from .decide import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK
 from .lyapunov import MOST_APART, exponents_in_pairs
 from .nearby_orbit import MOST_BEADS, seen_modulus
-from .regime import agree, clearly_chaotic, find_period, irregular
+from .regime import agree, clearly_chaotic, find_period, regime_from_exponents
 from .steady_state import SteadyState
 
 #: Periods after which a draft gives up.
@@ -67,7 +67,7 @@ class _Lanes:
             return
         regime, tops = job.coarse
         assert regime.period is not None
-        rate = max(1e-3, regime.slowness)
+        rate = max(1e-3, regime.contraction)
         self.block.put_fine(lane, job.lowered, job.y, FINER, regime.period, rate, tops)
 
     def step(self) -> SteadyState | None:
@@ -107,7 +107,7 @@ class _Lanes:
     def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
         """Classify doubtful jobs by their Lyapunov exponents; one whose neighbours come closer runs on."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
-        found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], BLOCKS, BLOCK, self.stop)
+        found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], EXPONENT_BLOCKS, PERIODS_IN_BLOCK, self.stop)
         for job, (growth, strobes, tops, y) in zip(jobs, found, strict=True):
             if not np.isfinite(growth).all():
                 yield failed(job)
@@ -119,7 +119,7 @@ class _Lanes:
                 job.coarse = (regime, tops[-regime.period :].max(axis=0))
                 self.waiting.append(job)
                 continue
-            regime, before = irregular(growth, job.record, job.run), job.measured
+            regime, before = regime_from_exponents(growth, job.record, job.run), job.measured
             if before is None and regime.name != "unsettled" and not clearly_chaotic(growth):
                 job.measured, job.in_doubt = regime, True
                 self.doubtful.append(job)

@@ -13,12 +13,12 @@ import numpy as np
 from ..errors import BadInput, Cancelled, unknown_name
 from ..integrate import State
 from ..integrate.batch import can_share_batch
+from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
 from ..stop import Stop
-from .alone import safe_state, second_look
+from .alone import safe_state, settled_alone
 from .batch_settle import batch_results
-from .regime import Regime
 from .steady_state import SteadyState
 from .threads import on_all_cores
 
@@ -69,8 +69,8 @@ class CurvePoint:
     @classmethod
     def of(cls, found: SteadyState) -> CurvePoint:
         """The point of a steady state."""
-        entered, arrived, elastic = map(float, found.tops)
-        return cls(found.scene.f, arrived, elastic, entered, found.regime, found.force_errors, found.state,
+        input_force, output_force, elastic = map(float, found.tops)
+        return cls(found.scene.f, output_force, elastic, input_force, found.regime, found.force_errors, found.state,
                    found.failure, found.status)
 
     @property
@@ -205,7 +205,7 @@ def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
     rest_of_them = itertools.chain([first], scenes)
     if can_share_batch(first):
         for found in batch_results(rest_of_them, ended):
-            yield CurvePoint.of(second_look(found, ended) if found.doubtful else found)
+            yield CurvePoint.of(settled_alone(found, ended) if found.doubtful else found)
         return
     for one in rest_of_them:
         yield CurvePoint.of(safe_state(one, None, ended))

@@ -12,19 +12,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..integrate import Engine
+from ..regime import Regime
 from ..scene import Scene
 from .lyapunov import exponents
 from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
-from .regime import Regime, agree, clearly_chaotic, departing, irregular, slowing
+from .regime import agree, clearly_chaotic, departing, regime_from_exponents, slowing
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
 EXAMINED_AFTER = 400
 #: Most drive periods in all.
 MOST_PERIODS = 4000
 #: Blocks in one measurement of the Lyapunov exponent.
-BLOCKS = 10
+EXPONENT_BLOCKS = 10
 #: Drive periods in a block.
-BLOCK = 20
+PERIODS_IN_BLOCK = 20
 #: Strobes on which a decision is based.
 REMEMBERED = 420
 #: Measurements of the Lyapunov exponent for a motion that is not followed any further.
@@ -100,7 +101,7 @@ class Decisions:
         self._leaves = self._leaves or orbit.unstable
         if not orbit.unstable or self._departures >= _MOST_DEPARTURES:
             return None
-        further = orbit.drawn_out()
+        further = orbit.enlarged_departure()
         if further is None:
             return None
         self._departures += 1
@@ -109,10 +110,10 @@ class Decisions:
 
     def _measure(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """The Lyapunov exponent of the next periods; one that is small counts if a second measurement agrees."""
-        found, passed = exponents(engine, BLOCKS, BLOCK)
+        found, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
         record = np.concatenate([strobes, passed])
         run = regime.periods_run + len(passed)
-        now, before = irregular(found, record[-len(strobes):], run), self._measured
+        now, before = regime_from_exponents(found, record[-len(strobes):], run), self._measured
         if clearly_chaotic(found):
             return Decision(now)
         if before is not None and agree(now, before):
@@ -121,7 +122,7 @@ class Decisions:
         return Decision(strobes=passed)
 
 
-def as_it_stands(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
+def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
     """The regime of a motion that is not followed any further: an orbit that it only approaches is not claimed.
 
     `engine` is a live one where the strobes (P, 2, N) end; it goes on where a Lyapunov exponent is measured.
@@ -138,18 +139,18 @@ def as_it_stands(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
         for orbit in orbits_beside(scene, strobes, scaled(engine), stop):
             if orbit.approached():
                 return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)
-            if orbit.unstable and orbit.drawn_out() is not None:
+            if orbit.unstable and orbit.enlarged_departure() is not None:
                 return regime
-    return _told_apart(engine, strobes, regime)
+    return _classified_by_exponent(engine, strobes, regime)
 
 
-def _told_apart(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
+def _classified_by_exponent(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
     """Chaotic or quasi-periodic by one clear measurement of the Lyapunov exponent or by two that agree."""
     record, before = strobes, None
     for _ in range(_MEASUREMENTS):
-        found, passed = exponents(engine, BLOCKS, BLOCK)
+        found, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
         record = np.concatenate([record, passed])
-        now = irregular(found, record[-REMEMBERED:], regime.periods_run + len(record) - len(strobes))
+        now = regime_from_exponents(found, record[-REMEMBERED:], regime.periods_run + len(record) - len(strobes))
         if clearly_chaotic(found) or (before is not None and agree(now, before)):
             return now
         before = now

@@ -1,9 +1,8 @@
 """Shortening a slow approach to an orbit without leaving its attractor.
 
-Near its orbit the stroboscopic map is linear, x_{k+1} − x* = M (x_k − x*). Reduced rank extrapolation (Eddy 1979;
-Sidi, Vector Extrapolation Methods, 2017, chapter 2) takes out the slowest modes from a few successive states. It is
-used only where changes are already small and shrinking. An extrapolation is accepted only if the change after it is
-smaller and if it goes no further than the decay predicts: so the orbit is the one that the chain approaches.
+Reduced rank extrapolation (kernels/strobes/extrapolation.py) takes out the slowest modes. It is used only where changes
+are already small and shrinking. An extrapolation is accepted only if the change after it is smaller and if it goes no
+further than the decay predicts: so the orbit is the one that the chain approaches.
 """
 
 from __future__ import annotations
@@ -12,10 +11,6 @@ import numpy as np
 
 from ..kernels.batch.period_end import FARTHEST_EXTRAPOLATION
 from ..kernels.strobes import extrapolation as approach
-from ..kernels.strobes.extrapolation import ORBITS
-
-#: Differences used; k differences remove k − 1 slow modes.
-ORDER = ORBITS
 
 
 def reduced_rank(states: np.ndarray) -> np.ndarray:

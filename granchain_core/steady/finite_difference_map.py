@@ -102,39 +102,39 @@ def sizes(x: np.ndarray) -> np.ndarray:
     return np.repeat(largest, half)
 
 
-def fixed_point(strobe: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
+def fixed_point(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
     """The fixed point to which Newton's method converges from x; None where it does not.
 
     The derivative is computed anew only where the present one does not reduce the residual enough.
     """
     try:
-        return _newton(strobe, x)
+        return _newton(stroboscopic_map, x)
     except (NumbersFailed, np.linalg.LinAlgError):  # raised where a trial state cannot be followed, or |μ| = 1
         return None
 
 
-def _newton(strobe: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
+def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
     scale = sizes(x)
-    change = strobe(x) - x
-    residual, matrix, here = float(np.abs(change / scale).max()), strobe.derivative(x), True
+    change = stroboscopic_map(x) - x
+    residual, matrix, here = float(np.abs(change / scale).max()), stroboscopic_map.derivative(x), True
     for _ in range(_MOST_ITERATIONS):
         if residual <= _FOUND:
             break
         step = np.linalg.solve(matrix - np.eye(len(x)), -change)
         for halving in range(_HALVINGS):
             trial = x + step / 2**halving
-            after = strobe(trial) - trial
+            after = stroboscopic_map(trial) - trial
             if float(np.abs(after / scale).max()) < residual:
                 break
         else:
             if here:
                 break
-            matrix, here = strobe.derivative(x), True
+            matrix, here = stroboscopic_map.derivative(x), True
             continue
         gained = float(np.abs(after / scale).max()) / residual
         x, change, residual, here = trial, after, gained * residual, False
         if gained > _ENOUGH and residual > _FOUND:
-            matrix, here = strobe.derivative(x), True
+            matrix, here = stroboscopic_map.derivative(x), True
     if residual > 100.0 * _FOUND:
         return None
-    return FixedPoint(x, matrix if here else strobe.derivative(x), residual)
+    return FixedPoint(x, matrix if here else stroboscopic_map.derivative(x), residual)

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..integrate import Engine
 from ..integrate.batch import NEVER, Batch
-from ..kernels.batch.period_end import REMEMBERED
+from ..kernels.batch.period_end import STROBES_PER_LANE
 from ..kernels.forces.largest import new_log
 from ..kernels.rk4.lyapunov import run_two_trajectories
 from ..kernels.samples import Output
@@ -34,20 +34,24 @@ def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, bl
         raise ValueError(f"steps a period {steps} differ by more than a factor {MOST_APART:g}")
     pairs, periods = Batch(scenes[0][0].scene, stop), (blocks + 1) * block
     for i, (lowered, y) in enumerate(scenes):
-        row = lowered.row
-        offset = np.random.default_rng(0).standard_normal(2 * row)
-        offset[[0, row - 1, row, 2 * row - 1]] = 0.0
         pairs.put(2 * i, lowered, y, 1, periods, NEVER)
-        pairs.put(2 * i + 1, lowered, y + offset * (_DISTANCE / np.linalg.norm(offset)), 1, periods, NEVER)
+        pairs.put(2 * i + 1, lowered, y + _offset(lowered.bodies), 1, periods, NEVER)
     growth = pairs.run_pairs(_DISTANCE, periods)
     return [(growth[i, block:].reshape(blocks, block).mean(axis=1), *_record(pairs, 2 * i, periods))
             for i in range(len(scenes))]
 
 
+def _offset(bodies: int) -> np.ndarray:
+    """From a chain to its shadow, (2(N+2),): random, `_DISTANCE` long, the same for every chain of this length."""
+    offset = np.random.default_rng(0).standard_normal(2 * bodies)
+    offset[[0, bodies - 1, bodies, 2 * bodies - 1]] = 0.0
+    return np.asarray(offset * (_DISTANCE / np.linalg.norm(offset)))
+
+
 def _record(pairs: Batch, lane: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Strobes, last largest forces and last state of a lane's own periods: a lane runs on until the slowest is done."""
     strobes = pairs.state.strobes[lane, : periods + 1]
-    last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % REMEMBERED
+    last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_PER_LANE
     return strobes[1:, :, 1:-1].copy(), pairs.state.tops[lane, last, :3].copy(), strobes[-1].ravel().copy()
 
 
@@ -58,10 +62,8 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     """
     shadow = Engine(engine.lowered.scene, engine.setting, engine.samples, stop=engine.stop)
     shadow.start(engine.state)
-    row = engine.lowered.row
-    offset = np.random.default_rng(0).standard_normal(2 * row)
-    offset[[0, row - 1, row, 2 * row - 1]] = 0.0
-    shadow.y[: 2 * row] = engine.y[: 2 * row] + offset * (_DISTANCE / np.linalg.norm(offset))
+    row = engine.lowered.bodies
+    shadow.y[: 2 * row] = engine.y[: 2 * row] + _offset(row)
     shadow.place()
     growth = np.zeros((blocks + 1) * block)
     strobes = np.zeros((len(growth), 2, row))

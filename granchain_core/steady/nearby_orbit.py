@@ -45,7 +45,7 @@ _TURN = 16
 #: Directions whose |μ| is below this, or below this part of the largest, have decayed after those orbits.
 _SLOW = 0.3
 #: Length to which a departure is enlarged along the growing directions, relative to the motion.
-_DRAWN_OUT = 3e-3
+_ENLARGED_TO = 3e-3
 #: The orbit has a shorter period if it is back this near after a part of it.
 _BACK = 1e-6
 
@@ -54,7 +54,7 @@ _BACK = 1e-6
 class NearbyOrbit:
     """An orbit of `period` drive periods beside a motion at x (2N,), scaled; `modulus` is its largest |μ|."""
 
-    strobe: FiniteDifferenceMap
+    stroboscopic_map: FiniteDifferenceMap
     point: FixedPoint
     x: np.ndarray
     modulus: float
@@ -62,7 +62,7 @@ class NearbyOrbit:
     @property
     def period(self) -> int:
         """Its period in drive periods."""
-        return self.strobe.periods
+        return self.stroboscopic_map.periods
 
     @property
     def stable(self) -> bool:
@@ -103,13 +103,13 @@ class NearbyOrbit:
     def _lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
         """Largest lengths of an offset from the orbit, now and after `orbits` orbits; infinite if the map fails."""
         try:
-            passed = self.strobe.passed(self.point.x + offset, _TURN, orbits)
+            passed = self.stroboscopic_map.passed(self.point.x + offset, _TURN, orbits)
         except NumbersFailed:
             return 0.0, np.inf
         now, later = (float(_lengths(rows, states - self.point.x).max()) for states in passed)
         return now, later
 
-    def drawn_out(self) -> np.ndarray | None:
+    def enlarged_departure(self) -> np.ndarray | None:
         """A later state of a motion that leaves this orbit, with its part along the growing directions enlarged.
 
         None if it is that far away already.
@@ -121,7 +121,7 @@ class NearbyOrbit:
             parts = np.ones(len(parts), dtype=complex)
         leaving = np.real(right[:, grows] @ parts)
         length = float(np.abs(leaving / sizes(self.point.x)).max())
-        return None if length >= _DRAWN_OUT else self.point.x + leaving * (_DRAWN_OUT / length)
+        return None if length >= _ENLARGED_TO else self.point.x + leaving * (_ENLARGED_TO / length)
 
 
 def _slow_coordinates(matrix: np.ndarray, slowest: float) -> np.ndarray:
@@ -136,8 +136,8 @@ def _lengths(rows: np.ndarray, offsets: np.ndarray) -> np.ndarray:
 
 def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbit | None:
     """The orbit of `period` drive periods, or of a part of them, that Newton's method leads to from x; if any."""
-    strobe = FiniteDifferenceMap(scene, period, stop)
-    found = fixed_point(strobe, x)
+    stroboscopic_map = FiniteDifferenceMap(scene, period, stop)
+    found = fixed_point(stroboscopic_map, x)
     if found is None:
         return None
     for shorter in (n for n in range(1, period) if period % n == 0):
@@ -146,7 +146,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
             again = fixed_point(part, found.x)
             if again is not None:
                 return NearbyOrbit(part, again, x, again.modulus)
-    return NearbyOrbit(strobe, found, x, found.modulus)
+    return NearbyOrbit(stroboscopic_map, found, x, found.modulus)
 
 
 def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: float) -> float:

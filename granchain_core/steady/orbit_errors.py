@@ -29,24 +29,26 @@ def force_distances(distance: float, lowered: Lowered, tops: np.ndarray, y: np.n
     return np.asarray(_FORCE_PER_OVERLAP * distance * nearer)
 
 
-def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float, slowness: float = 0.0,
+def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float, contraction: float = 0.0,
                        further: np.ndarray | float = 0.0, least: float = 0.0) -> np.ndarray:
     """Relative errors of the three largest forces on an orbit: of its integration, and of the distance left to it.
 
     `change` (3,) is the relative change of the forces from one computation to a finer one. If both began in the same
-    state, `slowness` is the part of a distance that is left after an orbit (|μ|, or else the decay seen): an error e of
-    the n-period map moves its fixed point by e/(1 − slowness), and the forces with it. If each ran on its own orbit, it
-    is 0. `distance` (3,) is what the distance left contributes (`force_distances`), and `further` errors (3,), such as
-    those at jumps, are added. `least` is the typical error of the finer computation: two may agree by chance.
+    state, `contraction` is the part of a distance that is left after an orbit (|μ|, or else the decay seen): an error
+    e of the n-period map moves its fixed point by e/(1 − contraction), and the forces with it. If each ran on its own
+    orbit, it is 0. `distance` (3,) is what the distance left contributes (`force_distances`), and `further` errors
+    (3,), such as those at jumps, are added. `least` is the typical error of the finer computation: two may agree by
+    chance.
     """
-    return np.asarray(np.maximum(ORBIT_FORCES * change, least) / (1.0 - slowness) + distance + further)
+    return np.asarray(np.maximum(ORBIT_FORCES * change, least) / (1.0 - contraction) + distance + further)
 
 
-def errors_between(finer: Engine, before: np.ndarray, slowness: float, distance: float) -> np.ndarray:
+def errors_between(finer: Engine, before: np.ndarray, contraction: float, distance: float) -> np.ndarray:
     """Relative errors (3,) of the largest forces that `finer` found in one orbit; a coarser run found `before`.
 
-    Both began at the relative `distance` from the orbit; `slowness` is the part of it that is left after an orbit.
+    Both began at the relative `distance` from the orbit; `contraction` is the part of it that is left after an orbit.
     """
     jumps = jump_errors(finer.setting, finer.lowered, finer.samples, finer.jumps, finer.tops)
     left = force_distances(distance, finer.lowered, finer.tops, finer.y)
-    return orbit_force_errors(relative_changes(finer.tops, before), left, slowness, jumps, typical_error(finer.setting))
+    return orbit_force_errors(relative_changes(finer.tops, before), left, contraction, jumps,
+                              typical_error(finer.setting))

@@ -1,4 +1,4 @@
-"""What kind of motion it is, with the evidence: periodic n, quasi-periodic, chaotic, or unsettled.
+"""The regime of a motion from its stroboscopic states and its Lyapunov exponents.
 
 A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by r per
 orbit, the distance left is change·r/(1 − r). Only that bound makes a motion a candidate; its multipliers then confirm
@@ -15,6 +15,7 @@ import numpy as np
 
 from ..kernels.strobes import periodicity as section
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
+from ..regime import Regime
 
 #: Mean exponents per period above which a motion may be chaotic, and within which it may be quasi-periodic, however
 #: small the standard error: the error that a finite record leaves falls as 1/periods.
@@ -28,95 +29,6 @@ _SMALL = 0.1
 CLEAR_GROWTH = 0.05
 #: Strobes needed for the three windows.
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
-
-
-@dataclass(frozen=True)
-class Regime:
-    """What kind of motion it is, and the evidence.
-
-    Attributes
-    ----------
-    name : str
-        "periodic", "quasi-periodic", "chaotic" or "unsettled".
-    period : int or None
-        In drive periods, where the motion is periodic.
-    decay : float or None
-        Factor by which changes shrank per orbit, where that was observed.
-    distance : float or None
-        Bound on the relative distance to the orbit.
-    periods_run : int
-        Drive periods that were run.
-    lyapunov : tuple of float or None
-        Lyapunov exponent per drive period and its standard error, where it was measured.
-    multiplier : float or None
-        Largest |μ| of the n-period map, where it was computed.
-    followed : bool
-        The motion was still on its way, and the orbit that it approaches was found by Newton's method or extrapolation.
-    approaches : int or None
-        Period of an orbit that an unsettled motion approaches.
-
-    Examples
-    --------
-    >>> from granchain_core import scene, settle
-    >>> regime = settle(scene("sec2").evolve(N=2, f=2000.0)).regime
-    >>> regime.name, regime.period, regime.distance < 1e-4
-    ('periodic', 1, True)
-    """
-
-    name: str
-    period: int | None
-    decay: float | None
-    distance: float | None
-    periods_run: int
-    lyapunov: tuple[float, float] | None = None
-    multiplier: float | None = None
-    followed: bool = False
-    approaches: int | None = None
-
-    @classmethod
-    def unsettled(cls, periods_run: int) -> Regime:
-        """A motion of which nothing is known after `periods_run` periods."""
-        return cls("unsettled", None, None, None, periods_run)
-
-    @property
-    def slowness(self) -> float:
-        """Factor by which a distance shrinks per orbit: |μ|, else the observed decay, else a half."""
-        if self.multiplier is not None:
-            return min(1.0 - 1e-6, self.multiplier)
-        return min(0.999, self.decay or 0.5)
-
-    @property
-    def evidence(self) -> str:
-        """|μ| where it was computed, else the decay that was seen; empty where neither is known."""
-        if self.multiplier is not None:
-            return f"|μ| {modulus_words(self.multiplier)}"
-        if self.decay is None:
-            return ""
-        shown = self.period or self.approaches or 1
-        return f"decay {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
-
-    @property
-    def sentence(self) -> str:
-        """The regime in words for the dashboard."""
-        evidence = f" ({self.evidence})" if self.evidence else ""
-        if self.name == "periodic":
-            how = "followed to its orbit after" if self.followed else "settled within"
-            return f"period {self.period}, {how} {self.periods_run} periods{evidence}"
-        if self.name == "unsettled":
-            towards = f", on its way to period {self.approaches}{evidence}" if self.approaches else ""
-            return f"not settled after {self.periods_run} periods{towards}"
-        assert self.lyapunov is not None
-        return f"{self.name}, Lyapunov exponent {self.lyapunov[0]:+.3f} ± {self.lyapunov[1]:.3f} per period"
-
-
-def modulus_words(modulus: float) -> str:
-    """A modulus with enough figures to distinguish it from 1 and from 0."""
-    if abs(modulus - 1.0) < 0.01:
-        return f"{modulus:.6f}" if abs(modulus - 1.0) < 1e-4 else f"{modulus:.4f}"
-    if modulus < 0.0095:
-        mantissa, exponent = f"{modulus:.0e}".split("e")
-        return f"{mantissa}e{int(exponent)}"
-    return f"{modulus:.2f}" if modulus >= 0.095 else f"{modulus:.3f}"
 
 
 @dataclass(frozen=True)
@@ -135,7 +47,7 @@ def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
     return out
 
 
-def look(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING,
+def regime_and_approach(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING,
          slowest: float = 0.0) -> tuple[Regime, Approach | None]:
     """Periodic with the smallest n whose distance bound holds, else unsettled and the orbit approached, if any.
 
@@ -144,10 +56,10 @@ def look(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = R
     """
     seen = section.find(np.ascontiguousarray(strobes), longest, rounding, SETTLED_DISTANCE, slowest, np.zeros(2),
                         np.zeros(max(section.LEAST_WINDOW, 3 * longest)))
-    return in_words(seen, len(strobes) - 1, rounding)
+    return regime_from_numbers(seen, len(strobes) - 1, rounding)
 
 
-def in_words(seen: Sequence[float] | np.ndarray, run: int,
+def regime_from_numbers(seen: Sequence[float] | np.ndarray, run: int,
              rounding: float = ROUNDING) -> tuple[Regime, Approach | None]:
     """The six numbers of section.find after `run` periods as a regime and the orbit approached, if any.
 
@@ -164,8 +76,8 @@ def in_words(seen: Sequence[float] | np.ndarray, run: int,
 
 
 def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING) -> Regime:
-    """The regime that `look` sees."""
-    return look(strobes, longest, rounding)[0]
+    """The regime that `regime_and_approach` sees."""
+    return regime_and_approach(strobes, longest, rounding)[0]
 
 
 def grows(mean: float, error: float) -> bool:
@@ -178,7 +90,7 @@ def is_neutral(mean: float, error: float) -> bool:
     return abs(mean) <= max(3.0 * error, _NEUTRAL)
 
 
-def irregular(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
+def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
 
     Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine, Setting, State, method_for
+from ..kernels.strobes.extrapolation import ORBITS
 from ..scene import Scene
-from .extrapolate import ORDER, reduced_rank, within_reach
+from .extrapolate import reduced_rank, within_reach
 from .regime import changes
 from .settle import Settling
 
@@ -22,25 +23,25 @@ def orbit_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
     return method_for(max(1e-13, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)), scene.cuts_tension)
 
 
-def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
+def relax(settling: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
     """The finer method on its own orbit, and the bound on the distance left.
 
     The orbit of the live method differs from the true one by its error; a few more periods remove it. With r the
-    slowness of the regime (|μ| where it was computed, else the decay) and `change` from one n-period map to the next,
-    the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; if these
-    are not smaller, the extrapolation is undone.
+    contraction of the regime (|μ| where it was computed, else the decay) and `change` from one n-period map to the
+    next, the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; if
+    these are not smaller, the extrapolation is undone.
     """
-    scene, n = way.scene, way.regime.period
+    scene, n = settling.scene, settling.regime.period
     assert n is not None
-    rate = way.regime.slowness
+    rate = settling.regime.contraction
     setting = orbit_setting(scene, accuracy, rate)
-    engine = Engine(scene, setting, samples, stop=way.stop)
-    engine.start(way.engine.state)
+    engine = Engine(scene, setting, samples, stop=settling.stop)
+    engine.start(settling.engine.state)
     bound, unproved = np.inf, None
     for rounds in range(_MOST_ROUNDS):
         before = bound
         states = engine.periods(0)[0]
-        for _ in range(ORDER):
+        for _ in range(ORBITS):
             moved, _ = engine.periods(n, watch=False)
             states = np.concatenate([states, moved[-1:]])
             change = float(changes(states, 1, 1)[0])
@@ -55,7 +56,7 @@ def relax(way: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, flo
         elif bound > 0.3 * before and not setting.finest:
             # the changes are the method's own: it has to be finer before it can come nearer
             setting, state = setting.finer(), engine.state
-            engine = Engine(scene, setting, samples, stop=way.stop)
+            engine = Engine(scene, setting, samples, stop=settling.stop)
             engine.start(state)
         elif rounds < _MOST_ROUNDS - 1:  # after the last extrapolation there must be a change that proves it
             here = engine.state

@@ -12,11 +12,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..integrate import Engine, State, live
+from ..regime import Regime
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 from .decide import EXAMINED_AFTER, REMEMBERED, Decisions
-from .regime import Regime, find_period
+from .regime import find_period
 
 #: Most steps of the live method while settling: about half a minute.
 MOST_STEPS = 100_000_000
@@ -112,6 +113,6 @@ class Settling:
 
 def run_until_settled(scene: Scene, start: State | None, stop: Stop | None) -> Settling:
     """Run to the end of the budget or to the steady state, without pictures."""
-    way = Settling(scene, start, stop)
-    way.go_on(np.inf)
-    return way
+    settling = Settling(scene, start, stop)
+    settling.go_on(np.inf)
+    return settling

@@ -12,11 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..integrate import Engine, State
+from ..regime import Regime
 from ..result import Cost, Run, run_from
 from ..scene import Scene
 from ..stop import Stop
 from .orbit_errors import errors_between
-from .regime import Regime
 from .relax import relax
 from .settle import Settling, run_until_settled
 
@@ -98,15 +98,15 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     """
     origin = "rest" if start is None else "previous state"
     began = time.perf_counter()
-    way = Settling(scene, start, stop)
-    way.run(_PREVIEW_AFTER)
-    while not way.decided:
-        yield live_picture(way, samples, began, origin, final=False)
-        way.go_on(0.1)
-    if way.regime.name == "periodic":
-        yield orbit_picture(way, samples, began, origin)
+    motion = Settling(scene, start, stop)
+    motion.run(_PREVIEW_AFTER)
+    while not motion.decided:
+        yield live_picture(motion, samples, began, origin, final=False)
+        motion.go_on(0.1)
+    if motion.regime.name == "periodic":
+        yield orbit_picture(motion, samples, began, origin)
     else:
-        yield live_picture(way, samples, began, origin, final=True)
+        yield live_picture(motion, samples, began, origin, final=True)
 
 
 def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
@@ -149,47 +149,47 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
     '2.260 N'
     """
     began = time.perf_counter()
-    way = run_until_settled(scene, start, stop)
+    motion = run_until_settled(scene, start, stop)
     origin = "rest" if start is None else "previous state"
-    if way.regime.name == "periodic":
-        return orbit_picture(way, samples, began, origin)
-    return live_picture(way, samples, began, origin, final=True)
+    if motion.regime.name == "periodic":
+        return orbit_picture(motion, samples, began, origin)
+    return live_picture(motion, samples, began, origin, final=True)
 
 
-def live_picture(way: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
+def live_picture(motion: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
     """The present motion by the live method, over one orbit or a few periods; the settling itself is not advanced."""
-    engine = Engine(way.scene, way.engine.setting, samples, stop=way.stop)
-    state = way.engine.state
+    engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
+    state = motion.engine.state
     engine.start(state)
-    shown = way.regime.period or _SHOWN
+    shown = motion.regime.period or _SHOWN
     record = engine.record(shown * samples)
-    engine.counts.array += way.engine.counts.array
+    engine.counts.array += motion.engine.counts.array
     cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)
-    run = run_from(engine, record, 0, way.regime, None, cost)
-    return Settled(run, way.regime, state, origin, not final, final)
+    run = run_from(engine, record, 0, motion.regime, None, cost)
+    return Settled(run, motion.regime, state, origin, not final, final)
 
 
-def orbit_picture(way: Settling, samples: int, began: float, origin: str) -> Settled:
+def orbit_picture(motion: Settling, samples: int, began: float, origin: str) -> Settled:
     """The periodic orbit by the finer method, with its error: integration plus distance from the orbit.
 
     An error e of the n-period map moves its fixed point by e/(1 − |μ|).
     """
-    n = way.regime.period
+    n = motion.regime.period
     assert n is not None
-    engine, distance = relax(way, way.scene.accuracy, samples)
+    engine, distance = relax(motion, motion.scene.accuracy, samples)
     start = engine.state
-    fine = Engine(way.scene, engine.setting.finer(), samples, stop=way.stop)
+    fine = Engine(motion.scene, engine.setting.finer(), samples, stop=motion.stop)
     fine.start(start)
     record = fine.record(n * samples)
-    coarse = Engine(way.scene, engine.setting, samples, stop=way.stop)
+    coarse = Engine(motion.scene, engine.setting, samples, stop=motion.stop)
     coarse.start(start)
     other = coarse.record(n * samples)
     largest = float(np.abs(record.displacement).max())
     integration = float(np.abs(record.displacement - other.displacement).max()) / largest if largest > 0 else 0.0
-    fine.counts.array += way.engine.counts.array + engine.counts.array + coarse.counts.array
+    fine.counts.array += motion.engine.counts.array + engine.counts.array + coarse.counts.array
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
-    regime = replace(way.regime, distance=distance)
-    integration /= 1.0 - way.regime.slowness
-    forces = errors_between(fine, coarse.tops, way.regime.slowness, distance)
+    regime = replace(motion.regime, distance=distance)
+    integration /= 1.0 - motion.regime.contraction
+    forces = errors_between(fine, coarse.tops, motion.regime.contraction, distance)
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces)
     return Settled(run, regime, start, origin, False, True)

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
 from ..state import State
-from .regime import Regime
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,13 +28,13 @@ import numpy as np
 from ..errors import BadInput
 from ..integrate.batch import can_share_batch
 from ..integrate.methods import CERTIFIED, LIVE
-from ..kernels.simd.width import machine
+from ..kernels.width import machine
 from ..quantities import QUANTITIES
+from ..regime import Regime
 from ..result import Cost, ForceErrors, Jumps, Run
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..steady.curve import Curve
-from ..steady.regime import Regime
 from ..version import __version__
 
 SCHEMA = 1

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from pathlib import Path
 
 import pytest
+from source import ROOT, imports_in
 
-ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
 #: Folder → the folders of its last column.
 ROWS = {row[1]: re.findall(r"`(\w+)`", row[2])
@@ -16,24 +15,27 @@ ROWS = {row[1]: re.findall(r"`(\w+)`", row[2])
 #: Module beside the folders → what it uses: a module, a folder, or one module of a folder.
 MODULES = {row[1]: set(re.findall(r"`([\w.]+)`", row[2]))
            for row in re.finditer(r"^\| `(\w+)\.py` \| [^|]+ \| ([^|]+) \|$", PAGE, re.MULTILINE)}
+#: Module of the kernels, beside their folders.
+KERNELS = set(re.findall(r"^\| `(\w+)\.py` \| [^|]+ \|$", PAGE, re.MULTILINE))
+#: Folder of the kernels → the others that it uses.
+KERNEL_LAYERS = {folder.split("/")[2]: uses for folder, uses in ROWS.items()
+                 if re.fullmatch(r"granchain_core/kernels/\w+", folder)}
 #: The core's folders at the top, whose imports the map orders.
 LAYERS = {folder.split("/")[1]: uses for folder, uses in ROWS.items() if re.fullmatch(r"granchain_core/\w+", folder)}
 
 
-def allowed(layer: str) -> set[str]:
+def allowed(layer: str, layers: dict[str, list[str]] = LAYERS) -> set[str]:
     """The layer, what it uses, and what those use."""
-    return {layer}.union(*(allowed(one) for one in LAYERS[layer]))
+    return {layer}.union(*(allowed(one, layers) for one in layers[layer]))
 
 
 def imported(path: Path) -> set[str]:
     """The core's modules that a file imports, dotted, without `granchain_core`."""
-    package, found = path.relative_to(ROOT).parts[:-1], set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom):
-            names = [*package[: len(package) - node.level + 1]] if node.level else []
-            names += (node.module or "").split(".") if node.module else []
-            if names[0] == "granchain_core":
-                found |= {".".join(names[1:])} if names[1:] else {alias.name for alias in node.names}
+    found: set[str] = set()
+    for module, names in imports_in(path):
+        if module.split(".")[0] == "granchain_core":
+            inside = module.partition(".")[2]
+            found |= {inside} if inside else {name for name, _ in names}
     return found
 
 
@@ -53,10 +55,27 @@ def test_a_folder_imports_only_what_the_map_says(layer: str) -> None:
     assert used(layer) & set(LAYERS) <= allowed(layer)
 
 
+@pytest.mark.parametrize("layer", KERNEL_LAYERS)
+def test_a_folder_of_kernels_imports_only_what_the_map_says(layer: str) -> None:
+    """Of the other folders; a module beside them may be used by any that it does not use itself."""
+    files = (ROOT / "granchain_core" / "kernels" / layer).rglob("*.py")
+    names = {name.split(".")[1] for path in files for name in imported(path) if name.startswith("kernels.")}
+    assert names & set(KERNEL_LAYERS) <= allowed(layer, KERNEL_LAYERS)
+    beside = {name for module in names & KERNELS
+              for name in imported(ROOT / "granchain_core" / "kernels" / f"{module}.py")}
+    assert not [name for name in beside if name.startswith(f"kernels.{layer}")]
+
+
+def test_every_module_of_the_kernels_is_named() -> None:
+    files = {path.stem for path in (ROOT / "granchain_core" / "kernels").glob("*.py") if path.stem != "__init__"}
+    assert files == KERNELS
+
+
 def test_the_map_has_no_circle() -> None:
     """Each layer is drawn below all it uses."""
-    order = list(LAYERS)
-    assert all(order.index(above) < order.index(layer) for layer, uses in LAYERS.items() for above in uses)
+    for layers in (LAYERS, KERNEL_LAYERS):
+        order = list(layers)
+        assert all(order.index(above) < order.index(layer) for layer, uses in layers.items() for above in uses)
 
 
 def test_every_module_beside_the_folders_is_on_the_map_with_what_it_uses() -> None:

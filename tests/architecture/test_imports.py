@@ -8,12 +8,11 @@ from pathlib import Path
 
 import pytest
 from panel.custom import JSComponent
+from source import ROOT, imports_in
 
 import app.page.layout  # noqa: F401  (makes every component known)
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
-
-ROOT = Path(__file__).parents[2]
 
 
 def module_name(path: Path) -> str:
@@ -27,16 +26,9 @@ MODULES = {module_name(path): path for name in ("granchain_core", "app") for pat
 
 def imports(module: str) -> set[str]:
     """The modules a file imports wherever it does: at the top, in a function, for type checking."""
-    path = MODULES[module]
-    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
-            base = ".".join([*above, *([node.module] if node.module else [])])
-            found |= {name if (name := f"{base}.{alias.name}") in MODULES else base for alias in node.names}
+    for base, names in imports_in(MODULES[module]):
+        found |= {f"{base}.{name}" if f"{base}.{name}" in MODULES else base for name, _ in names} or {base}
     return {name for name in found if name in MODULES}
 
 

@@ -6,28 +6,15 @@ import ast
 from pathlib import Path
 
 import pytest
+from source import ROOT, imports_in, parsed
 
-ROOT = Path(__file__).parents[2]
 CORE = sorted((ROOT / "granchain_core").rglob("*.py"))
 ALL = [*CORE, *sorted((ROOT / "app").rglob("*.py"))]
 
 
-def imported(path: Path) -> set[str]:
-    """Dotted names of the modules a file imports, relative ones made absolute."""
-    names: set[str] = set()
-    package = path.relative_to(ROOT).with_suffix("").parts[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            names |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            base = ".".join(package[: len(package) - node.level + 1]) if node.level else ""
-            names.add(".".join(p for p in (base, node.module or "") if p))
-    return names
-
-
 @pytest.mark.parametrize("path", CORE, ids=lambda p: str(p.relative_to(ROOT)))
 def test_the_core_knows_no_dashboard_and_no_command_line(path: Path) -> None:
-    roots = {name.split(".")[0] for name in imported(path)}
+    roots = {one.module.split(".")[0] for one in imports_in(path)}
     assert not roots & {"panel", "bokeh", "param", "app", "tornado", "argparse", "click", "typer"}
 
 
@@ -62,8 +49,9 @@ def test_code_inlined_by_numba_is_called_at_one_place() -> None:
     for path in CORE:
         if "kernels" not in path.parts:
             continue
-        tree, here = ast.parse(path.read_text(encoding="utf-8")), _dotted(path)
-        origin = {alias.asname or alias.name: f"{module}.{alias.name}" for module, alias in _names_imported(path, tree)}
+        tree, here = parsed(path), _dotted(path)
+        origin = {called: f"{module}.{name}" for module, names in imports_in(path, everywhere=False)
+                  for name, called in names}
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef) and any(ast.unparse(d) == "inline_numba" for d in node.decorator_list):
                 parts.add(f"{here}.{node.name}")
@@ -77,17 +65,10 @@ def test_code_inlined_by_numba_is_called_at_one_place() -> None:
 def test_kernels_take_few_arguments() -> None:
     """What belongs together is a named tuple: a step, a trajectory, the arrays that are written."""
     many = {f"{_dotted(path)}.{node.name}": len(node.args.args) for path in CORE if "kernels" in path.parts
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            for node in ast.walk(parsed(path))
             if isinstance(node, ast.FunctionDef) and len(node.args.args) > 8}
     assert many == {}
 
 
 def _dotted(path: Path) -> str:
     return ".".join(path.relative_to(ROOT).with_suffix("").parts)
-
-
-def _names_imported(path: Path, tree: ast.Module) -> list[tuple[str, ast.alias]]:
-    """Module, absolute, and alias of every `from … import …` at the top of a file."""
-    package = _dotted(path).split(".")[:-1]
-    return [(".".join([*package[: len(package) - node.level + 1], node.module or ""]), alias)
-            for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]

@@ -25,11 +25,11 @@ def report(quick: bool, tell: Callable[[str], None]) -> str:
     for beads in BEADS:
         tell(f"N = {beads}")
         shown = scene("sec2").evolve(N=beads, f=problem.FREQUENCY, kappa=0.02)
-        strobe = StroboscopicMap(shown, 1)
+        stroboscopic_map = StroboscopicMap(shown, 1)
         x = 0.3 * np.random.default_rng(1).standard_normal(2 * beads)
-        strobe.end(x), strobe(x)
-        flow = timed(lambda strobe=strobe, x=x: strobe.end(x), 0.05, repeats)
-        derivative = timed(lambda strobe=strobe, x=x: strobe(x), 0.05, repeats)
+        stroboscopic_map.end(x), stroboscopic_map(x)
+        flow = timed(lambda stroboscopic_map=stroboscopic_map, x=x: stroboscopic_map.end(x), 0.05, repeats)
+        derivative = timed(lambda stroboscopic_map=stroboscopic_map, x=x: stroboscopic_map(x), 0.05, repeats)
         rows.append([str(beads), f"{1e3 * flow.median:.2f}", f"{1e3 * derivative.median:.2f}",
                      f"{derivative.median / flow.median:.1f}", f"{2 * beads + 1}"])
     start = run_until_settled(scene("sec2"), None, None).engine.state

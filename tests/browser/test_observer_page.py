@@ -48,7 +48,7 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
     page = visit(reduced_motion="no-preference")
     sheet = opened(page)
     expect(sheet).to_contain_text("it drifts: an offset of its beads grows, because nothing pulls them back", timeout=COMPILED)
-    expect(sheet).to_contain_text("predicted × 4.418")  # PHYSICS.md, section 3: one real multiplier outside
+    expect(sheet).to_contain_text("predicted × 4.418")  # docs/model.md, `fig11-free`: one multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5", timeout=30_000)
     chains = sheet.locator(".chains canvas")
     assert chains.count() == 3

@@ -18,7 +18,7 @@ from app.cli import main
 from app.page.share import decode
 from granchain_core import BadInput, NumbersFailed, run, scene
 from granchain_core.experiment import read_measured_csv
-from granchain_core.kernels.simd.width import machine
+from granchain_core.kernels.width import machine
 from granchain_core.store import load, save
 
 SHORT = ["--set", "N=2", "--periods", "0", "--record", "1", "--samples", "4", "--set", "f=3000"]

@@ -10,7 +10,7 @@ from granchain_core.diagram import Attractor, attractors, listing
 from granchain_core.diagram.attractors import _regime as irregular_regime
 from granchain_core.diagram.attractors import share
 from granchain_core.orbits import periodic_orbit, response
-from granchain_core.steady.regime import Regime
+from granchain_core.regime import Regime
 
 #: Where rest, a sweep up and a sweep down lead to three different motions of sec2.
 MANY = 893.0
@@ -126,7 +126,7 @@ def at(frequency: float) -> Scene:
     (1280.0, (1, 1), "anti-resonance"), (2500.0, (1, 1), ""),
 ])
 def test_peaks_are_resonances_and_dips_anti_resonances(frequency: float, ratio: tuple[int, int], kind: str) -> None:
-    # PHYSICS, section 3: peaks 1:1 … 1:5 and the dips between them; above 2000 Hz is the stop band
+    # docs/model.md, `sec2`: peaks 1:1 … 1:5 and the dips between them; above 2000 Hz is the stop band
     found = response(periodic_orbit(at(frequency)))
     assert (found.strong, found.periods) == ratio and found.kind == kind
 

@@ -46,11 +46,11 @@ def test_split_steps_keep_their_order_across_contact_events(method: str, least: 
 
 def test_tangent_is_the_derivative_of_the_map() -> None:
     """Every column against central differences, whose own error is about h² = 1e-10 over the kinks of the contacts."""
-    strobe, h = StroboscopicMap(CHAIN, 1), 1e-5
+    stroboscopic_map, h = StroboscopicMap(CHAIN, 1), 1e-5
     here = np.concatenate([np.linspace(0.3, 0.1, 3), np.zeros(3)])
-    flow = strobe(here)
+    flow = stroboscopic_map(here)
     for column, unit in enumerate(np.eye(6)):
-        difference = (strobe(here + h * unit).end - strobe(here - h * unit).end) / (2 * h)
+        difference = (stroboscopic_map(here + h * unit).end - stroboscopic_map(here - h * unit).end) / (2 * h)
         np.testing.assert_allclose(flow.derivative[:, column], difference, atol=1e-4)
     sign, logarithm = np.linalg.slogdet(flow.derivative)
     assert sign > 0.0 and logarithm == pytest.approx(flow.log_determinant, rel=1e-9)

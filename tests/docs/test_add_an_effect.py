@@ -19,8 +19,8 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_page_edits_and_writes_as_many_files_as_it_says() -> None:
     edits, new = files_of(PAGE)
-    assert (len(edits), len(new)) == (7, 3)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 7 files, write 3"
+    assert (len(edits), len(new)) == (8, 3)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 8 files, write 3, mention it in 4"
 
 
 def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:

@@ -11,7 +11,6 @@ from granchain_core import NumbersFailed, scene
 from granchain_core.hard import (
     Case,
     Figure,
-    brushes,
     contacts,
     damping,
     energy,
@@ -20,10 +19,11 @@ from granchain_core.hard import (
     numbers,
     regimes,
     run_case,
+    touches,
 )
 from granchain_core.integrate import Engine, checkpoint
 from granchain_core.integrate.methods import Setting
-from granchain_core.steady.regime import Regime
+from granchain_core.regime import Regime
 
 
 def worst(figures: list[Figure]) -> Figure:
@@ -64,14 +64,14 @@ def test_a_plain_dashpot_without_events_misses_its_restitution(monkeypatch: pyte
 
 
 def test_steps_over_brief_touches_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = brushes.run
+    real = touches.run
 
     def blind(cases: np.ndarray, driven: bool) -> np.ndarray:
         found = real(cases, driven)
-        found[(cases[:, brushes.DEPTH] > 0.0) & (cases[:, brushes.DEPTH] < 2e-7), brushes.ONSETS] = 0.0
+        found[(cases[:, touches.DEPTH] > 0.0) & (cases[:, touches.DEPTH] < 2e-7), touches.ONSETS] = 0.0
         return found
 
-    monkeypatch.setattr(brushes, "run", blind)
+    monkeypatch.setattr(touches, "run", blind)
     assert worst(contacts.brushed(True)).value > 0.0
     assert failed(contacts.brushed(True))
 

@@ -45,9 +45,9 @@ def test_differences_give_the_multipliers_of_the_tangent_flow(f: float, period: 
 def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
     """The fixed point of the map by steps of a quarter is the orbit to the map's error over 1 − |μ|."""
     chain = scene("sec2").evolve(f=340.0)
-    strobe = FiniteDifferenceMap(chain, 1)
-    exact = strobe.inner(lower(chain).scaled(periodic_orbit(chain, 1).state))
-    found = fixed_point(strobe, exact + 1e-3 * sizes(exact))
+    stroboscopic_map = FiniteDifferenceMap(chain, 1)
+    exact = stroboscopic_map.inner(lower(chain).scaled(periodic_orbit(chain, 1).state))
+    found = fixed_point(stroboscopic_map, exact + 1e-3 * sizes(exact))
     assert found is not None and found.residual <= 1e-9
     assert np.abs((found.x - exact) / sizes(exact)).max() < 1e-6  # 7e-6 at the live step, /4⁴, over 1 − 0.36: 4e-8
 
@@ -65,14 +65,14 @@ def test_a_slow_orbit_is_approached_and_an_unstable_one_is_not() -> None:
     slow, left = beside(1980.0, 1, 1e-4), beside(1330.0, 1, 1e-6)
     assert slow.stable and not slow.unstable and slow.approached()
     assert left.unstable and not left.stable and not left.approached()
-    further = left.drawn_out()
+    further = left.enlarged_departure()
     assert further is not None
     assert np.abs((further - left.point.x) / sizes(left.point.x)).max() == pytest.approx(3e-3, rel=1e-9)
     now, later = (np.linalg.norm((s - left.point.x) / sizes(left.point.x), axis=1).max()
-                  for s in left.strobe.passed(further, 16, 16))
+                  for s in left.stroboscopic_map.passed(further, 16, 16))
     assert later / now == pytest.approx(left.modulus**32, rel=0.1)  # in a turn of 16 orbits, and still nearly linear
     beyond = left.point.x + 1.5 * (further - left.point.x)
-    assert NearbyOrbit(left.strobe, left.point, beyond, left.modulus).drawn_out() is None
+    assert NearbyOrbit(left.stroboscopic_map, left.point, beyond, left.modulus).enlarged_departure() is None
 
 
 def test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit() -> None:
@@ -98,7 +98,7 @@ def test_slow_is_not_quasi_periodic() -> None:
     """A0 = 0.3 µm at 1500 Hz: |μ| = 0.9995. 300 periods look like a closed curve; `run` claims nothing that it is not yet."""
     chain = scene("sec2").evolve(A0=3e-7, f=1500.0)
     assert run(chain, periods=300).regime.name == "unsettled"
-    way = run_until_settled(chain, None, None)
-    assert (way.regime.name, way.regime.period, way.regime.followed) == ("periodic", 1, True)
-    assert way.regime.multiplier is not None and 0.999 < way.regime.multiplier < 1.0
-    assert way.regime.sentence.endswith("(|μ| 0.9995)")
+    settling = run_until_settled(chain, None, None)
+    assert (settling.regime.name, settling.regime.period, settling.regime.followed) == ("periodic", 1, True)
+    assert settling.regime.multiplier is not None and 0.999 < settling.regime.multiplier < 1.0
+    assert settling.regime.sentence.endswith("(|μ| 0.9995)")

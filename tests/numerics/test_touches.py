@@ -7,8 +7,8 @@ import functools
 import numpy as np
 import pytest
 import touches
-from chains import Undriven
 
+from granchain_core.hard.chains import Bench
 from granchain_core.kernels.effects.dissipation import LinearDashpot
 
 COUNT = 2000
@@ -68,8 +68,9 @@ def test_simultaneous_contacts_stay_symmetric(beads, tolerance):
 
     1e-13 of an amplitude: what a hundred events leave of roundings.
     """
-    chain = Undriven(beads, LinearDashpot(0.1), 200.0, 64, tolerance=tolerance, stands=True)
+    chain = Bench(beads, 200.0, 64, LinearDashpot(0.1), tolerance=tolerance)
     velocity = np.random.default_rng(beads).uniform(-1.0, 1.0, beads)
-    kept = chain.run(velocity - velocity[::-1])
+    chain.throw(velocity - velocity[::-1])
+    kept = chain.record()
     assert chain.engine.counts.events > 5
     assert np.abs(kept.displacement + kept.displacement[:, ::-1]).max() < 1e-13

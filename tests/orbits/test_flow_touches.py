@@ -13,14 +13,14 @@ from granchain_core.orbits.flow import StroboscopicMap
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4])
 def test_a_brief_touch_is_in_the_map_and_in_its_derivative(depth: float) -> None:
-    """A driver that brushes a resting bead throws it with C·depth²/β, C = 3π√2/8; by u it changes with −2C·depth/β."""
-    strobe = StroboscopicMap(scene("sec2").evolve(N=1, f=500.0), 1)
-    lowered, slots = strobe.engine.lowered, strobe.engine.lowered.slots
+    """A driver that just touches a resting bead throws it with C·depth²/β, C = 3π√2/8; by u it changes with −2C·depth/β."""
+    stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, f=500.0), 1)
+    lowered, slots = stroboscopic_map.engine.lowered, stroboscopic_map.engine.lowered.slots
     # the wall pushes with no force, and no contact is damped
     slots = slots._replace(chain=slots.chain._replace(stiffness=np.array([1.0, 0.0])),
                            dissipation=type(slots.dissipation)(0.0))
-    strobe.engine.use(replace(lowered, slots=slots))
-    flow = strobe(np.array([1.0 - depth, 0.0]))
+    stroboscopic_map.engine.use(replace(lowered, slots=slots))
+    flow = stroboscopic_map(np.array([1.0 - depth, 0.0]))
     assert [int(contact) for contact, _ in flow.changes] == [1, -1]
     # the touch lasts 1.4 % and 0.45 % of a period, a step of the flow up to a sixteenth
     top, width = flow.changes[:, 1].mean(), np.ptp(flow.changes[:, 1])

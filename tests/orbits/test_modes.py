@@ -11,7 +11,7 @@ import pytest
 from granchain_core import BadInput, Cancelled, LiveChain, NumbersFailed, Scene, State, scene, settled
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import mode, orbit_section
-from granchain_core.orbits.search import least_period, search_orbit
+from granchain_core.orbits.search import least_period_of, search_orbit
 from granchain_core.steady.poincare import Section, iter_section, most_periods
 from granchain_core.stop import Stop
 
@@ -130,8 +130,8 @@ def test_the_orbit_a_doubling_left_unstable_is_found_from_the_middle() -> None:
 
 def test_least_periods() -> None:
     once = orbit_of("sec2")
-    assert least_period(periodic_orbit(once.scene, period=4, start=once.state)) == 1
-    assert least_period(orbit_of("sec2", f=1130.0)) == 3
+    assert least_period_of(periodic_orbit(once.scene, period=4, start=once.state)) == 1
+    assert least_period_of(orbit_of("sec2", f=1130.0)) == 3
     assert search_orbit(once.scene, 2, once.state, np.zeros((0, 2, 11))).period == 1
 
 

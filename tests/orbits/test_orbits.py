@@ -14,7 +14,7 @@ from granchain_core.orbits.flow import StroboscopicMap
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: float, period: int) -> None:
     orbit = periodic_orbit(scene("sec2").evolve(f=frequency))
-    assert orbit.period == period  # PHYSICS, trap 8: what sec2 reaches from rest
+    assert orbit.period == period  # docs/model.md: what sec2 reaches from rest
     assert orbit.residual <= 1e-11  # the map is computed to about 1e-12
     assert len(orbit.newton_residuals) - 1 <= 4  # quadratic convergence from a settled start
     assert orbit.stable
@@ -24,8 +24,8 @@ def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: flo
                                      {"F0": 0.5}, {"wall": "rigid", "N": 3}])
 def test_the_determinant_of_the_derivative_is_liouvilles(changes: dict[str, object]) -> None:
     shown = scene("sec2").evolve(**changes)
-    strobe = StroboscopicMap(shown, 1)
-    flow = strobe(0.1 * np.random.default_rng(1).standard_normal(2 * shown.N))
+    stroboscopic_map = StroboscopicMap(shown, 1)
+    flow = stroboscopic_map(0.1 * np.random.default_rng(1).standard_normal(2 * shown.N))
     sign, logarithm = np.linalg.slogdet(flow.derivative)
     assert sign > 0
     # ∫ trace is a quadrature of order 8 of a function with kinks at the events, where steps begin and end
@@ -36,14 +36,14 @@ def test_the_determinant_of_the_derivative_is_liouvilles(changes: dict[str, obje
 def test_every_column_of_the_derivative_is_a_finite_difference_of_the_map(changes: dict[str, object]) -> None:
     # Contacts open and close on the way; a missing saltation would show here and not in the determinant.
     shown = scene("sec2").evolve(f=615.0, N=4, **changes)
-    strobe = StroboscopicMap(shown, 1)
+    stroboscopic_map = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(2).standard_normal(2 * shown.N)
-    exact = strobe(x).derivative
+    exact = stroboscopic_map(x).derivative
     step = 1e-6  # the central difference errs by step² and by the map's 1e-12/step
     for column in range(len(x)):
         e = np.zeros(len(x))
         e[column] = step
-        difference = (strobe(x + e).end - strobe(x - e).end) / (2 * step)
+        difference = (stroboscopic_map(x + e).end - stroboscopic_map(x - e).end) / (2 * step)
         assert np.abs(difference - exact[:, column]).max() < 3e-5 * np.abs(exact).max()
 
 
@@ -64,7 +64,7 @@ def test_an_orbit_is_found_again_with_twice_its_period_and_squared_multipliers()
 
 
 def test_scaled_chains_have_the_same_multipliers() -> None:
-    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (PHYSICS, section 3)
+    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (docs/model.md, Equations)
     first, s = scene("sec2"), 7.0
     second = first.evolve(A0=s * first.A0, f=s**0.25 * first.f, D=s**0.25 * first.D)
     a, b = periodic_orbit(first), periodic_orbit(second)
@@ -94,6 +94,6 @@ def test_a_period_out_of_range_is_refused() -> None:
 
 def test_the_state_of_an_orbit_comes_back_after_its_period() -> None:
     orbit = periodic_orbit(scene("sec2").evolve(f=1130.0))
-    strobe = StroboscopicMap(orbit.scene, 3)
-    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
-    assert np.abs(strobe(x).end - x).max() < 1e-10 * np.abs(x).max()  # the residual, after conversion to SI and back
+    stroboscopic_map = StroboscopicMap(orbit.scene, 3)
+    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    assert np.abs(stroboscopic_map(x).end - x).max() < 1e-10 * np.abs(x).max()  # the residual, after conversion to SI and back

@@ -9,6 +9,10 @@ import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, Cancelled, scene
+from granchain_core.integrate import Engine, certified
+from granchain_core.kernels.dop853.orbit_record import OrbitRecord, record_orbit
+from granchain_core.kernels.forces.peaks import PEAKS
+from granchain_core.kernels.status import CANCELLED
 from granchain_core.orbits import krylov, periodic_orbit
 from granchain_core.orbits import orbit as orbits
 from granchain_core.orbits.flow import StroboscopicMap
@@ -21,34 +25,34 @@ from granchain_core.stop import Stop
                                      {"dissipation": "none", "N": 4}])
 def test_tangents_in_w_and_tangents_in_v_with_saltation_are_one_derivative(changes: dict[str, object]) -> None:
     shown = scene("sec2").evolve(**changes)
-    strobe = StroboscopicMap(shown, 1)
+    stroboscopic_map = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(3).standard_normal(2 * shown.N)
-    first, second = strobe(x).derivative, strobe.second_route(x)
-    assert len(strobe.changes) > 0 or "F0" in changes
+    first, second = stroboscopic_map(x).derivative, stroboscopic_map.derivative_by_saltation(x)
+    assert len(stroboscopic_map.changes) > 0 or "F0" in changes
     assert np.abs(first - second).max() < 1e-9 * np.abs(first).max()
 
 
 def test_a_missing_saltation_shows_in_the_columns_and_not_in_the_determinant() -> None:
     shown = scene("sec2").evolve(N=3)
-    strobe = StroboscopicMap(shown, 1)
+    stroboscopic_map = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(4).standard_normal(6)
-    right = strobe(x)
-    wrong = strobe.second_route(x, jumps=False)
+    right = stroboscopic_map(x)
+    wrong = stroboscopic_map.derivative_by_saltation(x, jumps=False)
     sign, logarithm = np.linalg.slogdet(wrong)
     assert sign > 0 and logarithm == pytest.approx(right.log_determinant, abs=1e-8)  # Liouville sees nothing
     assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()  # the columns do
     step, difference = 1e-6, np.zeros((6, 6))
     for column, e in enumerate(step * np.eye(6)):
-        difference[:, column] = (strobe.end(x + e) - strobe.end(x - e)) / (2 * step)
+        difference[:, column] = (stroboscopic_map.end(x + e) - stroboscopic_map.end(x - e)) / (2 * step)
     # the central difference errs by step² and by the map's 1e-12/step
     assert np.abs(difference - right.derivative).max() < 3e-5 * np.abs(right.derivative).max()
     assert np.abs(difference - wrong).max() > 0.05 * np.abs(right.derivative).max()
 
 
-def test_the_second_route_knows_its_limits() -> None:
-    strobe = StroboscopicMap(scene("sec2").evolve(dissipation="tsuji"), 1)
+def test_the_derivative_by_saltation_knows_its_limits() -> None:
+    stroboscopic_map = StroboscopicMap(scene("sec2").evolve(dissipation="tsuji"), 1)
     with pytest.raises(BadInput, match="no constant saltation"):
-        strobe.second_route(np.zeros(22))
+        stroboscopic_map.derivative_by_saltation(np.zeros(22))
 
 
 def test_a_scene_that_cuts_tension_is_refused_in_one_sentence() -> None:
@@ -59,17 +63,17 @@ def test_a_scene_that_cuts_tension_is_refused_in_one_sentence() -> None:
 @pytest.mark.parametrize("columns", [1, 8, 9])
 def test_directions_are_products_with_the_derivative(columns: int) -> None:
     shown = scene("sec2").evolve(N=5)
-    strobe, rng = StroboscopicMap(shown, 1), np.random.default_rng(5)
+    stroboscopic_map, rng = StroboscopicMap(shown, 1), np.random.default_rng(5)
     x, directions = 0.3 * rng.standard_normal(10), rng.standard_normal((10, columns))
-    assert strobe(x, directions=directions).derivative == pytest.approx(strobe(x).derivative @ directions, abs=1e-12)
+    assert stroboscopic_map(x, directions=directions).derivative == pytest.approx(stroboscopic_map(x).derivative @ directions, abs=1e-12)
 
 
 def test_the_flow_with_and_without_tangents_ends_at_the_same_place_with_the_same_events() -> None:
-    strobe = StroboscopicMap(scene("sec2"), 2)
+    stroboscopic_map = StroboscopicMap(scene("sec2"), 2)
     x = 0.3 * np.random.default_rng(6).standard_normal(22)
-    flow = strobe(x)
-    assert np.array_equal(strobe.end(x), flow.end)
-    assert np.array_equal(strobe.changes, flow.changes)
+    flow = stroboscopic_map(x)
+    assert np.array_equal(stroboscopic_map.end(x), flow.end)
+    assert np.array_equal(stroboscopic_map.changes, flow.changes)
     assert np.all(np.diff(flow.changes[:, 1]) >= 0.0) and 0.0 <= flow.changes[-1, 1] <= 2.0
     closed: dict[int, bool] = {}
     for contact, _ in flow.changes:  # each contact opens and closes in turn
@@ -89,7 +93,7 @@ def test_a_long_chain_has_the_leading_multipliers_of_its_linear_modes() -> None:
 
 def test_krylov_and_dense_multipliers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     dense = periodic_orbit(scene("sec2"), observer=True)
-    monkeypatch.setattr(orbits, "DENSE", 5)
+    monkeypatch.setattr(orbits, "MOST_BEADS_DENSE", 5)
     monkeypatch.setattr(krylov, "leading_multipliers", partial(krylov.leading_multipliers, count=6))
     sparse = periodic_orbit(scene("sec2"), period=1, start=dense.state, observer=True)
     assert np.abs(sparse.multipliers) == pytest.approx(np.abs(dense.multipliers[:6]), abs=1e-8)
@@ -105,15 +109,25 @@ def test_multipliers_of_any_matrix_are_sorted_by_modulus() -> None:
 def test_a_contact_that_rounding_closes_again_at_once_stops_nobody() -> None:
     # After a release at t = 34.3 this contact closes again 5e-13 later; no step may become too small to move t.
     shown = scene("sec2").evolve(N=1, D=30.0, f=403.89217825350806)
-    strobe = StroboscopicMap(shown, 3)
+    stroboscopic_map = StroboscopicMap(shown, 3)
     x = np.array([-0.05948783164245709, 0.15173847516946406])
-    assert np.all(np.isfinite(strobe.end(x)))
-    assert strobe.engine.counts.steps < 10_000
+    assert np.all(np.isfinite(stroboscopic_map.end(x)))
+    assert stroboscopic_map.engine.counts.steps < 10_000
 
 
 def test_a_flow_stops_when_it_is_told_to() -> None:
     stop = Stop()
-    strobe = StroboscopicMap(scene("sec2"), 1, stop)
+    stroboscopic_map = StroboscopicMap(scene("sec2"), 1, stop)
     stop.set()
     with pytest.raises(Cancelled):
-        strobe.end(np.zeros(22))
+        stroboscopic_map.end(np.zeros(22))
+
+
+def test_a_record_along_an_orbit_stops_within_its_period() -> None:
+    stop = Stop()
+    engine = Engine(scene("sec2"), certified(1e-9), 1, stop=stop)
+    stop.set()
+    record = OrbitRecord(np.zeros((64, 4)), np.zeros(PEAKS))
+    status, _, _ = record_orbit(engine.stepper.method, engine.stepper.trajectory(engine.y), 1, record,
+                                engine.counts.array, engine.stop.flag)
+    assert (status, engine.counts.steps) == (CANCELLED, 0)

@@ -25,7 +25,7 @@ from app.pages.stability.view import (
 )
 from app.pages.stability.work import Analysis, Target, analyse, search, section_of, transient
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
-from granchain_core.steady.regime import Regime, modulus_words
+from granchain_core.regime import Regime, modulus_words
 from granchain_core.stop import Stop
 
 

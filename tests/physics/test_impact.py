@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from chains import Undriven
 
+from granchain_core.hard.chains import Bench
 from granchain_core.kernels.effects.dissipation import LinearDashpot, Tsuji
 
 #: Duration 3.2180655 (m*/K)^{2/5} v^{-1/5} and peak force 1.1432626 K^{2/5} m*^{3/5} v^{6/5}; both constants are
@@ -16,8 +16,9 @@ DURATION, PEAK = 3.2180655, 1.1432626
 def impact(law, speed: float, stiffness: float = 1.0):
     """(contact duration, largest overlap at half the Hertz duration, speed after / speed before) at the wall."""
     hertz = DURATION * stiffness**-0.4 * speed**-0.2
-    chain = Undriven(1, law, 2.0 * hertz, 4, wall=stiffness)
-    kept = chain.run(np.array([speed]))
+    chain = Bench(1, 2.0 * hertz, 4, law, ends=(0.0, stiffness))
+    chain.throw([speed])
+    kept = chain.record()
     after = -kept.velocity[-1, 0]
     # with the wall behind it the bead flies freely: its distance tells when it left
     duration = chain.time[-1] + kept.displacement[-1, 0] / after
@@ -59,7 +60,9 @@ def test_bead_between_two_contacts_swings_as_the_pure_three_halves_oscillator(sp
     """x'' = −|x|^{3/2} sgn x has ω = 0.9546936 A^{1/4}: after one period the bead is where it began."""
     amplitude = (1.25 * speed**2) ** 0.4  # v²/2 = (2/5) A^{5/2}
     period = 2.0 * np.pi / (0.9546936 * amplitude**0.25)
-    kept = Undriven(1, LinearDashpot(0.0), period, 4, stands=True).run(np.array([speed]))
+    chain = Bench(1, period, 4)
+    chain.throw([speed])
+    kept = chain.record()
     expected = amplitude * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
     # ω is given to seven digits: in one period the bead is 2π·1e-7 of the amplitude off at most, and the solver adds none
     np.testing.assert_allclose(kept.displacement[:, 0], expected, atol=1e-6 * amplitude)

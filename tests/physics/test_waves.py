@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chains import Undriven
 
 from granchain_core import State, run, scene
+from granchain_core.hard.chains import Bench
 from granchain_core.integrate import Engine, Setting
 from granchain_core.kernels.effects.dissipation import LinearDashpot
 from granchain_core.kernels.effects.driver import Harmonic
@@ -26,8 +26,9 @@ def top(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
 def test_solitary_wave_of_the_uncompressed_chain_has_its_speed():
     """V = 0.9055158 F_max^{1/6} = 0.9074701 v_max^{1/5} (K = m = 1, beads per time) behind an impact on bead 1."""
     beads, samples = 60, 4000
-    chain = Undriven(beads, LinearDashpot(0.0), 60.0, samples, tolerance=1e-11)
-    kept = chain.run(np.eye(beads)[0])
+    chain = Bench(beads, 60.0, samples, ends=(0.0, 1.0), tolerance=1e-11)
+    chain.throw(np.eye(beads)[0])
+    kept = chain.record()
     passes = {c: top(chain.time, kept.force[:, c]) for c in (30, 40)}
     speed = 10.0 / (passes[40][0] - passes[30][0])
     force = 0.5 * (passes[30][1] + passes[40][1])

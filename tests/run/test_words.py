@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from granchain_core import State, scene
+from granchain_core.regime import Regime
 from granchain_core.run.run import _origin
 from granchain_core.state import rest
-from granchain_core.steady.regime import Regime
 
 
 def test_a_run_says_where_it_began() -> None:

@@ -27,13 +27,13 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
     """Lanes, which follow slow approaches, and the live method, which runs on until it is there, from rest."""
     by_lanes = results(FREQUENCIES)
     for f in FREQUENCIES:
-        way = run_until_settled(scene("sec2").evolve(f=f), None, None)
+        settling = run_until_settled(scene("sec2").evolve(f=f), None, None)
         found = by_lanes[f]
-        assert found.regime.name == way.regime.name
+        assert found.regime.name == settling.regime.name
         if found.regime.period is None:
             continue
-        assert found.regime.period == way.regime.period
-        top = way.engine.periods(found.regime.period)[1][:, 1].max() * way.engine.lowered.scales.force
+        assert found.regime.period == settling.regime.period
+        top = settling.engine.periods(found.regime.period)[1][:, 1].max() * settling.engine.lowered.scales.force
         # the live method's own error at these steps is a few 1e-5 of the displacement, more on steep flanks
         assert found.tops[1] == pytest.approx(top, rel=2e-3)
 
@@ -61,8 +61,8 @@ def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
     for point in found:
         kick = 1e-3 * np.abs(point.state.displacement).max() * np.where(np.arange(11) % 2, 1.0, -1.0)
         start = type(point.state)(point.state.displacement + kick, point.state.velocity)
-        way = run_until_settled(scene("rig").evolve(f=point.frequency), start, None)
-        assert way.regime.period == point.regime.period
+        settling = run_until_settled(scene("rig").evolve(f=point.frequency), start, None)
+        assert settling.regime.period == point.regime.period
 
 
 def test_a_draft_claims_no_errors_and_agrees_where_it_is_periodic() -> None:

@@ -44,20 +44,20 @@ def test_changes_lost_in_rounding_leave_a_distance() -> None:
 def test_growth_within_its_error_is_no_chaos() -> None:
     """A mean exponent of 0.004 ± 0.006 on a closed curve is no evidence of chaos."""
     exponents = np.array([0.03, -0.02, 0.01, -0.01, 0.02, -0.006])
-    assert regime.irregular(exponents, turning(1.0), 420).name == "quasi-periodic"
+    assert regime.regime_from_exponents(exponents, turning(1.0), 420).name == "quasi-periodic"
 
 
 def test_a_spiral_that_creeps_inwards_is_no_closed_curve() -> None:
     """0.03 % a period: neighbours hardly approach, and yet it is on its way."""
     exponents = np.array([-2e-4, -4e-4, -3e-4, -3e-4])
-    assert regime.irregular(exponents, turning(0.9997), 420).name == "unsettled"
-    assert regime.irregular(exponents, turning(1.0), 420).name == "quasi-periodic"
+    assert regime.regime_from_exponents(exponents, turning(0.9997), 420).name == "unsettled"
+    assert regime.regime_from_exponents(exponents, turning(1.0), 420).name == "quasi-periodic"
 
 
 def test_a_drift_is_no_closed_curve() -> None:
     """A section that goes on and on never comes back near itself, whatever its exponent."""
     drifting = turning(1.0) + 0.05 * np.arange(421)[:, None, None]
-    assert regime.irregular(np.array([1e-4, -1e-4, 2e-4, -2e-4]), drifting, 420).name == "unsettled"
+    assert regime.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), drifting, 420).name == "unsettled"
 
 
 def test_largest_forces_are_those_of_the_recorded_periods() -> None:
@@ -79,38 +79,38 @@ def test_the_times_of_samples_are_counted_and_not_summed() -> None:
 
 def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a tenth of a distance is left after an orbit the settled error is e/(1 − 1/10), where nine tenths are, 10 e."""
-    way = settle.run_until_settled(scene("sec2"), None, None)
-    engine = Engine(way.scene, Setting("rk4-split"), 16)
-    engine.start(way.engine.state)
+    settling = settle.run_until_settled(scene("sec2"), None, None)
+    engine = Engine(settling.scene, Setting("rk4-split"), 16)
+    engine.start(settling.engine.state)
     monkeypatch.setattr(settled_module, "relax", lambda *words: (engine, 0.0))
     stated = []
     for decay in (0.1, 0.9):
-        monkeypatch.setattr(regime.Regime, "slowness", decay)
-        stated.append(settled_module.orbit_picture(way, 16, 0.0, "rest").run.error_estimate)
+        monkeypatch.setattr(regime.Regime, "contraction", decay)
+        stated.append(settled_module.orbit_picture(settling, 16, 0.0, "rest").run.error_estimate)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
 def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same factor 1/(1 − |μ|) for a point of a curve that was settled by itself."""
-    way = settle.run_until_settled(scene("sec2"), None, None)
-    monkeypatch.setattr(alone, "run_until_settled", lambda *words: way)
+    settling = settle.run_until_settled(scene("sec2"), None, None)
+    monkeypatch.setattr(alone, "run_until_settled", lambda *words: settling)
     stated = []
     for modulus in (0.1, 0.9):
-        engine = Engine(way.scene, certified(1e-6), 1)
-        engine.start(way.engine.state)
+        engine = Engine(settling.scene, certified(1e-6), 1)
+        engine.start(settling.engine.state)
         monkeypatch.setattr(alone, "relax", lambda *words, engine=engine: (engine, 0.0))
-        way.regime = replace(way.regime, multiplier=modulus)
-        stated.append(alone.steady_state(way.scene, None, way.stop).errors)
+        settling.regime = replace(settling.regime, multiplier=modulus)
+        stated.append(alone.steady_state(settling.scene, None, settling.stop).errors)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
 def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
-    way, seen = settle.run_until_settled(scene("sec2"), None, None), []
+    settling, seen = settle.run_until_settled(scene("sec2"), None, None), []
     real = relax.changes
-    monkeypatch.setattr(regime.Regime, "slowness", 0.99)
+    monkeypatch.setattr(regime.Regime, "contraction", 0.99)
     monkeypatch.setattr(relax, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
-    _, bound = relax.relax(way, 1e-6)
+    _, bound = relax.relax(settling, 1e-6)
     assert bound <= 0.3e-6
     assert bound == pytest.approx(99.0 * float(seen[-1][0]), rel=1e-12)
 

@@ -13,18 +13,18 @@ from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
 from granchain_core.steady.settle import run_until_settled
 from granchain_core.stop import Stop
 
-CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # PHYSICS, trap 8: irregular everywhere with κ = 0
+CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `rig` without flexures (docs/model.md)
 QUASI = scene("sec2").evolve(f=1640.0)
 
 
 def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int = 2) -> tuple[np.ndarray, np.ndarray]:
     """The `count` largest exponents per period and their standard errors, by the certified motion and its tangents."""
-    strobe = StroboscopicMap(shown, 1)
-    x = strobe.inner(strobe.engine.lowered.scaled(state))
+    stroboscopic_map = StroboscopicMap(shown, 1)
+    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(state))
     frame, _ = np.linalg.qr(np.random.default_rng(3).standard_normal((len(x), count)))
     growth = []
     for _ in range((blocks + 1) * block):
-        flow = strobe(x)
+        flow = stroboscopic_map(x)
         frame, triangle = np.linalg.qr(flow.derivative @ frame)
         x = flow.end
         growth.append(np.log(np.abs(np.diag(triangle))))
@@ -43,21 +43,21 @@ def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
 
 
 def test_a_chaotic_chain_has_the_exponent_of_its_tangent_flow() -> None:
-    way = run_until_settled(CHAOTIC, None, None)
-    assert way.regime.name == "chaotic"
-    exact, error = by_tangents(CHAOTIC, way.engine.state, 10, 12)
+    settling = run_until_settled(CHAOTIC, None, None)
+    assert settling.regime.name == "chaotic"
+    exact, error = by_tangents(CHAOTIC, settling.engine.state, 10, 12)
     assert exact[0] > 0.5
-    for mean, spread in by_shadow(CHAOTIC, way.engine.state):
+    for mean, spread in by_shadow(CHAOTIC, settling.engine.state):
         assert abs(mean - exact[0]) <= 3.0 * np.hypot(spread, error[0])
 
 
 def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> None:
-    way = run_until_settled(QUASI, None, None)
-    assert way.regime.name == "quasi-periodic"
-    exact, error = by_tangents(QUASI, way.engine.state, 10, 30)
+    settling = run_until_settled(QUASI, None, None)
+    assert settling.regime.name == "quasi-periodic"
+    exact, error = by_tangents(QUASI, settling.engine.state, 10, 30)
     # on a closed curve tangents turn into it within the first block; what is left of that dies as 1/periods
     assert abs(exact[0]) <= 3.0 * error[0] + 0.01 and exact[1] < -3.0 * error[1]
-    for mean, spread in by_shadow(QUASI, way.engine.state):
+    for mean, spread in by_shadow(QUASI, settling.engine.state):
         assert abs(mean - exact[0]) <= 3.0 * np.hypot(spread, error[0]) and abs(mean) < 0.01
 
 

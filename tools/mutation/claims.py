@@ -26,7 +26,7 @@ STEADY = (
            "a section that never comes back is called a closed curve", k.CLAIMS),
     Mutant("settled-error-without-distance", _PICTURES, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",
            "a settled picture states no error of its integration", k.SETTLED),
-    Mutant("settled-error-not-amplified", _PICTURES, "    integration /= 1.0 - way.regime.slowness\n", "",
+    Mutant("settled-error-not-amplified", _PICTURES, "    integration /= 1.0 - motion.regime.contraction\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
     Mutant("relaxed-by-change", "steady/relax.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
            "the certified orbit is left too early", k.CLAIMS_SETTLED),
@@ -54,7 +54,7 @@ STATED = (
            "the finer of two computations is the same one", k.HONESTY),
     Mutant("sample-index-without-phase", _RUN, "first = periods * samples + round(begin.phase * samples)", "first = periods * samples",
            "time and driver of a run from a given phase are those of phase 0", k.CONTINUATION),
-    Mutant("peaks-of-the-transient", _RUN, "    engine.forget_peaks()\n", "", "largest forces are those of the discarded periods too",
+    Mutant("peaks-of-the-transient", _RUN, "    engine.reset_peaks()\n", "", "largest forces are those of the discarded periods too",
            k.CLAIMS_RUN),
     Mutant("energy-residual-of-work", "result.py", "abs(work - lost - stored) / largest", "abs(work - lost) / largest",
            "the energy account does not count what is stored", k.ENERGY_PLAIN),
@@ -65,9 +65,8 @@ FAILING = (
            "the step after the one that failed is named", ("tests/hard/test_outcomes.py", "-k", "middle_of_a_long_call")),
     Mutant("failed-time-since-call", "integrate/engine.py", "Failure(status, self.elapsed + done, bead,", "Failure(status, done, bead,",
            "the time of a failure is counted from the present call", k.FAILURES_T),
-    Mutant("nan-of-velocity-unseen", "integrate/failure.py",
-           "np.isfinite(state[1 : row - 1]) & np.isfinite(state[row + 1 : 2 * row - 1])",
-           "np.isfinite(state[1 : row - 1])", "a NaN velocity is seen when it has reached a displacement, in another bead",
+    Mutant("nan-of-velocity-unseen", "kernels/samples.py", "if not (np.isfinite(y[i]) and np.isfinite(y[m + i])):",
+           "if not np.isfinite(y[i]):", "a NaN velocity is seen when it has reached a displacement, in another bead",
            k.FAILURES_W),
     Mutant("checkpoint-without-scale", "integrate/checkpoint.py", "engine.stepper.work.next_step[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",
            "engine.stepper.work.next_step[0] = kept.control[0]", "error control goes on with another unit after a restart", k.CHECKPOINTS),
@@ -92,11 +91,11 @@ OBSERVED = (
 )
 
 COMPILED = (
-    Mutant("fastmath", "kernels/jit.py", '{"fastmath": {"nsz", "arcp", "contract", "reassoc"}', '{"fastmath": True',
+    Mutant("fastmath", "kernels/jit.py", '{"fastmath": set(FAST_MATH)', '{"fastmath": True',
            "the compiler may take it that there is no NaN and no infinity", k.FASTMATH, optimised=True),
-    Mutant("fastmath-nnan", "kernels/jit.py", '{"nsz", "arcp", "contract", "reassoc"}', '{"nsz", "arcp", "contract", "reassoc", "nnan"}',
+    Mutant("fastmath-nnan", "kernels/jit.py", '("nsz", "arcp", "contract", "reassoc")', '("nsz", "arcp", "contract", "reassoc", "nnan")',
            "the compiler may take it that there is no NaN", k.FASTMATH, optimised=True),
-    Mutant("fastmath-ninf", "kernels/jit.py", '{"nsz", "arcp", "contract", "reassoc"}', '{"nsz", "arcp", "contract", "reassoc", "ninf"}',
+    Mutant("fastmath-ninf", "kernels/jit.py", '("nsz", "arcp", "contract", "reassoc")', '("nsz", "arcp", "contract", "reassoc", "ninf")',
            "the compiler may take it that there is no infinity", k.FASTMATH, optimised=True),
 )
 

@@ -34,7 +34,7 @@ CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follow
 CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
 CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cut")
 CUT_LAWS = ("tests/physics/test_energy.py", "-k", "account_closes and kuwabara-kono-cut")
-SLACK = ("tests/numerics/test_slack.py", "-k", "not linear")
+FORCE_FREE = ("tests/numerics/test_force_free.py", "-k", "not linear")
 CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.
@@ -82,7 +82,7 @@ STIFFEST = ("tests/integrate/test_failures.py", "-k", "stiffest")
 #: What is claimed of a motion.
 HONESTY = ("tests/numerics/test_honesty.py", "-k", "not curve")
 SAME_STEPS = ("tests/numerics/test_honesty.py", "-k", "same_steps")
-REGIMES = ("tests/steady/test_regimes.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
+REGIMES = ("tests/kernels/strobes/test_periodicity.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
 SETTLED = ("tests/steady/test_regimes.py", "-k", "section_2_from_rest")
 CLAIMS = ("tests/steady/test_claims.py", "-k", "not largest and not summed and not fixed_point and not relaxing")
 CLAIMS_TIME = ("tests/steady/test_claims.py", "-k", "counted_and_not_summed")

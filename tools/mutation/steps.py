@@ -7,7 +7,7 @@ from .mutant import Mutant
 
 _MOTION, _FIXED, _EVENTS = "kernels/equations/motion.py", "kernels/rk4/step.py", "kernels/rk4/contact_events.py"
 _CERTIFIED, _DOP853, _TABLEAU = "kernels/dop853/run.py", "kernels/dop853/step.py", "kernels/dop853/tableau.py"
-_BRACKET = "kernels/dop853/bracket.py"
+_BRACKET, _CUBIC = "kernels/dop853/bracket.py", "kernels/contact_cubic.py"
 _SAMPLING, _ENGINE = "kernels/rk4/run.py", "integrate/engine.py"
 
 MOTION = (
@@ -40,9 +40,9 @@ FIXED = (
            "the driver is ahead in the middle of a split step", k.SIMD_PLAIN),
     Mutant("give-back-work-sign", _FIXED, "y[y.size - 2] -= excess", "y[y.size - 2] += excess",
            "the driver's work keeps what was given back", k.STEP_EVENTS),
-    Mutant("hermite-slope", _EVENTS, "a = 2.0 * (d0 - d1) + s0 + s1", "a = 2.0 * (d0 - d1) + s0 - s1",
+    Mutant("hermite-slope", _CUBIC, "a = 2.0 * (d0 - d1) + s0 + s1", "a = 2.0 * (d0 - d1) + s0 - s1",
            "events inside a fixed step are in the wrong place", k.STEP_EVENTS, which=1, count=2),
-    Mutant("hermite-turn", _EVENTS, "a = 2.0 * (d0 - d1) + s0 + s1", "a = 2.0 * (d0 - d1) + s0 - s1",
+    Mutant("hermite-turn", _CUBIC, "a = 2.0 * (d0 - d1) + s0 + s1", "a = 2.0 * (d0 - d1) + s0 - s1",
            "a touch inside a fixed step is looked for in the wrong place", k.STEP_EVENTS, which=2, count=2),
     Mutant("simpson-wrong-side", _EVENTS, "1.0 - done if rate > 0.0 else done", "done if rate > 0.0 else 1.0 - done",
            "the excess is taken over the open part of the step", k.STEP_EVENTS),
@@ -54,11 +54,11 @@ FIXED = (
            "+= 0.0 * scale * primitive_excess(law, part)", "the path beside an event of Tsuji's law is off", k.STEP_EVENTS),
     Mutant("simpson-kuwabara-kono-power", _EVENTS, "primitive_power(law, speed) * h * primitive_power(law, h)",
            "primitive_power(law, speed) * h * h", "the path's excess has the wrong power of the step", k.STEP_EVENTS),
-    Mutant("fixed-step-over-touch", _EVENTS, "if away >= 0.0 or back <= 0.0:", "if away >= -1e300:",
+    Mutant("fixed-step-over-touch", _CUBIC, "if away >= 0.0 or back <= 0.0:", "if away >= -1e300:",
            "a touch inside a fixed step is found and then not split at", k.STEP_EVENTS),
     Mutant("jump-read-at-the-cubics-root", _EVENTS, "        if 0.0 < nearer < most:", "        if 0.0 < nearer < -most:",
            "a jump is read where the cubic has its root, not where the overlap vanishes", k.JUMPS_LOCATED),
-    Mutant("touching-beads-stay-open", _EVENTS, "if s0 > 0.0 and d1 > 0.0:", "if s0 > 1e300:",
+    Mutant("touching-beads-stay-open", _CUBIC, "if s0 > 0.0 and d1 > 0.0:", "if s0 > 1e300:",
            "beads that touch at rest are pushed together without an event", k.STEP_EVENTS),
     Mutant("later-event-first", _EVENTS, "if root < first:", "if root < 2.0:",
            "of several events in a step a later one is taken first", k.STEP_EVENTS),

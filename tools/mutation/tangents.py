@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _TIME, _STEP, _LANDING = "kernels/dop853/time_map.py", "kernels/dop853/flow_attempt.py", "kernels/dop853/flow_events.py"
-_FLOW, _TANGENT, _SALTATION = "kernels/dop853/flow.py", "kernels/equations/tangent.py", "kernels/saltation.py"
+_FLOW, _TANGENT, _SALTATION = "kernels/dop853/flow.py", "kernels/dop853/tangent.py", "kernels/saltation.py"
 _MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
 
 #: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.
@@ -44,8 +44,8 @@ FLOW = (
            "the flow's events are located to 1e-7", k.MONODROMY),
     Mutant("onset-of-last-period-kept", _FLOW, "onset -= period", "onset -= 0.0",
            "time behind an onset is counted from the wrong period", k.TWO_PERIODS),
-    Mutant("events-logged-in-their-period", _FLOW, "change(slots, path, tangent, contact, p * period + t)",
-           "change(slots, path, tangent, contact, t)", "the log's times begin anew each period", k.SAME_EVENTS),
+    Mutant("events-logged-in-their-period", _FLOW, "change(slots, contacts, tangent, contact, p * period + t)",
+           "change(slots, contacts, tangent, contact, t)", "the log's times begin anew each period", k.SAME_EVENTS),
     Mutant("onset-not-remembered", _FLOW, "                    onset = t\n", "                    onset = -np.inf\n",
            "a step behind an onset is taken in plain time, where nothing is smooth", k.MONODROMY),
 )
@@ -67,13 +67,13 @@ TANGENTS = (
            "assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()",
            "assert abs(np.linalg.det(wrong) / np.linalg.det(right.derivative) - 1.0) > 0.05",
            "a missing saltation is looked for in the determinant", k.ROUTES),
-    Mutant("tangent-stiffness", _TANGENT, "s = rate * 1.5 * slots", "s = rate * slots", "K √δ in place of (3/2) K √δ", k.COLUMNS),
-    Mutant("tangent-without-damping", _TANGENT, "g = rate * damping(slots.dissipation, d + 1e-300)", "g = 0.0 * d",
+    Mutant("tangent-stiffness", _TANGENT, "s = rate * elastic_slope(", "s = rate / 1.5 * elastic_slope(", "K √δ in place of (3/2) K √δ", k.COLUMNS),
+    Mutant("tangent-without-damping", _TANGENT, "g = rate * damping(slots.dissipation, d + TINY)", "g = 0.0 * d",
            "neighbours are not damped", k.COLUMNS),
     Mutant("trace-of-one-bead", _TANGENT, "(inverse_mass[c] + inverse_mass[c + 1])", "inverse_mass[c]",
            "∫ trace counts one of a contact's two beads", k.LIOUVILLE),
-    Mutant("tangent-without-last-contact", _TANGENT, "if path.closed[c] != 0 and c >= tangent.first_contact:",
-           "if path.closed[c] != 0 and tangent.first_contact <= c < tangent.gaps.shape[1] - 1:",
+    Mutant("tangent-without-last-contact", _TANGENT, "if contacts.closed[c] != 0 and c >= tangent.first_contact:",
+           "if contacts.closed[c] != 0 and tangent.first_contact <= c < tangent.gaps.shape[1] - 1:",
            "neighbours do not feel the wall", k.COLUMNS),
     Mutant("observer-held-by-the-driver", _TANGENT, "and c >= tangent.first_contact:", "and c >= 0:",
            "an observer's multipliers are those of its chain", k.OBSERVER_ORBIT),

@@ -41,7 +41,7 @@ IN_LANES = (
            "an unstable orbit that extrapolation led to is drawn as periodic", k.LANE_LOOKS),
     Mutant("lane-disturbance-always-decays", _LOOKS, "if last <= _LEFT * first:", "if last < 1e300:",
            "an orbit is called stable though the disturbance grew", k.LANE_LOOKS),
-    Mutant("lane-jump-not-proved", _LOOKS, "proved = n > 0 and change < state.unproved[lane]", "proved = True",
+    Mutant("lane-jump-not-proved", _LOOKS, "proved = n > 0 and change < state.change_before_extrapolation[lane]", "proved = True",
            "an extrapolation that led away is kept", k.LANE_LOOKS),
     Mutant("lane-shadow-not-pulled-back", _LANES, "* (start / now)", "* 1.0",
            "the exponent of lanes is that of a distance long since large", k.LYAPUNOV),
@@ -50,10 +50,10 @@ IN_LANES = (
 )
 
 IN_ROWS = (
-    Mutant("wide-weights", _WIDE, "x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + path", "x.u + sixth * (x.du + du4 + du2 + du3) + path",
+    Mutant("wide-weights", _WIDE, "x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + shift", "x.u + sixth * (x.du + du4 + du2 + du3) + shift",
            "RK4 of short chains with wrong weights", k.SIMD_PLAIN),
-    Mutant("wide-given-back-sign", _WIDE, "row.inverse_mass * (excess - from_left(blank(excess), excess))",
-           "row.inverse_mass * (from_left(blank(excess), excess) - excess)",
+    Mutant("wide-given-back-sign", _WIDE, "values.inverse_mass * (excess - from_left(blank(excess), excess))",
+           "values.inverse_mass * (from_left(blank(excess), excess) - excess)",
            "short chains are given once more what Simpson's rule gives too much", k.SIMD_PLAIN),
     Mutant("wide-damping-of-one-side", _WIDE, "damping_over_mass * (from_left(blank(shapes), shapes) - shapes)",
            "damping_over_mass * (blank(shapes) - shapes)", "a bead of a short chain is damped by one of its contacts", k.SIMD_PLAIN),
@@ -76,8 +76,8 @@ IN_ROWS = (
     Mutant("nan-hidden-in-lanes", _MATH, 'builder.select(builder.fcmp_ordered("<", args[0], least), least, args[0])',
            'builder.select(builder.fcmp_ordered(">", args[0], least), args[0], least)',
            "a NaN overlap in lanes is an open contact", k.VECTORS),
-    Mutant("nan-hidden-by-gate", _MATH, "return lambda overlap, value: 0.0 if overlap <= 0.0 else value",
-           "return lambda overlap, value: value if overlap > 0.0 else 0.0", "a NaN overlap has no damping", k.VECTORS),
+    Mutant("nan-hidden-by-gate", _MATH, "return 0.0 if overlap <= 0.0 else value",
+           "return value if overlap > 0.0 else 0.0", "a NaN overlap has no damping", k.VECTORS),
 )
 
 VECTORS = IN_LANES + IN_ROWS

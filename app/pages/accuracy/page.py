@@ -11,7 +11,7 @@ from panel.io import unlocked
 
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
-from granchain_core.kernels.simd.width import machine
+from granchain_core.kernels.width import machine
 from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
 from ...format import duration, short_error

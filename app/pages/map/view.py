@@ -9,7 +9,7 @@ from bokeh.embed import json_item
 
 from granchain_core.diagram import Attractor, Grid
 from granchain_core.orbits import response
-from granchain_core.steady.regime import modulus_words
+from granchain_core.regime import modulus_words
 
 from ...format import short_error
 from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models

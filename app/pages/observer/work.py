@@ -10,7 +10,7 @@ from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
 from granchain_core.observe.drift import observer_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import (
-    IN_STEP,
+    SYNCHRONISED,
     linear_window,
     observer_start,
     rates,
@@ -129,7 +129,7 @@ class ObserverRun:
         if not self.strobes:
             self.strobes.append(difference[0])
         self.strobes = [*self.strobes[1 - _REMEMBERED :], difference[-1]]
-        self.in_step = bool(np.abs(difference).max() < IN_STEP)
+        self.in_step = bool(np.abs(difference).max() < SYNCHRONISED)
         scales, number = engine.lowered.scales, self.number
         self.number += 1
         u, v = rows.displacement * scales.length, rows.velocity * scales.velocity

@@ -14,8 +14,9 @@ from granchain_core import Settled
 from granchain_core.integrate.methods import LIVE
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
+from granchain_core.regime import modulus_words
 from granchain_core.steady.poincare import Section
-from granchain_core.steady.regime import LONGEST_PERIOD, modulus_words
+from granchain_core.steady.regime import LONGEST_PERIOD
 
 from ...format import duration, prefixed, short_error
 from ...parts.component import text

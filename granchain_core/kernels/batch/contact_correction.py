@@ -3,8 +3,8 @@
 A contact is closed for a part r of the step, at its beginning or at its end, and its overlap grows or falls as v s.
 Simpson's rule integrates its force and its damping through the kink; the quadrature errors are
 
-    impulse  K v^{3/2} h^{5/2} (S_{3/2}(r) + E(r)),   path  c v^p h^{p+1} S_p(r)   for G = c δ^p, p = 1 + a
-    S_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1),   E: the same of s^{3/2} over the whole step on the closed side
+    impulse  K v^{3/2} h^{5/2} (B_{3/2}(r) + E(r)),   displacement  c v^p h^{p+1} B_p(r)   for G = c δ^p, p = 1 + a
+    B_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1),   E: that of s^{3/2} over the whole step on the closed side
 
 and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/model.md).
 """
@@ -14,15 +14,15 @@ from __future__ import annotations
 from ..effects.contact import three_halves
 from ..effects.dissipation import LAWS, exponent, primitive_factor, primitive_power
 from ..effects.preload import batch_overlap
-from ..effects.unequal import over_mass, times_stiffness
 from ..jit import by_slot, inline_llvm
 from ..simd.functions import clip, gate, larger
 from ..simd.vector import blank, load_batch, positive_mask, store
+from .unequal import over_mass, times_stiffness
 
 
 @inline_llvm
 def momentum_error(r, power, half_power):
-    """S_{3/2}(r) + E(r) from r, r^{3/2} and [r − 1/2]_+^{3/2}."""
+    """B_{3/2}(r) + E(r) from r, r^{3/2} and [r − 1/2]_+^{3/2}."""
     inside = (power + 4.0 * half_power) * (1.0 / 6.0) - 0.4 * r * power
     one = r + 1.0
     far = three_halves(one)
@@ -32,7 +32,7 @@ def momentum_error(r, power, half_power):
 
 @by_slot
 def displacement_error(law, r, half, speed, h):
-    """c v^p h^{p+1} S_p(r) in all lanes; `half` is [r − 1/2]_+. Absent: nothing."""
+    """c v^p h^{p+1} B_p(r) in all lanes; `half` is [r − 1/2]_+. Absent: nothing."""
     return None
 
 
@@ -44,13 +44,13 @@ def _(law, r, half, speed, h):
 
 
 @by_slot
-def correct_displacement(law, values, y, c, changed, path):
+def correct_displacement(law, values, y, c, changed, shift):
     """Subtract the displacement error from both sides of contact c. Absent: there is none."""
 
 
 @correct_displacement.of(*LAWS)
-def _(law, values, y, c, changed, path):
-    correct_state(values, y, c, 0, gate(changed, path))
+def _(law, values, y, c, changed, shift):
+    correct_state(values, y, c, 0, gate(changed, shift))
 
 
 @inline_llvm
@@ -81,8 +81,8 @@ def correct_contacts(values, y, gaps, h, u0):
             power, half_power = three_halves(r), three_halves(half)
             impulse = h * three_halves(speed * h) * momentum_error(r, power, half_power)
             impulse = times_stiffness(values.unequal, values.wall, c, values.last, impulse)
-            path = displacement_error(values.law, r, half, speed, h)
+            shift = displacement_error(values.law, r, half, speed, h)
             correct_state(values, y, c, m, gate(changed, impulse))
-            correct_displacement(values.law, values, y, c, changed, path)
+            correct_displacement(values.law, values, y, c, changed, shift)
             right = load_batch(y, c + 1)
         left = right

@@ -28,7 +28,7 @@ from ..strobes.periodicity import (
 )
 
 #: Fewest strobes kept of each member.
-REMEMBERED = 432
+STROBES_PER_LANE = 432
 #: Strobes on which its regime is decided.
 SEEN = 4 * LONGEST_PERIOD + 1
 #: Fewest orbits still to run that justify an extrapolation.
@@ -38,7 +38,7 @@ _BETWEEN = 8
 #: How far an extrapolation may go, in units of change/(1 − rate), the distance that the decay predicts.
 FARTHEST_EXTRAPOLATION = 3.0
 #: Part of the coarse orbit's error that may be left in the finer run.
-FORGET = 0.02
+COARSE_ERROR_LEFT = 0.02
 #: Extrapolations for that at most.
 _MOST_ROUNDS = 6
 #: Disturbance that tests an extrapolated orbit, relative to the motion.
@@ -90,7 +90,7 @@ def place_member(state, lane, where):
 
 
 @internal
-def follow(state, lane, n, rate, change):
+def extrapolate_lane(state, lane, n, rate, change):
     """Put a lane into the limit of its last strobes, n periods apart; returns whether that was within reach."""
     kept = state.kept[lane]
     if kept < ORBITS * n + 1 or not 0.0 < rate < 1.0:
@@ -114,34 +114,34 @@ def check_coarse(state, lane):
     period, rate, distance, n, its_rate, change = find(
         state.strobes[lane, max(0, kept - SEEN) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
         state.slowest[lane], state.scale, state.change)
-    state.seen[lane, 0], state.seen[lane, 1], state.seen[lane, 2] = period, rate, distance
+    state.last_check[lane, 0], state.last_check[lane, 1], state.last_check[lane, 2] = period, rate, distance
     if period > 0 and state.slowest[lane] > 0.0:
         disturb(state, lane, period)
         return False
     if period > 0:
         return True
-    if state.unproved[lane] > 0.0:
-        proved = n > 0 and change < state.unproved[lane]
-        state.unproved[lane] = 0.0
+    if state.change_before_extrapolation[lane] > 0.0:
+        proved = n > 0 and change < state.change_before_extrapolation[lane]
+        state.change_before_extrapolation[lane] = 0.0
         if not proved:
             place_member(state, lane, state.before[lane])
-            state.wait[lane] *= 2
-            state.ready[lane] = periods + state.wait[lane]
+            state.pause[lane] *= 2
+            state.extrapolate_from[lane] = periods + state.pause[lane]
             return False
     left = change * its_rate / (1.0 - its_rate) if n > 0 else 0.0
-    if periods < state.ready[lane] or left <= SETTLED_DISTANCE:
+    if periods < state.extrapolate_from[lane] or left <= SETTLED_DISTANCE:
         return False
     if log(SETTLED_DISTANCE / left) > _TOO_LONG * log(its_rate):
         return False  # it settles sooner without extrapolation
     copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
     copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
-    if follow(state, lane, n, its_rate, change):
-        state.unproved[lane] = change
+    if extrapolate_lane(state, lane, n, its_rate, change):
+        state.change_before_extrapolation[lane] = change
         state.slowest[lane] = min(_SLOWEST, max(state.slowest[lane], its_rate ** (1.0 / n)))
         state.earliest[lane] = periods + window_of(n) + n + 1
-        state.ready[lane] = periods + ORBITS * n
+        state.extrapolate_from[lane] = periods + ORBITS * n
     else:
-        state.ready[lane] = periods + max(_BETWEEN, kept // 4)
+        state.extrapolate_from[lane] = periods + max(_BETWEEN, kept // 4)
     return False
 
 
@@ -154,7 +154,7 @@ def disturb(state, lane, period):
         for i in range(m):
             state.limit[q, i] = state.before[lane, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
     for q in range(3):
-        state.fine[lane, FORCES + q] = largest_top(state, lane, period, q)
+        state.fine_record[lane, FORCES + q] = largest_top(state, lane, period, q)
     place_member(state, lane, state.limit)
     state.testing[lane] = period
     state.earliest[lane] = state.periods[lane] + _TEST_ORBITS * period
@@ -180,10 +180,10 @@ def decayed(state, lane):
     if last <= _LEFT * first:
         place_member(state, lane, state.before[lane])
         rate = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
-        state.seen[lane, 1] = max(state.seen[lane, 1], min(rate, _NEARLY_ONE))
+        state.last_check[lane, 1] = max(state.last_check[lane, 1], min(rate, _NEARLY_ONE))
         return True
-    state.slowest[lane], state.unproved[lane] = 0.0, 0.0
-    state.ready[lane] = state.periods[lane] + _NO_MORE
+    state.slowest[lane], state.change_before_extrapolation[lane] = 0.0, 0.0
+    state.extrapolate_from[lane] = state.periods[lane] + _NO_MORE
     return False
 
 
@@ -192,7 +192,7 @@ def largest_top(state, lane, n, q):
     """The largest force of kind q in a lane's last n periods."""
     largest = 0.0
     for p in range(n):
-        largest = max(largest, state.tops[lane, (state.periods[lane] - p) % REMEMBERED, q])
+        largest = max(largest, state.tops[lane, (state.periods[lane] - p) % STROBES_PER_LANE, q])
     return largest
 
 
@@ -202,14 +202,14 @@ def check_fine(state, lane):
 
     If changes are not smaller after an extrapolation, it is undone and the member continues without.
     """
-    fine, kept, seen = state.fine[lane], state.kept[lane], state.seen[lane]
+    fine, kept, seen = state.fine_record[lane], state.kept[lane], state.last_check[lane]
     n, rate = int(fine[PERIOD]), fine[RATE]
     record = state.strobes[lane, kept - 1 - n : kept]
     largest_of(record, state.scale)
     change = change_between(record, state.scale, n, 0)
     seen[0], seen[1], seen[2] = n, rate, change * rate / (1.0 - rate)
-    proved = change < state.unproved[lane] or state.unproved[lane] == 0.0
-    state.unproved[lane] = 0.0
+    proved = change < state.change_before_extrapolation[lane] or state.change_before_extrapolation[lane] == 0.0
+    state.change_before_extrapolation[lane] = 0.0
     if not proved:
         place_member(state, lane, state.before[lane])
         state.earliest[lane], fine[ROUNDS] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND]), _MOST_ROUNDS
@@ -218,13 +218,13 @@ def check_fine(state, lane):
     for q in range(1, 3):
         largest = largest_top(state, lane, n, q)
         moved = max(moved, abs(largest - fine[FORCES + q]) / largest if largest > 0.0 else 0.0)
-    if seen[2] <= max(SETTLED_DISTANCE, FORGET * moved) or fine[ROUNDS] >= _MOST_ROUNDS:
+    if seen[2] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved) or fine[ROUNDS] >= _MOST_ROUNDS:
         return True
     fine[ROUNDS] += 1.0
     copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
     copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
-    if follow(state, lane, n, rate, change):
-        state.unproved[lane] = change
+    if extrapolate_lane(state, lane, n, rate, change):
+        state.change_before_extrapolation[lane] = change
     state.earliest[lane] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND])
     return False
 
@@ -235,7 +235,7 @@ def end_period(state, lane):
     state.periods[lane] += 1
     periods = state.periods[lane]
     finite = keep_member_strobe(state, lane)
-    tops = state.tops[lane, periods % REMEMBERED]
+    tops = state.tops[lane, periods % STROBES_PER_LANE]
     for q in range(3):
         tops[q] = state.peaks[ROWS * q, lane]
         state.peaks[ROWS * q, lane] = 0.0
@@ -252,6 +252,6 @@ def end_period(state, lane):
         if state.testing[lane] > 0:
             if decayed(state, lane):
                 return True
-        elif check_fine(state, lane) if state.fine[lane, PERIOD] > 0.0 else check_coarse(state, lane):
+        elif check_fine(state, lane) if state.fine_record[lane, PERIOD] > 0.0 else check_coarse(state, lane):
             return True
-    return periods >= state.look[lane] and state.testing[lane] == 0
+    return periods >= state.return_at[lane] and state.testing[lane] == 0

@@ -18,8 +18,8 @@ from ..effects.preload import batch_overlap
 from ..jit import inline_numba, kernel
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import load_batch, store
-from ..simd.width import BATCH_LANES
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
+from ..width import BATCH_LANES
 from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_batch_ends
@@ -50,18 +50,19 @@ class BatchState(NamedTuple):
     phase (2, L)             sin and cos of the drive phase
     peaks (17, L)            largest forces
     steps, left (L,)         steps in a period, and those left of it
-    periods, look (L,)       periods run, and the period at which the kernel returns at the latest
+    periods, return_at (L,)  periods run, and the period at which the kernel returns at the latest
     earliest (L,)            next period at which the strobes are checked
-    ready, wait (L,)         period from which a transient may be extrapolated, and the pause after a failed attempt
+    extrapolate_from (L,)    period from which a transient may be extrapolated
+    pause (L,)               periods without an attempt after one that failed
     kept (L,)                number of strobes
     slowest (L,)             slowest decay known
-    unproved (L,)            change before an extrapolation that is not yet confirmed, else 0
+    change_before_extrapolation (L,)   that before an extrapolation that is not yet confirmed, else 0
     testing (L,)             period of an orbit that is being disturbed, else 0
     before (L, 2, N+2)       state before the last extrapolation
-    fine (L, 7)              record of a fine member (period_end.py)
+    fine_record (L, 7)       record of a fine member (period_end.py)
     strobes (L, 2R, 2, N+2)  stroboscopic states
     tops (L, R, 5)           largest forces and jumps of the last periods, a ring
-    seen (L, 3)              result of the last check: period, rate, distance
+    last_check (L, 3)        result of the last check: period, rate, distance
 
     The others are workspaces of period_end.py.
     """
@@ -74,19 +75,19 @@ class BatchState(NamedTuple):
     steps: np.ndarray
     left: np.ndarray
     periods: np.ndarray
-    look: np.ndarray
+    return_at: np.ndarray
     earliest: np.ndarray
-    ready: np.ndarray
-    wait: np.ndarray
+    extrapolate_from: np.ndarray
+    pause: np.ndarray
     kept: np.ndarray
     slowest: np.ndarray
-    unproved: np.ndarray
+    change_before_extrapolation: np.ndarray
     testing: np.ndarray
     before: np.ndarray
-    fine: np.ndarray
+    fine_record: np.ndarray
     strobes: np.ndarray
     tops: np.ndarray
-    seen: np.ndarray
+    last_check: np.ndarray
     scale: np.ndarray
     change: np.ndarray
     limit: np.ndarray
@@ -153,7 +154,7 @@ def renormalise(state, m, start, growth, lane):
 def run_pairs(lanes, state, start, growth, stop):
     """Run lanes in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
 
-    growth (4, P) holds the logarithm of each period's growth; only pairs whose `look` is P count,
+    growth (4, P) holds the logarithm of each period's growth; only pairs whose `return_at` is P count,
     the others are not in use.
     """
     m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
@@ -164,7 +165,7 @@ def run_pairs(lanes, state, start, growth, stop):
         batch_steps(lanes, state, count)
         busy = False
         for lane in range(0, BATCH_LANES, 2):
-            counted = state.periods[lane] < periods and state.look[lane] == periods
+            counted = state.periods[lane] < periods and state.return_at[lane] == periods
             for one in range(lane, lane + 2):
                 state.left[one] -= count
                 if state.left[one] == 0:

@@ -8,12 +8,12 @@ from ..effects.contact import positive_part
 from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, damping, shape
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
-from ..effects.unequal import over_mass, times_stiffness
 from ..forces.crossings import Approach, brief_touch, closing_rate
 from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_lanes
 from ..jit import by_slot, inline_llvm
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
 from ..simd.vector import blank, load_batch, positive_mask, store
+from .unequal import over_mass, times_stiffness
 
 
 class Values(NamedTuple):

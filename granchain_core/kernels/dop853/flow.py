@@ -10,12 +10,12 @@ import numpy as np
 
 from ..effects.preload import overlap
 from ..equations.motion import copy
-from ..equations.tangent import Tangent, carry
 from ..jit import by_slot, internal, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
 from .flow_events import flow_step
 from .step import evaluate, new_scale
+from .tangent import Tangent, carry
 from .time_map import time_at
 
 #: Most steps in one drive period.
@@ -33,21 +33,21 @@ def _(tangent, slots, c, closes):
 
 
 @internal
-def begin(slots, y, path):
+def begin(slots, y, contacts):
     """Which contacts are closed at the start."""
-    for c in range(path.closed.size):
-        path.closed[c] = 1 if overlap(slots.preload, y, c) > 0.0 else 0
+    for c in range(contacts.closed.size):
+        contacts.closed[c] = 1 if overlap(slots.preload, y, c) > 0.0 else 0
 
 
 @internal
-def change(slots, path, tangent, c, t):
+def change(slots, contacts, tangent, c, t):
     """Change contact c at time t; returns whether it closed."""
-    closes = path.closed[c] == 0
-    path.closed[c] = 1 if closes else 0
+    closes = contacts.closed[c] == 0
+    contacts.closed[c] = 1 if closes else 0
     jump(tangent, slots, c, closes)
-    row = path.logged[0]
-    path.log[row, 0], path.log[row, 1] = c + 1.0 if closes else -c - 1.0, t
-    path.logged[0] = row + 1
+    row = contacts.logged[0]
+    contacts.log[row, 0], contacts.log[row, 1] = c + 1.0 if closes else -c - 1.0, t
+    contacts.logged[0] = row + 1
     return closes
 
 
@@ -57,11 +57,11 @@ def run_flow(method, course, periods, counts, stop):
 
     Returns (status, periods done, ∫ trace); the log's times count from the first period's start.
     """
-    trajectory, path, tangent = course
+    trajectory, contacts, tangent = course
     slots, drive, y, work = trajectory
     m, period, trace, onset = slots.chain.inverse_mass.size, drive.period, 0.0, -np.inf
-    begin(slots, y, path)
-    path.logged[0] = 0
+    begin(slots, y, contacts)
+    contacts.logged[0] = 0
     for p in range(periods):
         t, steps = 0.0, 0
         while t < period:
@@ -70,21 +70,21 @@ def run_flow(method, course, periods, counts, stop):
                 return CANCELLED, p, trace
             if steps > _MOST_STEPS:
                 return TOO_MANY_STEPS, p, trace
-            evaluate(slots, drive.beta, t, y, path.first, work.forces)
+            evaluate(slots, drive.beta, t, y, contacts.first, work.forces)
             status, time, h, contact = flow_step(method, course, t, onset, counts)
             if status != DONE:
                 return status, p, trace
             if h > 0.0:
-                trace += carry(tangent, slots, time, h, path)
+                trace += carry(tangent, slots, time, h, contacts)
                 copy(work.end, y)
                 new_scale(y, work, m)
                 end = time_at(time, h)
                 t = period if period - end < 1e-14 * period else end
                 counts[STEPS] += 1
             if contact >= 0:
-                if path.logged[0] >= path.log.shape[0]:
+                if contacts.logged[0] >= contacts.log.shape[0]:
                     return CHATTER, p, trace
-                if change(slots, path, tangent, contact, p * period + t):
+                if change(slots, contacts, tangent, contact, p * period + t):
                     onset = t
                 counts[EVENTS] += 1
         onset -= period

@@ -28,11 +28,11 @@ from .step import (
     shrunk,
     turning_point,
 )
-from .tableau import ALL_STAGES, STAGES, C
+from .tableau import ALL_STAGES, DENSE_EVALUATIONS, STAGES, C
 from .time_map import Time, rate_at, slope_in_x, time_at
 
 
-class Path(NamedTuple):
+class ContactStatus(NamedTuple):
     """Beside the workspace: slope in t at the step's start (M,), and which contacts are closed (N+1,).
 
     `log` (events, 2) has contact + 1 with the sign of onset or release and the time of each event, `logged` (1,) their
@@ -49,7 +49,7 @@ class Course(NamedTuple):
     """A trajectory that is followed from contact event to contact event, with its tangents or None."""
 
     trajectory: Trajectory
-    path: Path
+    contacts: ContactStatus
     tangent: Any
 
 
@@ -68,7 +68,7 @@ def _(step, x):
 
 @by_slot
 def keep_gaps(tangent, slots, state, slope, stage):
-    """Keep what tangents need of one stage, its overlaps; `slope` has its velocities. Absent: nobody needs them."""
+    """Keep what tangents need of one stage, its overlaps; `slope` has its velocities. Absent: there are no tangents."""
 
 
 @internal
@@ -77,12 +77,12 @@ def attempt_in_time(method, course, time, h):
 
     Returns the error over the tolerance.
     """
-    trajectory, path, tangent = course
+    trajectory, contacts, tangent = course
     slots, drive, y, work = trajectory
     rate = rate_at(time, 0.0)
     for i in range(y.size):
-        work.k[0, i] = rate * path.first[i]
-    keep_gaps(tangent, slots, y, path.first, 0)
+        work.k[0, i] = rate * contacts.first[i]
+    keep_gaps(tangent, slots, y, contacts.first, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, work.k, s, work.end)
         slope_in_x(slots, drive.beta, time, C[s] * h, work.end, s, work)
@@ -121,23 +121,23 @@ def prepare_dense_in_time(step):
 @inline_numba
 def first_change(course, time, h, but, counts):
     """(contact, fraction) of the first change inside the step of any contact but one; (−1, 2) if there is none."""
-    trajectory, path, _ = course
+    trajectory, contacts, _ = course
     slots, _, y, work = trajectory
     step, contact, first, ready = FlowStep(trajectory, time, h), -1, 2.0, False
     dt = time_at(time, h) - time.start
-    for c in range(path.closed.size):
+    for c in range(contacts.closed.size):
         if c == but:
             continue
-        was = path.closed[c] != 0
+        was = contacts.closed[c] != 0
         sign = -1.0 if was else 1.0  # the change looked for makes sign·δ positive
         d0, d1 = overlap(slots.preload, y, c), overlap(slots.preload, work.end, c)
-        s0, s1 = dt * (path.first[c] - path.first[c + 1]), dt * (work.slope[c] - work.slope[c + 1])
+        s0, s1 = dt * (contacts.first[c] - contacts.first[c + 1]), dt * (work.slope[c] - work.slope[c + 1])
         crossed = was != (d1 > 0.0)
         if not (crossed or may_turn(d0, s0, d1, s1, sign)):
             continue
         if not ready:
             prepare_dense_in_time(step)
-            counts[EVALUATIONS] += 4
+            counts[EVALUATIONS] += DENSE_EVALUATIONS + 1
             ready = True
         pressed, low, high = Overlap(c, sign), 0.0, 1.0
         if not crossed:

@@ -28,12 +28,12 @@ _PART = 0.5
 
 
 @inline_numba
-def next_release(slots, y, path):
+def next_release(slots, y, contacts):
     """(contact, time left) of the nearest release at present speeds, (−1, ∞) if no contact opens."""
     contact, first = -1, np.inf
-    for c in range(path.closed.size):
-        if path.closed[c] != 0:
-            speed = path.first[c] - path.first[c + 1]
+    for c in range(contacts.closed.size):
+        if contacts.closed[c] != 0:
+            speed = contacts.first[c] - contacts.first[c + 1]
             d = overlap(slots.preload, y, c)
             if speed < 0.0 and d > 0.0 and -d / speed < first:
                 contact, first = c, -d / speed
@@ -109,11 +109,11 @@ def flow_step(method, course, t, onset, counts):
     Returns (status, time, size, contact); a size of 0 with a contact is a change at t itself.
     work.next_step[0] is the next step to try, in t.
     """
-    trajectory, path, _ = course
+    trajectory, contacts, _ = course
     slots, drive, y, work = trajectory
     next_step, limit = work.next_step, drive.period
     dt = min(next_step[0], method.largest_step, limit - t)
-    target, wait = next_release(slots, y, path)
+    target, wait = next_release(slots, y, contacts)
     goal = t + wait
     aiming, lost = target >= 0 and wait < _AIM * dt and t > onset, False
     usual = time_from(AFTER if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
@@ -138,7 +138,7 @@ def flow_step(method, course, t, onset, counts):
             return DONE, time, h, landed
         if x * h == 0.0:
             return DONE, time, 0.0, contact
-        if path.closed[contact] != 0 and not lost:
+        if contacts.closed[contact] != 0 and not lost:
             if t > onset:
                 aiming, target, goal = True, contact, time_at(time, x * h)
             else:

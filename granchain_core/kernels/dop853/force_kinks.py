@@ -14,13 +14,14 @@ from ..effects.balance import add_to_account, ends_of
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, power
 from ..effects.preload import overlap
-from ..effects.tension import TensionCut, slacken
+from ..effects.tension import TensionCut, hold_force_free
 from ..equations.motion import write_w
 from ..jit import by_slot
 from ..simd.functions import gate, root
 from ..status import EVALUATIONS
 from .bracket import Bracket, root_inside, value_at
-from .step import STAGES, evaluate, interpolate, prepare_dense
+from .step import evaluate, interpolate, prepare_dense
+from .tableau import DENSE_EVALUATIONS, STAGES
 
 #: A kink nearer to an end of the step than this changes the motion by less than rounding: by its square.
 _NEAR = 1e-8
@@ -60,17 +61,17 @@ def _(quantity, step, x):
 
 @by_slot
 def enter_force_free(tension, trajectory, t):
-    """Mark the contacts that are slack at the start of a step and evaluate the slope anew. Absent: none is."""
+    """Mark the contacts that are force-free at the start of a step and evaluate the slope anew. Absent: none is."""
 
 
 @enter_force_free.of(TensionCut)
 def _(tension, trajectory, t):
     slots, drive, y, work = trajectory
     found = False
-    for c in range(tension.slack.size):
+    for c in range(tension.force_free.size):
         d, rate = overlap(slots.preload, y, c), work.k[0, c] - work.k[0, c + 1]
         if d > 0.0 and scaled_force(slots.dissipation, slots.chain.stiffness[c], d, rate) < -_STILL * work.scale[1]:
-            slacken(tension, slots, y, c)
+            hold_force_free(tension, slots, y, c)
             found = True
     if found:
         evaluate(slots, drive.beta, t, y, work.k[0], work.forces)
@@ -78,9 +79,9 @@ def _(tension, trajectory, t):
 
 @by_slot
 def leave_force_free(tension, trajectory):
-    """End a step's slack contacts: velocities stay, w and the account use the law's own G again.
+    """End a step's force-free contacts: velocities stay, w and the account use the law's own G again.
 
-    Returns whether anything changed, and the slope with it. Absent: no contact is slack.
+    Returns whether anything changed, and the slope with it. Absent: no contact is force-free.
     """
     return False
 
@@ -89,12 +90,12 @@ def leave_force_free(tension, trajectory):
 def _(tension, trajectory):
     slots, _, y, work = trajectory
     dy, found = work.k[0], False
-    for c in range(tension.slack.size):
-        found = found or tension.slack[c] != 0
+    for c in range(tension.force_free.size):
+        found = found or tension.force_free[c] != 0
     if found:
         work_done, lost = ends_of(slots.balance, slots, y, dy)
-        for c in range(tension.slack.size):
-            tension.slack[c] = 0
+        for c in range(tension.force_free.size):
+            tension.force_free[c] = 0
         write_w(slots, y, dy, work.forces)
         own_work, own_lost = ends_of(slots.balance, slots, y, dy)
         add_to_account(slots.balance, y, work_done - own_work, lost - own_lost)
@@ -120,20 +121,20 @@ def _(tension, step, until, counts, again):
         d0 = overlap(slots.preload, y, c)
         if not d0 > 0.0:
             continue
-        slack, stiffness = tension.slack[c] != 0, slots.chain.stiffness[c]
+        free, stiffness = tension.force_free[c] != 0, slots.chain.stiffness[c]
         d1 = positive_part(overlap(slots.preload, work.end, c))
         f0 = scaled_force(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
         f1 = scaled_force(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
-        if max(abs(f0), abs(f1)) < still or (until == 1.0 and slack != (f1 > 0.0)):
+        if max(abs(f0), abs(f1)) < still or (until == 1.0 and free != (f1 > 0.0)):
             continue
         if not ready:
             prepare_dense(step)
-            counts[EVALUATIONS] += 3
+            counts[EVALUATIONS] += DENSE_EVALUATIONS
             ready = True
         force = ScaledForce(c, counts)
         if until < 1.0:
             f1 = value_at(force, step, until)
-            if abs(f1) < still or slack != (f1 > 0.0):
+            if abs(f1) < still or free != (f1 > 0.0):
                 continue
         x = 0.0
         if f0 * f1 < 0.0:  # else F is rounding at the start
@@ -142,10 +143,10 @@ def _(tension, step, until, counts, again):
             if x < first and x * step.h < until * step.h - _NEAR:
                 first = x
         elif not again:
-            if slack:
-                tension.slack[c] = 0
+            if free:
+                tension.force_free[c] = 0
             else:
-                slacken(tension, slots, y, c)
+                hold_force_free(tension, slots, y, c)
             turned = True
     if turned:
         evaluate(slots, drive.beta, step.t, y, k[0], work.forces)

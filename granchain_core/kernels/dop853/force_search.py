@@ -12,24 +12,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..effects.contact import elastic_force, positive_part
+from ..effects.contact import elastic_force, elastic_slope, positive_part
 from ..effects.dissipation import damping
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import OUTPUT
 from ..jit import internal
-from ..simd.functions import root
 from ..status import EVALUATIONS
 from .bracket import top_inside, value_at
 from .step import evaluate, interpolate, prepare_dense
-from .tableau import STAGES
+from .tableau import DENSE_EVALUATIONS, STAGES
 
 #: Golden sections around a maximum of a force; each shrinks the bracket by 0.618 and, since a maximum is flat, its
 #: error by 0.382.
 _SECTIONS = 24
 #: A step whose ends are below this part of the largest force so far is not searched.
-_FAINT = 0.3
+_SEARCHED = 0.3
 #: A maximum is not searched if the cubic through values and slopes at both ends puts it below this part of that force.
 _WORTH = 0.98
 
@@ -46,10 +45,10 @@ def forces_of(slots, y, dy):
     """Input, output and elastic output force at state y, velocities in dy."""
     last = slots.chain.stiffness.size - 1
     d0, d1 = positive_part(overlap(slots.preload, y, 0)), positive_part(overlap(slots.preload, y, last))
-    pushed = elastic_force(slots.chain.stiffness[0], d0) + damping(slots.dissipation, d0) * (dy[0] - dy[1])
+    input_force = elastic_force(slots.chain.stiffness[0], d0) + damping(slots.dissipation, d0) * (dy[0] - dy[1])
     elastic = elastic_force(slots.chain.stiffness[last], d1)
-    passed = elastic + damping(slots.dissipation, d1) * (dy[last] - dy[last + 1])
-    return cut_at_zero(slots.tension, pushed), cut_at_zero(slots.tension, passed), elastic
+    output_force = elastic + damping(slots.dissipation, d1) * (dy[last] - dy[last + 1])
+    return cut_at_zero(slots.tension, input_force), cut_at_zero(slots.tension, output_force), elastic
 
 
 @internal
@@ -84,7 +83,7 @@ def slopes_of(slots, y, dy, work):
     last = slots.chain.stiffness.size - 1
     keep_end_forces(slots, y, dy, work.forces.e)
     e, d = work.forces.e, positive_part(overlap(slots.preload, y, last))
-    elastic = 1.5 * slots.chain.stiffness[last] * root(d) * (dy[last] - dy[last + 1])
+    elastic = elastic_slope(slots.chain.stiffness[last], d) * (dy[last] - dy[last + 1])
     return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
 
 
@@ -109,7 +108,7 @@ def follow_step(step, ready, peaks, counts):
     bright = False
     for q in range(3):
         peaks[q * OUTPUT] = max(peaks[q * OUTPUT], start[q], end[q])
-        bright = bright or max(start[q], end[q]) > _FAINT * peaks[q * OUTPUT]
+        bright = bright or max(start[q], end[q]) > _SEARCHED * peaks[q * OUTPUT]
     if not bright:
         return ready
     rises, falls = slopes_of(slots, y, work.k[0], work), slopes_of(slots, work.end, work.k[STAGES], work)
@@ -120,7 +119,7 @@ def follow_step(step, ready, peaks, counts):
         return ready
     if not ready:
         prepare_dense(step)
-        counts[EVALUATIONS] += 3
+        counts[EVALUATIONS] += DENSE_EVALUATIONS
     middle = forces_in_step(step, 0.5)
     counts[EVALUATIONS] += 1
     for q in range(3):

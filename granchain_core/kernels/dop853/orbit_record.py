@@ -64,6 +64,8 @@ def record_orbit(method, trajectory, periods, record, counts, stop):
     for p in range(periods):
         t = 0.0
         while t < period:
+            if stop[0] != 0:
+                return CANCELLED, p, row
             status, h, _ = certified_step(method, trajectory, t, period, counts)
             if status != DONE:
                 return status, p, row
@@ -78,6 +80,4 @@ def record_orbit(method, trajectory, periods, record, counts, stop):
         evaluate(slots, drive.beta, 0.0, y, work.k[0], work.forces)
         if first_not_finite(y, m) != 0:
             return NOT_FINITE, p, row
-        if stop[0] != 0:
-            return CANCELLED, p, row
     return (DONE if row <= record.turns.shape[0] else FULL), periods, row

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..effects.balance import add_to_account, slack_loss
+from ..effects.balance import add_to_account, force_free_loss
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut
 from ..equations.motion import copy
@@ -34,7 +34,6 @@ from .bracket import may_turn, value_at
 from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
 from .step import (
-    STAGES,
     Overlap,
     Step,
     attempt,
@@ -47,6 +46,7 @@ from .step import (
     shrunk,
     turning_point,
 )
+from .tableau import DENSE_EVALUATIONS, STAGES
 
 #: Target overlap just past an event, in units of the largest displacement: a few roundings.
 _BEHIND = 1e-15
@@ -94,7 +94,7 @@ def first_crossing(step, counts):
             continue
         if not dense_ready:
             prepare_dense(step)
-            counts[EVALUATIONS] += 3
+            counts[EVALUATIONS] += DENSE_EVALUATIONS
             dense_ready = True
         pressed, high = Overlap(c, sign), 1.0
         if turns:
@@ -218,15 +218,15 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
         if point % every == 0:
             if not ready:
                 prepare_dense(step)
-                out.counts[EVALUATIONS] += 3
+                out.counts[EVALUATIONS] += DENSE_EVALUATIONS
                 ready = True
             at = point * spacing
             interpolate(y, work, min(1.0, (at - t) / h))
-            add_to_account(slots.balance, work.probe, 0.0, slack_loss(slots.balance, slots, y, work.probe))
+            add_to_account(slots.balance, work.probe, 0.0, force_free_loss(slots.balance, slots, y, work.probe))
             evaluate(slots, drive.beta, at, work.probe, work.slope, work.forces)
             keep(slots, row, work.probe, work.slope, work.forces.e, samples)
             row += 1
-    out.log.met[SAMPLE] = row - 1
+    out.log.counts[SAMPLE] = row - 1
     note_closings(slots.dissipation, slots, Instant(y, work.k[0]), Instant(work.end, work.k[STAGES]),
                   Span(h, drive.beta * t, drive.beta * h), out.log)
     return row
@@ -236,7 +236,7 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
 def accept(trajectory):
     """Make the step's end the state; returns whether its slope must be evaluated anew."""
     slots, _, y, work = trajectory
-    lost = slack_loss(slots.balance, slots, y, work.end)
+    lost = force_free_loss(slots.balance, slots, y, work.end)
     copy(work.end, y)
     copy(work.k[STAGES], work.k[0])
     add_to_account(slots.balance, y, 0.0, lost)

@@ -12,7 +12,7 @@ from ..effects.preload import overlap
 from ..equations.motion import motion
 from ..jit import by_type, inline_numba, internal, kernel
 from .bracket import Bracket, root_inside, top_inside, value_at
-from .tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
+from .tableau import ALL_STAGES, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 
 #: Golden sections around a turning point of an overlap.
 _SECTIONS = 40
@@ -157,7 +157,7 @@ def dense_coefficients(h, y, work):
         for i in range(y.size):
             dense[3 + row, i] = 0.0
         for s in range(ALL_STAGES):
-            a = h * DENSE[row, s]
+            a = h * DENSE_WEIGHTS[row, s]
             if a != 0.0:
                 for i in range(y.size):
                     dense[3 + row, i] += a * k[s, i]

@@ -12,6 +12,8 @@ import numpy as np
 #: Stages of one step, and stages in all with those that only the dense output needs.
 STAGES = 12
 ALL_STAGES = 16
+#: Evaluations that only the dense output needs: the step's end has its slope already.
+DENSE_EVALUATIONS = ALL_STAGES - STAGES - 1
 
 
 def _sparse(shape: tuple[int, ...], entries: dict[tuple[int, int], float]) -> np.ndarray:
@@ -127,22 +129,6 @@ A = _sparse((16, 16), {
     (15, 14): -9.15095847217987,
 })
 
-#: Weights of the step.
-B = np.array([
-    0.054293734116568765,
-    0.0,
-    0.0,
-    0.0,
-    0.0,
-    4.450312892752409,
-    1.8915178993145003,
-    -5.801203960010585,
-    0.3111643669578199,
-    -0.1521609496625161,
-    0.20136540080403034,
-    0.04471061572777259,
-])
-
 #: Step minus the embedded method of order 3; the last weight is that of the slope at the step's end.
 E3 = np.array([
     -0.18980075407240762,
@@ -178,7 +164,7 @@ E5 = np.array([
 ])
 
 #: Rows 3 to 6 of the dense output's coefficients in the stages.
-DENSE = _sparse((4, 16), {
+DENSE_WEIGHTS = _sparse((4, 16), {
     (0, 0): -8.428938276109013,
     (0, 5): 0.5667149535193777,
     (0, 6): -3.0689499459498917,

@@ -1,6 +1,4 @@
-"""The energy account, and the force on a bead besides its contacts, whose energy belongs to the same account.
-
-The account is the work of the driver and the energy lost in the contacts, integrated beside the motion.
+"""The energy account: the work of the driver and the energy lost in the contacts, integrated beside the motion.
 
 Equation   Ẇ = F_0 v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
 Method     Both integrands jump with the dashpot force. Integrated by parts they do not: with dG = g δ̇ dt,
@@ -18,21 +16,14 @@ from typing import NamedTuple
 from ..jit import by_slot, internal
 from .contact import elastic_force, positive_part
 from .driver import driver_acceleration
-from .foundation import add_foundation_force
 from .preload import overlap
-from .tension import contact_primitive, lost_in, unless_slack
+from .tension import contact_primitive, lost_in, unless_force_free
 
 
 class Balance(NamedTuple):
     """Slot of the energy account; it has no values."""
 
     present: int
-
-
-@internal
-def force_on_bead(slots, contacts, u, v):
-    """Force on a bead at displacement u and velocity v, on which its two contacts act with `contacts`."""
-    return add_foundation_force(slots.foundation, contacts, u)
 
 
 @by_slot
@@ -49,8 +40,8 @@ def _(balance, slots, y, dy, e):
     for c in range(e.size):
         d = positive_part(overlap(slots.preload, y, c))
         G = contact_primitive(slots.tension, slots, y, c, d)
-        # the elastic energy that a slack contact loses is known at the step's end: `lost_in`
-        cut = e[c] - unless_slack(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
+        # the elastic energy that a force-free contact loses is known at the step's end: `lost_in`
+        cut = e[c] - unless_force_free(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
         lost += cut * (dy[c] - dy[c + 1]) - G * (dy[m + c] - dy[m + c + 1])
         if c == 0:
             work = e[0] * dy[0] - G * acceleration
@@ -60,12 +51,12 @@ def _(balance, slots, y, dy, e):
 
 
 @by_slot
-def slack_loss(balance, slots, y, end):
-    """Energy that slack contacts lose from y to `end`. Absent: there is no account."""
+def force_free_loss(balance, slots, y, end):
+    """Energy that force-free contacts lose from y to `end`. Absent: there is no account."""
     return 0.0
 
 
-@slack_loss.of(Balance)
+@force_free_loss.of(Balance)
 def _(balance, slots, y, end):
     return lost_in(slots.tension, slots, y, end)
 

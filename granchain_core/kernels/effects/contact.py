@@ -58,6 +58,12 @@ def elastic_force(stiffness, d):
     return stiffness * d * root(d)
 
 
+@inline_llvm
+def elastic_slope(stiffness, d):
+    """Tangent stiffness (3/2) K √d, the slope of the elastic force."""
+    return 1.5 * stiffness * root(d)
+
+
 @internal
 def elastic_energy(stiffness, d):
     """(2/5) K d^{5/2}."""

@@ -2,8 +2,8 @@
 
 Equation   u_0 = A sin θ,  θ = 2πft;  v_0 = β A cos θ
 Source     Zhang et al. 2016, eqs. (1) and (2)
-Values     amplitude (1 in scaled units, kept so that a resting driver is the same code), beta = 2πf/φ
-Absent     bead 1 has nothing on its left: body 0 stands FAR away and its contact never closes
+Values     amplitude: 1 in scaled units, 0 for a driver at rest; beta = 2πf/φ
+Absent     bead 1 has nothing on its left: body 0 stands BODY_FAR_AWAY away and its contact never closes
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import NamedTuple
 from ..jit import by_slot, in_simd_kernels
 
 #: Where an absent driver or wall stands, in length units: too far to touch, near enough not to overflow.
-FAR = 1e30
+BODY_FAR_AWAY = 1e30
 
 
 @in_simd_kernels
@@ -28,11 +28,12 @@ class Harmonic(NamedTuple):
 @by_slot
 def driver_displacement(driver, theta):
     """u_0 at drive phase θ."""
-    return -FAR
+    return -BODY_FAR_AWAY
 
 
 @driver_displacement.of(Harmonic)
-def _(driver, theta):
+def harmonic_displacement(driver, theta):
+    """A sin θ."""
     return driver.amplitude * sin(theta)
 
 
@@ -43,7 +44,8 @@ def driver_velocity(driver, theta):
 
 
 @driver_velocity.of(Harmonic)
-def _(driver, theta):
+def harmonic_velocity(driver, theta):
+    """β A cos θ."""
     return driver.amplitude * driver.beta * cos(theta)
 
 
@@ -54,5 +56,6 @@ def driver_acceleration(driver, u0):
 
 
 @driver_acceleration.of(Harmonic)
-def _(driver, u0):
+def harmonic_acceleration(driver, u0):
+    """−β² u_0."""
     return -driver.beta * driver.beta * u0

@@ -15,14 +15,22 @@ Absent     nothing is prescribed
 
 from __future__ import annotations
 
-from math import cos, sin
 from typing import NamedTuple
 
 import numpy as np
 
 from ..jit import by_slot
 from .dissipation import put_prescribed_primitive
-from .driver import FAR, Harmonic, driver_acceleration, driver_displacement, driver_velocity
+from .driver import (
+    BODY_FAR_AWAY,
+    Harmonic,
+    driver_acceleration,
+    driver_displacement,
+    driver_velocity,
+    harmonic_acceleration,
+    harmonic_displacement,
+    harmonic_velocity,
+)
 
 
 class Sampled(NamedTuple):
@@ -41,7 +49,7 @@ class ObserverCoupling(NamedTuple):
 
 @driver_displacement.of(Sampled)
 def _(driver, theta):
-    return -FAR
+    return -BODY_FAR_AWAY
 
 
 @driver_velocity.of(Sampled)
@@ -56,19 +64,9 @@ def _(driver, u0):
     return 0.0
 
 
-@driver_displacement.of(ObserverCoupling)
-def _(driver, theta):
-    return driver.amplitude * sin(theta)
-
-
-@driver_velocity.of(ObserverCoupling)
-def _(driver, theta):
-    return driver.amplitude * driver.beta * cos(theta)
-
-
-@driver_acceleration.of(ObserverCoupling)
-def _(driver, u0):
-    return -driver.beta * driver.beta * u0
+driver_displacement.of(ObserverCoupling)(harmonic_displacement)
+driver_velocity.of(ObserverCoupling)(harmonic_velocity)
+driver_acceleration.of(ObserverCoupling)(harmonic_acceleration)
 
 
 @by_slot

@@ -23,7 +23,7 @@ class Preload(NamedTuple):
 
 @by_slot
 def overlap(preload, y, c):
-    """δ_c from the displacements at the front of y. Absent: the sonic vacuum."""
+    """δ_c from the displacements at the front of y. Absent: u_c − u_{c+1}, there is no static overlap."""
     return y[c] - y[c + 1]
 
 

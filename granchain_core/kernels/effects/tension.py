@@ -2,11 +2,11 @@
 
 Equation   F = max(0, K δ^{3/2} + g(δ) δ̇)   for δ > 0
 Source     the alternative to the paper's law, in which the gated dashpot pulls while the contact opens
-Values     slack (N+1,): 1 for a contact that touches without force throughout the present step, else 0; then its
-           G is offset + slope·δ, both (N+1,)
+Values     force_free (N+1,): 1 for a contact that touches without force throughout the present step, else 0; its
+           G is then offset + slope·δ, both (N+1,)
 Terms      cut_tension raises each elastic force just enough to make the total zero, so that forces still enter in one
            place, m ẇ = Σ e
-Slack      Just before δ = 0 the added force −g(δ)δ̇ is finite and just after it is zero (linear law), or its slope is
+Force-free Just before δ = 0 the added force −g(δ)δ̇ is finite and just after it is zero (linear law), or its slope is
            infinite (Tsuji). So for one step G is replaced by its tangent at the step's start, which is smooth at
            δ = 0; at the step's end w is recomputed with the law's own G (`leave_force_free`).
 """
@@ -24,23 +24,23 @@ from .preload import overlap
 
 
 class TensionCut(NamedTuple):
-    """Slot of the cut; its arrays describe the slack contacts."""
+    """Slot of the cut; its arrays describe the force-free contacts."""
 
-    slack: np.ndarray
+    force_free: np.ndarray
     slope: np.ndarray
     offset: np.ndarray
 
 
 def new_tension_cut(contacts: int) -> TensionCut:
-    """The slot for this number of contacts, none of them slack."""
+    """The slot for this number of contacts, none of them force-free."""
     return TensionCut(np.zeros(contacts, dtype=np.uint8), np.zeros(contacts), np.zeros(contacts))
 
 
 @internal
-def slacken(tension, slots, y, c):
-    """Mark contact c, which touches without force in state y, as slack for one step."""
+def hold_force_free(tension, slots, y, c):
+    """Mark contact c, which touches without force in state y, as force-free for one step."""
     d = positive_part(overlap(slots.preload, y, c))
-    tension.slack[c] = 1
+    tension.force_free[c] = 1
     tension.slope[c] = damping(slots.dissipation, d)
     tension.offset[c] = primitive(slots.dissipation, d) - tension.slope[c] * d
 
@@ -53,20 +53,20 @@ def contact_primitive(tension, slots, y, c, d):
 
 @contact_primitive.of(TensionCut)
 def _(tension, slots, y, c, d):
-    if tension.slack[c] != 0:
+    if tension.force_free[c] != 0:
         return tension.offset[c] + tension.slope[c] * overlap(slots.preload, y, c)
     return primitive(slots.dissipation, d)
 
 
 @by_slot
-def keep_slack_primitive(tension, slots, y, G):
-    """Continue G of slack contacts linearly, also below δ = 0. Absent: no contact is slack."""
+def keep_force_free_primitive(tension, slots, y, G):
+    """Continue G of force-free contacts linearly, also below δ = 0. Absent: no contact is force-free."""
 
 
-@keep_slack_primitive.of(TensionCut)
+@keep_force_free_primitive.of(TensionCut)
 def _(tension, slots, y, G):
-    for c in range(tension.slack.size):
-        if tension.slack[c] != 0:
+    for c in range(tension.force_free.size):
+        if tension.force_free[c] != 0:
             put_primitive(slots.dissipation, G, c, contact_primitive(tension, slots, y, c, 0.0))
 
 
@@ -79,7 +79,7 @@ def cut_tension(tension, slots, y, dy, e):
 def _(tension, slots, y, dy, e):
     for c in range(e.size):
         rate = dy[c] - dy[c + 1]
-        if tension.slack[c] != 0:
+        if tension.force_free[c] != 0:
             e[c] = -tension.slope[c] * rate
         else:
             damped = damping(slots.dissipation, positive_part(overlap(slots.preload, y, c))) * rate
@@ -99,27 +99,27 @@ def _(tension, force):
 
 
 @by_slot
-def unless_slack(tension, c, force):
-    """The force of contact c, or 0 where it is slack. Absent: none is."""
+def unless_force_free(tension, c, force):
+    """The force of contact c, or 0 where it is force-free. Absent: none is."""
     return force
 
 
-@unless_slack.of(TensionCut)
+@unless_force_free.of(TensionCut)
 def _(tension, c, force):
-    return 0.0 if tension.slack[c] != 0 else force
+    return 0.0 if tension.force_free[c] != 0 else force
 
 
 @by_slot
 def lost_in(tension, slots, y, end):
-    """Energy that slack contacts lose from y to `end`: their elastic energy, no quadrature. Absent: none is slack."""
+    """Energy that force-free contacts lose from y to `end`: their elastic energy, no quadrature. Absent: 0."""
     return 0.0
 
 
 @lost_in.of(TensionCut)
 def _(tension, slots, y, end):
     lost = 0.0
-    for c in range(tension.slack.size):
-        if tension.slack[c] != 0:
+    for c in range(tension.force_free.size):
+        if tension.force_free[c] != 0:
             stiffness = slots.chain.stiffness[c]
             lost += elastic_energy(stiffness, positive_part(overlap(slots.preload, y, c)))
             lost -= elastic_energy(stiffness, positive_part(overlap(slots.preload, end, c)))

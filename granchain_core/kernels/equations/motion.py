@@ -14,14 +14,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..effects.balance import account, force_on_bead
+from ..effects.balance import account
 from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
 from ..effects.dissipation import damping, keep_primitive, shifted, velocity
 from ..effects.driver import driver_displacement, driver_velocity
-from ..effects.foundation import foundation_energy
+from ..effects.foundation import add_foundation_force, foundation_energy
 from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
-from ..effects.tension import cut_tension, keep_slack_primitive, unless_slack
+from ..effects.tension import cut_tension, keep_force_free_primitive, unless_force_free
 from ..jit import check_effects, internal, kernel
 
 
@@ -49,7 +49,7 @@ class Forces(NamedTuple):
 
 
 class Trajectory(NamedTuple):
-    """A chain on its way: its effects, its driver's course through a period, state y (M,), the method's workspace.
+    """What is integrated: the chain's slots, the drive, state y (M,) and the method's workspace.
 
     `drive` is a `Cycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py).
     """
@@ -64,6 +64,12 @@ check_effects("granchain_core.kernels.effects")
 
 
 @internal
+def force_on_bead(slots, contacts, u, v):
+    """Force on a bead at displacement u and velocity v, on which its two contacts act with `contacts`."""
+    return add_foundation_force(slots.foundation, contacts, u)
+
+
+@internal
 def motion(slots, u0, v0, y, dy, forces):
     """dy/dτ at state y with the driver at (u0, v0); leaves the contact forces in `forces`."""
     inverse_mass, stiffness = slots.chain.inverse_mass, slots.chain.stiffness
@@ -75,7 +81,7 @@ def motion(slots, u0, v0, y, dy, forces):
         d = pressed(forces.held, c, overlap(slots.preload, y, c))
         e[c] = elastic_force(stiffness[c], d)
         keep_primitive(slots.dissipation, G, c, d)
-    keep_slack_primitive(slots.tension, slots, y, G)
+    keep_force_free_primitive(slots.tension, slots, y, G)
     prescribe_primitive(slots.driver, slots, y, G)
     for i in range(1, m - 1):
         dy[i] = velocity(slots.dissipation, inverse_mass, y[m + i], G, i)
@@ -90,7 +96,7 @@ def motion(slots, u0, v0, y, dy, forces):
 def contact_force(slots, y, dy, e, c):
     """Total force of contact c from the last evaluation of `motion`."""
     d = positive_part(overlap(slots.preload, y, c))
-    return unless_slack(slots.tension, c, e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1]))
+    return unless_force_free(slots.tension, c, e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1]))
 
 
 @internal

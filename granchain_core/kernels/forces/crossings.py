@@ -99,7 +99,7 @@ def watch_crossing(law, slots, c, before, end, span, log):
     elif before.rate > 0.0 and after.rate < 0.0:
         jump = brief_touch(before.gap, after.gap, before.rate, after.rate, h)
         note_closing(law, jump, c, last, span.theta + 0.5 * span.dtheta, log)
-        log.met[UNRESOLVED] += jump > 0.0
+        log.counts[UNRESOLVED] += jump > 0.0
 
 
 end_overlaps.absent_for(*SMOOTH_LAWS)

@@ -14,25 +14,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..effects.balance import force_on_bead
-from ..effects.contact import elastic_force, positive_part
+from ..contact_cubic import GAP, RATE, TINY, hermite_turn
+from ..effects.contact import elastic_force, elastic_slope, positive_part
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, damping, damping_slope
 from ..effects.driver import driver_acceleration
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
-from ..equations.motion import contact_force
+from ..equations.motion import contact_force, force_on_bead
 from ..jit import by_slot, inline_numba, internal
-from ..rk4.contact_events import GAP, RATE, TINY, hermite_turn
-from ..simd.functions import root
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 
-#: A force below this part of the largest so far is followed without its slope: a maximum inside a step exceeds the
-#: step's ends by h²/8 of its curvature, which is some per cent of it.
-_FAINT = 0.9
+#: A force above this part of the largest so far is followed with its slope, a smaller one without: a maximum inside a
+#: step exceeds the step's ends by h²/8 of its curvature, which is some per cent of it.
+_FOLLOWED_WITH_SLOPE = 0.9
 #: Largest rise or fall of a force in one step, over its value: after a closing, where g has an
 #: infinite slope, the cubic's slope is bounded by this.
 _STEEPEST = 3.0
-#: Entries of `ForceLog.met`: how many contacts closed with a jump, how many of these were touches within a step of a
+#: Entries of `ForceLog.counts`: how many contacts closed with a jump, how many of these were touches within a step of a
 #: method that does not locate them, and the number of the last sample.
 CLOSED, UNRESOLVED, SAMPLE = range(3)
 
@@ -42,14 +40,14 @@ class ForceLog(NamedTuple):
 
     `peaks` (17,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value and
     slope of each force at the last state followed. Rows of `closings` (C, 4) are the number of the last sample before a
-    contact closed, the drive phase θ, the contact and the force after the jump; `met` (3,) are the numbers CLOSED,
-    UNRESOLVED and SAMPLE.
+    contact closed, the drive phase θ, the contact and the force after the jump; `counts` (3,) are the numbers
+    CLOSED, UNRESOLVED and SAMPLE.
     """
 
     peaks: np.ndarray
     last: np.ndarray
     closings: np.ndarray
-    met: np.ndarray
+    counts: np.ndarray
 
 
 class Instant(NamedTuple):
@@ -108,7 +106,7 @@ def force_slope(slots, y, dy, e, c, event, closed):
     if c == event:
         d = TINY if closed else 0.0
     change = acceleration(slots, y, dy, e, c, event, closed) - acceleration(slots, y, dy, e, c + 1, event, closed)
-    return (1.5 * slots.chain.stiffness[c] * root(d) * rate + damping_slope(slots.dissipation, d) * rate * rate
+    return (elastic_slope(slots.chain.stiffness[c], d) * rate + damping_slope(slots.dissipation, d) * rate * rate
             + damping(slots.dissipation, d) * change)
 
 
@@ -125,7 +123,7 @@ def cubic_top(f0, s0, f1, s1, h):
 
 
 @internal
-def follow(log, q, value, slope, h):
+def track_force(log, q, value, slope, h):
     """Follow force number q to its value at a state that lies h after the last one."""
     peaks, last = log.peaks, log.last
     row = q * OUTPUT
@@ -140,28 +138,28 @@ def watch_beside(slots, y, dy, e, h, event, closed, log):
     for q in range(2):
         c = 0 if q == 0 else last
         value, slope = force_beside(slots, y, dy, e, c, event, closed), np.nan
-        if value > _FAINT * log.peaks[q * OUTPUT]:
+        if value > _FOLLOWED_WITH_SLOPE * log.peaks[q * OUTPUT]:
             slope = force_slope(slots, y, dy, e, c, event, closed)
-        follow(log, q, value, slope, h)
+        track_force(log, q, value, slope, h)
     d = 0.0 if event == last else positive_part(overlap(slots.preload, y, last))
     stiffness, slope = slots.chain.stiffness[last], np.nan
     value = elastic_force(stiffness, d)
-    if value > _FAINT * log.peaks[OUTPUT_ELASTIC]:
-        slope = 1.5 * stiffness * root(d) * (dy[last] - dy[last + 1])
-    follow(log, 2, value, slope, h)
+    if value > _FOLLOWED_WITH_SLOPE * log.peaks[OUTPUT_ELASTIC]:
+        slope = elastic_slope(stiffness, d) * (dy[last] - dy[last + 1])
+    track_force(log, 2, value, slope, h)
 
 
 @internal
 def watch_state(slots, y, dy, e, h, log):
     """The same where no contact changes; only the values where none of the three can be part of a maximum."""
     last, peaks = e.size - 1, log.peaks
-    pushed, passed = contact_force(slots, y, dy, e, 0), contact_force(slots, y, dy, e, last)
+    input_force, output_force = contact_force(slots, y, dy, e, 0), contact_force(slots, y, dy, e, last)
     elastic = elastic_force(slots.chain.stiffness[last], positive_part(overlap(slots.preload, y, last)))
-    if (pushed > _FAINT * peaks[INPUT] or passed > _FAINT * peaks[OUTPUT]
-            or elastic > _FAINT * peaks[OUTPUT_ELASTIC]):
+    if (input_force > _FOLLOWED_WITH_SLOPE * peaks[INPUT] or output_force > _FOLLOWED_WITH_SLOPE * peaks[OUTPUT]
+            or elastic > _FOLLOWED_WITH_SLOPE * peaks[OUTPUT_ELASTIC]):
         watch_beside(slots, y, dy, e, h, -1, False, log)
     else:
-        log.last[0, 0], log.last[1, 0], log.last[2, 0] = pushed, passed, elastic
+        log.last[0, 0], log.last[1, 0], log.last[2, 0] = input_force, output_force, elastic
         log.last[0, 1] = log.last[1, 1] = log.last[2, 1] = np.nan
 
 
@@ -203,11 +201,11 @@ def _(law, rate, c, last, theta, log):
         if c == last:
             reach(log.peaks, OUTPUT, force)
             reach(log.peaks, OUTPUT_JUMP, force)
-        place = log.met[CLOSED]
-        log.met[CLOSED] = place + 1
+        place = log.counts[CLOSED]
+        log.counts[CLOSED] = place + 1
         if place < log.closings.shape[0]:
             row = log.closings[place]
-            row[0], row[1], row[2], row[3] = log.met[SAMPLE], theta, c, force
+            row[0], row[1], row[2], row[3] = log.counts[SAMPLE], theta, c, force
 
 
 @by_slot

@@ -48,7 +48,7 @@ def watch(peaks, row, value):
 
 
 @kernel
-def forget(peaks):
+def reset_peaks(peaks):
     """Reset the largest value and the last values."""
     for i in range(MEMORY):
         peaks[i] = -np.inf if i % ROWS == 0 else 0.0

@@ -18,7 +18,7 @@ from ..effects.preload import batch_overlap
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from ..jit import by_slot, inline_numba, internal
 from ..simd.vector import LANES, from_left, from_right, load, positive_mask, splat, store, with_first
-from .step import drive_displacement, drive_velocity
+from .step import tabulated_displacement, tabulated_velocity
 
 
 class LongChain(NamedTuple):
@@ -52,8 +52,8 @@ def steps_without_events(simd, trajectory, j, count, peaks):
     done, first, last = 0, False, False
     while True:
         i = 2 * (j + done)
-        changed = first_stage(simd, slots, drive_displacement(slots, drive, i), h)
-        v0 = drive_velocity(slots, drive, i)
+        changed = first_stage(simd, slots, tabulated_displacement(slots, drive, i), h)
+        v0 = tabulated_velocity(slots, drive, i)
         first_before, last_before = first, last
         first, last = comes_nearer(simd, slots, v0)
         if done > 0:
@@ -65,7 +65,7 @@ def steps_without_events(simd, trajectory, j, count, peaks):
         if done == count:
             pack(now, blocks, y, m)
             return done
-        middle, end = drive_displacement(slots, drive, i + 1), drive_displacement(slots, drive, i + 2)
+        middle, end = tabulated_displacement(slots, drive, i + 1), tabulated_displacement(slots, drive, i + 2)
         later_stage(simd, slots, middle, simd.first, simd.second, h, 0.5, 1.0 / 3.0)
         later_stage(simd, slots, middle, simd.second, simd.first, h, 1.0, 1.0 / 3.0)
         later_stage(simd, slots, end, simd.first, simd.second, h, 0.0, 1.0 / 6.0)

@@ -17,7 +17,7 @@ from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS, STEPS_BETW
 from .long_chain import LongChain, steps_without_events
 from .short_chain import ShortChain
 from .short_chain_steps import run_short_chain
-from .step import drive_displacement, drive_velocity, step
+from .step import step, tabulated_displacement, tabulated_velocity
 
 
 @by_slot_inlined
@@ -51,7 +51,7 @@ def _(simd, method, trajectory, j, count, out):
             out.counts[STEPS] += smooth
             out.counts[EVALUATIONS] += 4 * smooth
             i = 2 * (j + done)
-            motion(slots, drive_displacement(slots, drive, i), drive_velocity(slots, drive, i), y, stages.k[0],
+            motion(slots, tabulated_displacement(slots, drive, i), tabulated_velocity(slots, drive, i), y, stages.k[0],
                    stages.forces)
         if done < count:
             watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, out.log)
@@ -102,7 +102,7 @@ def run_steps(method, trajectory, first_step, stride, kept, out):
         if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
             return NOT_FINITE, i
         if sampled:
-            log.met[SAMPLE] = i
+            log.counts[SAMPLE] = i
         else:
             next_period(log.peaks)
         advance(stages.simd, method, trajectory, j, stride, out)

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..contact_cubic import GAP, RATE
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, shape
 from ..effects.foundation import add_foundation_force
@@ -18,7 +19,6 @@ from ..effects.preload import row_overlap, row_values
 from ..jit import by_slot, by_type, inline_llvm
 from ..simd.functions import root
 from ..simd.vector import blank, from_left, from_right, load, load16, load32, store, with_first
-from .contact_events import GAP, RATE
 
 
 class Width8(NamedTuple):
@@ -46,7 +46,7 @@ WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
 BEGIN, END = 0, 1
 U, W, DU, NET_FORCE, ELASTIC, KEPT = range(6)
 #: Steps whose forces are searched together.
-BLOCK = 32
+STEPS_IN_BLOCK = 32
 
 
 class ShortChain(NamedTuple):
@@ -82,7 +82,7 @@ class ChainState(NamedTuple):
     u: Any
     w: Any
     du: Any
-    push: Any
+    net_force: Any
     gap: Any
     rate: Any
     elastic: Any
@@ -120,18 +120,18 @@ def _(law, inverse_mass):
 
 
 @by_slot
-def row_velocity(law, w, damping_over_mass, shapes):
+def chain_velocity(law, w, damping_over_mass, shapes):
     """v = w + (G_{i-1} − G_i)/m of all beads, from the shapes of G."""
     return w
 
 
-@row_velocity.of(*LAWS)
+@chain_velocity.of(*LAWS)
 def _(law, w, damping_over_mass, shapes):
     return w + damping_over_mass * (from_left(blank(shapes), shapes) - shapes)
 
 
 @inline_llvm
-def row_of(wide, slots):
+def chain_values(wide, slots):
     """The chain's values in registers."""
     width = wide.width
     inverse_mass = load_row(width, wide.inverse_mass, 0)
@@ -140,38 +140,38 @@ def row_of(wide, slots):
 
 
 @inline_llvm
-def row_slope(row, u0, u, w):
+def chain_slope(values, u0, u, w):
     """Overlaps, elastic forces, velocities and forces on the beads; the driver's own velocity is left at zero."""
     here = with_first(u, u0)
-    gap = row_overlap(row.preload, here, from_right(here, blank(here)))
+    gap = row_overlap(values.preload, here, from_right(here, blank(here)))
     d = positive_part(gap)
     r = root(d)
-    e = row.stiffness * d * r
-    du = row_velocity(row.dissipation, w, row.damping_over_mass, shape(row.dissipation, d, r))
-    return gap, e, du, add_foundation_force(row.foundation, from_left(blank(e), e) - e, here)
+    e = values.stiffness * d * r
+    du = chain_velocity(values.dissipation, w, values.damping_over_mass, shape(values.dissipation, d, r))
+    return gap, e, du, add_foundation_force(values.foundation, from_left(blank(e), e) - e, here)
 
 
 @inline_llvm
-def row_at(row, u0, v0, u, w):
+def chain_at(values, u0, v0, u, w):
     """The chain in state (u, w) with the driver at u0, moving at v0."""
-    gap, e, du, push = row_slope(row, u0, u, w)
+    gap, e, du, net_force = chain_slope(values, u0, u, w)
     moving = with_first(du, v0)
-    return ChainState(u, w, du, push, gap, moving - from_right(moving, blank(moving)), e)
+    return ChainState(u, w, du, net_force, gap, moving - from_right(moving, blank(moving)), e)
 
 
 @inline_llvm
-def row_step(row, ua, ub, vb, h, x, path, impulse):
+def chain_step(values, ua, ub, vb, h, x, shift, impulse):
     """One RK4 step from x; the driver at ua at mid-step, at ub, moving at vb, at the end.
 
-    `path` and `impulse` are added to displacements and w at the end.
+    `shift` and `impulse` are added to displacements and w at the end.
     """
     half, sixth = 0.5 * h, h / 6.0
-    half_m, whole_m, sixth_m = half * row.inverse_mass, h * row.inverse_mass, sixth * row.inverse_mass
-    _, _, du2, push2 = row_slope(row, ua, x.u + half * x.du, x.w + half_m * x.push)
-    _, _, du3, push3 = row_slope(row, ua, x.u + half * du2, x.w + half_m * push2)
-    _, _, du4, push4 = row_slope(row, ub, x.u + h * du3, x.w + whole_m * push3)
-    return row_at(row, ub, vb, x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + path,
-                  x.w + sixth_m * (x.push + push4 + 2.0 * (push2 + push3)) + impulse)
+    half_m, whole_m, sixth_m = half * values.inverse_mass, h * values.inverse_mass, sixth * values.inverse_mass
+    _, _, du2, net_force2 = chain_slope(values, ua, x.u + half * x.du, x.w + half_m * x.net_force)
+    _, _, du3, net_force3 = chain_slope(values, ua, x.u + half * du2, x.w + half_m * net_force2)
+    _, _, du4, net_force4 = chain_slope(values, ub, x.u + h * du3, x.w + whole_m * net_force3)
+    return chain_at(values, ub, vb, x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + shift,
+                  x.w + sixth_m * (x.net_force + net_force4 + 2.0 * (net_force2 + net_force3)) + impulse)
 
 
 @inline_llvm
@@ -181,7 +181,7 @@ def store_state(wide, end, x):
     store(wide.rows, first + U, x.u)
     store(wide.rows, first + W, x.w)
     store(wide.rows, first + DU, x.du)
-    store(wide.rows, first + NET_FORCE, x.push)
+    store(wide.rows, first + NET_FORCE, x.net_force)
     store(wide.rows, first + ELASTIC, x.elastic)
     store(wide.ends, 2 * end + GAP, x.gap)
     store(wide.ends, 2 * end + RATE, x.rate)
@@ -198,6 +198,6 @@ def load_state(wide, end):
 
 
 @inline_llvm
-def row_correction(row, excess):
+def chain_correction(values, excess):
     """Correction of the beads' displacements or w, from the quadrature errors of their contacts."""
-    return row.inverse_mass * (excess - from_left(blank(excess), excess))
+    return values.inverse_mass * (excess - from_left(blank(excess), excess))

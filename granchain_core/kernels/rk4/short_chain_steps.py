@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR
 from ..effects.contact import positive_part
 from ..effects.dissipation import damping
 from ..effects.driver import driver_displacement, driver_velocity
@@ -15,8 +16,6 @@ from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import at, blank, positive_mask
 from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
-    DISPLACEMENT_ERROR,
-    MOMENTUM_ERROR,
     MOST_SPLITS,
     add_quadrature_errors,
     first_event,
@@ -25,22 +24,22 @@ from .contact_events import (
 )
 from .short_chain import (
     BEGIN,
-    BLOCK,
     DU,
     ELASTIC,
     END,
     NET_FORCE,
+    STEPS_IN_BLOCK,
     U,
     W,
+    chain_at,
+    chain_correction,
+    chain_step,
+    chain_values,
     load_row,
     load_state,
-    row_at,
-    row_correction,
-    row_of,
-    row_step,
     store_state,
 )
-from .step import drive_displacement, drive_velocity
+from .step import tabulated_displacement, tabulated_velocity
 
 
 @inline_numba
@@ -51,7 +50,7 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
     """
     slots, drive, _, _ = trajectory
     h, dtheta, theta = drive.h, drive.dtheta, j * drive.dtheta
-    ends, row, driver, done = wide.ends, row_of(wide, slots), slots.driver, 0.0
+    ends, values, driver, done = wide.ends, chain_values(wide, slots), slots.driver, 0.0
     last = slots.chain.stiffness.size - 1
     reset_corrections(ends)
     for _ in range(MOST_SPLITS):
@@ -62,7 +61,7 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
         for _ in range(2):
             stepped = part
             middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
-            event = row_step(row, driver_displacement(driver, middle), driver_displacement(driver, there),
+            event = chain_step(values, driver_displacement(driver, middle), driver_displacement(driver, there),
                              driver_velocity(driver, there), h * part, start, blank(start.u), blank(start.w))
             store_state(wide, BEGIN, event)
             out.counts[EVALUATIONS] += 4
@@ -74,22 +73,22 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
         # after add_quadrature_errors, which gives the overlap the sign that it has after the event
         watch_ends_at_event(slots, ends, contact, there, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
-        end = row_step(row, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
-                       row_correction(row, load_row(wide.width, ends, DISPLACEMENT_ERROR)),
-                       row_correction(row, load_row(wide.width, ends, MOMENTUM_ERROR)))
+        end = chain_step(values, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
+                       chain_correction(values, load_row(wide.width, ends, DISPLACEMENT_ERROR)),
+                       chain_correction(values, load_row(wide.width, ends, MOMENTUM_ERROR)))
         store_state(wide, END, end)
         out.counts[EVALUATIONS] += 4
         out.counts[EVENTS] += 1
 
 
 @inline_llvm
-def keep_forces(wide, row, last, k, x):
+def keep_forces(wide, values, last, k, x):
     """Write input force, output force and its elastic part at step k of a block; returns them."""
     gap, rate, elastic = at(x.gap, last), at(x.rate, last), at(x.elastic, last)
-    pushed = at(x.elastic, 0) + damping(row.dissipation, positive_part(at(x.gap, 0))) * at(x.rate, 0)
-    passed = elastic + damping(row.dissipation, positive_part(gap)) * rate
-    wide.forces[0, k], wide.forces[1, k], wide.forces[2, k] = pushed, passed, elastic
-    return pushed, passed, elastic
+    input_force = at(x.elastic, 0) + damping(values.dissipation, positive_part(at(x.gap, 0))) * at(x.rate, 0)
+    output_force = elastic + damping(values.dissipation, positive_part(gap)) * rate
+    wide.forces[0, k], wide.forces[1, k], wide.forces[2, k] = input_force, output_force, elastic
+    return input_force, output_force, elastic
 
 
 @internal
@@ -109,13 +108,13 @@ def follow_block(wide, count, tops, peaks):
 
 
 @inline_llvm
-def start_row(wide, row, trajectory, j):
+def start_chain(wide, values, trajectory, j):
     """The chain in the trajectory's state at step j."""
     slots, drive, y, _ = trajectory
     rows, m = wide.rows, slots.chain.inverse_mass.size
     for i in range(m):
         rows[U, i], rows[W, i] = y[i], y[m + i]
-    return row_at(row, drive_displacement(slots, drive, 2 * j), drive_velocity(slots, drive, 2 * j),
+    return chain_at(values, tabulated_displacement(slots, drive, 2 * j), tabulated_velocity(slots, drive, 2 * j),
                   load_row(wide.width, rows, U), load_row(wide.width, rows, W))
 
 
@@ -130,8 +129,8 @@ def end_row(wide, x, trajectory, j):
         dy[m + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
         e[i] = rows[ELASTIC, i]
     e[0] = rows[ELASTIC, 0]
-    y[0] = drive_displacement(slots, drive, 2 * j)
-    dy[0] = drive_velocity(slots, drive, 2 * j)
+    y[0] = tabulated_displacement(slots, drive, 2 * j)
+    dy[0] = tabulated_velocity(slots, drive, 2 * j)
 
 
 @inline_numba
@@ -141,18 +140,18 @@ def run_short_chain(wide, trajectory, j, count, out):
     The stop flag leaves them incomplete.
     """
     slots, drive, _, _ = trajectory
-    row, before, last = row_of(wide, slots), flush_subnormals(), slots.chain.stiffness.size - 1
-    x = start_row(wide, row, trajectory, j)
+    values, before, last = chain_values(wide, slots), flush_subnormals(), slots.chain.stiffness.size - 1
+    x = start_chain(wide, values, trajectory, j)
     closed, rising, nothing = positive_mask(x.gap), positive_mask(x.rate), blank(x.w)
     taken = count
-    for first in range(j, j + count, BLOCK):
-        block = min(BLOCK, j + count - first)
+    for first in range(j, j + count, STEPS_IN_BLOCK):
+        block = min(STEPS_IN_BLOCK, j + count - first)
         top_in, top_out, top_elastic = -np.inf, -np.inf, -np.inf
         for k in range(block):
             i = 2 * (first + k)
-            ua, ub = drive_displacement(slots, drive, i + 1), drive_displacement(slots, drive, i + 2)
-            vb = drive_velocity(slots, drive, i + 2)
-            end = row_step(row, ua, ub, vb, drive.h, x, nothing, nothing)
+            ua, ub = tabulated_displacement(slots, drive, i + 1), tabulated_displacement(slots, drive, i + 2)
+            vb = tabulated_velocity(slots, drive, i + 2)
+            end = chain_step(values, ua, ub, vb, drive.h, x, nothing, nothing)
             closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
             # another sign, or moving towards zero at the start and away from it at the end
             if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
@@ -162,8 +161,8 @@ def run_short_chain(wide, trajectory, j, count, out):
                 end = load_state(wide, END)
                 closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
             x, closed, rising = end, closed_after, rising_after
-            pushed, passed, elastic = keep_forces(wide, row, last, k, x)
-            top_in, top_out = larger(top_in, pushed), larger(top_out, passed)
+            input_force, output_force, elastic = keep_forces(wide, values, last, k, x)
+            top_in, top_out = larger(top_in, input_force), larger(top_out, output_force)
             top_elastic = larger(top_elastic, elastic)
         follow_block(wide, block, (top_in, top_out, top_elastic), out.log.peaks)
         if out.stop[0] != 0:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..contact_cubic import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END
 from ..effects.balance import Balance
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
@@ -18,13 +19,7 @@ from ..forces.largest import Instant, Span, watch_event
 from ..jit import by_slot, by_type_inlined, inline_numba, internal
 from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
-    DISPLACEMENT_ERROR,
-    GAP,
-    GAP_END,
-    MOMENTUM_ERROR,
     MOST_SPLITS,
-    RATE,
-    RATE_END,
     add_quadrature_errors,
     first_event,
     nearer_event,
@@ -71,14 +66,14 @@ class DriveTable(NamedTuple):
 
 
 @internal
-def drive_displacement(slots, drive, i):
+def tabulated_displacement(slots, drive, i):
     """u_0 at half-step index i of the period."""
     values, dtheta, _ = drive
     return values[i, 0] if values.shape[0] > 0 else driver_displacement(slots.driver, 0.5 * dtheta * i)
 
 
 @internal
-def drive_velocity(slots, drive, i):
+def tabulated_velocity(slots, drive, i):
     """v_0 at half-step index i of the period."""
     values, dtheta, _ = drive
     return values[i, 1] if values.shape[0] > 0 else driver_velocity(slots.driver, 0.5 * dtheta * i)
@@ -157,8 +152,8 @@ def step(method, trajectory, j, out):
 def whole_step(trajectory, j):
     """One RK4 step from half-step index 2j to stages.end; returns the driver's displacement and velocity there."""
     slots, drive, y, stages = trajectory
-    ua, va = drive_displacement(slots, drive, 2 * j + 1), drive_velocity(slots, drive, 2 * j + 1)
-    ub, vb = drive_displacement(slots, drive, 2 * j + 2), drive_velocity(slots, drive, 2 * j + 2)
+    ua, va = tabulated_displacement(slots, drive, 2 * j + 1), tabulated_velocity(slots, drive, 2 * j + 1)
+    ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)
     rk4(slots, ua, va, ub, vb, drive.h, y, stages)
     return ub, vb
 

@@ -13,8 +13,9 @@ from llvmlite import ir
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
-from .vector import FLAGS, LANES, VectorType, as_vector, vector
-from .width import has_avx512
+from ..jit import FAST_MATH
+from ..width import has_avx512
+from .vector import LANES, VectorType, as_vector, vector
 
 #: Whether the machine has the instruction for eight lanes.
 _HAS_RSQRT14 = has_avx512()
@@ -37,15 +38,15 @@ def _fast_root(builder, value):
         return ir.Constant(kind, [number] * LANES)
 
     def times_plus(a, b, c):
-        return builder.fadd(builder.fmul(a, b, flags=FLAGS), c, flags=FLAGS)
+        return builder.fadd(builder.fmul(a, b, flags=FAST_MATH), c, flags=FAST_MATH)
 
     function = cgutils.get_or_insert_function(
         builder.module, ir.FunctionType(kind, [kind, kind, ir.IntType(8)]), "llvm.x86.avx512.rsqrt14.pd.512")
     y = builder.call(function, [value, constant(0.0), ir.Constant(ir.IntType(8), -1)])
-    t = builder.fmul(value, y, flags=FLAGS)
-    e = builder.fsub(constant(1.0), builder.fmul(t, y, flags=FLAGS), flags=FLAGS)
+    t = builder.fmul(value, y, flags=FAST_MATH)
+    e = builder.fsub(constant(1.0), builder.fmul(t, y, flags=FAST_MATH), flags=FAST_MATH)
     series = times_plus(e, constant(0.375), constant(0.5))
-    return times_plus(builder.fmul(t, e, flags=FLAGS), series, t)
+    return times_plus(builder.fmul(t, e, flags=FAST_MATH), series, t)
 
 
 @intrinsic
@@ -103,8 +104,8 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
     def codegen(context, builder, sig, args):
         a, b, c, d, e, top = args
         kind = sig.return_type.ir
-        near = builder.fmul(c, ir.Constant(kind, [NEAR] * kind.count))
-        far = builder.fmul(c, ir.Constant(kind, [FAR] * kind.count))
+        near = builder.fmul(c, ir.Constant(kind, [BESIDE] * kind.count))
+        far = builder.fmul(c, ir.Constant(kind, [BEYOND] * kind.count))
         smooth = builder.and_(builder.fcmp_ordered(">", c, b), builder.fcmp_ordered(">=", c, d))
         for value, least in ((b, near), (d, near), (a, far), (e, far)):
             smooth = builder.and_(smooth, builder.fcmp_ordered(">", value, least))
@@ -114,14 +115,14 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
 
 
 #: A maximum is smooth if its two neighbours are above this part of it: the jump of a dashpot force is not one.
-NEAR = 0.8
+BESIDE = 0.8
 #: The same for the two values beyond them.
-FAR = 0.4
+BEYOND = 0.4
 
 
 def choose_peak(a, b, c, d, e, top):
     """`top` where c is a smooth maximum of five successive values, else c."""
-    smooth = b < c >= d and b > NEAR * c and d > NEAR * c and a > FAR * c and e > FAR * c
+    smooth = b < c >= d and b > BESIDE * c and d > BESIDE * c and a > BEYOND * c and e > BEYOND * c
     return top if smooth else c
 
 
@@ -129,8 +130,7 @@ def choose_peak(a, b, c, d, e, top):
 def _choose_peak(a, b, c, d, e, top):
     if isinstance(c, VectorType):
         return lambda a, b, c, d, e, top: _vector_peak(a, b, c, d, e, top)
-    return lambda a, b, c, d, e, top: (
-        top if b < c and c >= d and b > NEAR * c and d > NEAR * c and a > FAR * c and e > FAR * c else c)
+    return choose_peak
 
 
 def root(value):
@@ -140,7 +140,7 @@ def root(value):
 
 @overload(root)
 def _root(value):
-    return (lambda value: _vector_root(value)) if isinstance(value, VectorType) else (lambda value: math.sqrt(value))
+    return (lambda value: _vector_root(value)) if isinstance(value, VectorType) else root
 
 
 @intrinsic
@@ -161,7 +161,7 @@ def clip(overlap):
 def _clip(overlap):
     if isinstance(overlap, VectorType):
         return lambda overlap: _vector_clip(overlap)
-    return lambda overlap: 0.0 if overlap < 0.0 else overlap
+    return clip
 
 
 def gate(overlap, value):
@@ -173,7 +173,7 @@ def gate(overlap, value):
 def _gate(overlap, value):
     if isinstance(overlap, VectorType):
         return lambda overlap, value: _vector_gate(overlap, value)
-    return lambda overlap, value: 0.0 if overlap <= 0.0 else value
+    return gate
 
 
 def larger(a, b):
@@ -185,4 +185,4 @@ def larger(a, b):
 def _larger(a, b):
     if isinstance(a, VectorType):
         return lambda a, b: _vector_larger(a, b)
-    return lambda a, b: b if b > a else a
+    return larger

@@ -21,13 +21,13 @@ from numba.extending import (
     register_model,
 )
 
-from .width import BATCH_LANES
+from ..jit import FAST_MATH
+from ..width import BATCH_LANES
 
 #: Numbers in a vector along a chain or of tangents.
 LANES = 8
 #: Widths there are vectors of.
 WIDTHS = (4, 8, 16, 32)
-FLAGS = ("nsz", "arcp", "contract", "reassoc")
 
 
 class VectorType(types.Type):
@@ -75,7 +75,7 @@ def _binary(operation, instruction) -> None:
         @lower_builtin(operation, *case.args)
         def _lower(context, builder, sig, args):
             left, right = (as_vector(builder, sig.return_type, k, v) for k, v in zip(sig.args, args, strict=True))
-            return getattr(builder, instruction)(left, right, flags=FLAGS)
+            return getattr(builder, instruction)(left, right, flags=FAST_MATH)
 
 
 for _operation, _instruction in ((operator.add, "fadd"), (operator.sub, "fsub"), (operator.mul, "fmul"),

@@ -19,7 +19,7 @@ SETTLED_DISTANCE = 1e-6
 #: Changes below this are rounding of a fixed-step map.
 ROUNDING = 1e-12
 #: A larger change cannot have a bound that small: nothing decays a thousandfold in one period.
-_FAR = 1e-3
+_NOT_SETTLED = 1e-3
 #: A change this much smaller than the required distance is accepted without a steady rate: a slow mode below it
 #: would have to decay a hundred times more slowly than what is observed.
 _DEEP = 1e-2
@@ -152,7 +152,7 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
             continue
         if approached == 0:
             approached, its_rate, its_change = n, rate, recent
-        if now > _FAR:
+        if now > _NOT_SETTLED:
             continue
         if rate < _APPROACHING:
             approaching |= 1 << n

@@ -14,17 +14,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...errors import BadInput
+from ...errors import BadInput, check_range
 from ...integrate import State
 from ...scene import Scene
 from ...stop import Stop
-from ..flow import relative_change
 from ..orbit import periodic_orbit
 from .axis import KnobAxis
 from .equations import BranchEquations
 from .point import BranchPoint, branch_point, state_at
 from .special import SpecialPoint
-from .walk import SHORTER, Arm, Walk
+from .walk import Arm, Walk
 
 #: Points of one arm at most: a branch that folds without end has to stop somewhere.
 MOST_POINTS = 20_000
@@ -140,11 +139,12 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
         nearest = min(max(seed_at, axis.low), axis.high)
         raise BadInput(f"Both ways begin at the scene's own {axis.said(seed_at)}, which is outside {axis.low:g} to "
                        f"{axis.high:g}; the nearest valid value is {nearest:g}.")
-    BranchEquations(axis, 1).strobe(seed_at)  # a scene whose orbits are not computed is refused before it settles
+    # a scene whose orbits are not computed is refused before it settles
+    BranchEquations(axis, 1).stroboscopic_map(seed_at)
     orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
     equations = BranchEquations(axis, orbit.period, stop)
-    strobe = equations.strobe(seed_at)
-    x = strobe.inner(strobe.engine.lowered.scaled(orbit.state))
+    stroboscopic_map = equations.stroboscopic_map(seed_at)
+    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
     _refuse_shorter(equations, x, seed_at)
     return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
 
@@ -210,19 +210,14 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     >>> bool(found.column("stable").all())
     True
     """
-    if not 2 <= most_points <= MOST_POINTS:
-        raise BadInput(f"most_points = {most_points} is outside 2 to {MOST_POINTS}; the nearest valid value is "
-                       f"{min(max(most_points, 2), MOST_POINTS)}.")
+    check_range("most_points =", most_points, 2, MOST_POINTS)
     begun = begin_branch(scene, knob, start, end, period, start_state, both, stop)
     return Continuation(begun, stop).run(most_points, on_point)
 
 
 def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> None:
     """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
-    n = equations.period
-    for d in range(1, n):
-        if n % d == 0:
-            end = equations.strobe(value, d).end(x)
-            if relative_change(end - x, x) < SHORTER:
-                raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after "
-                               f"{d} already; give period {d}.")
+    n, least = equations.period, equations.least_period(x, value)
+    if least < n:
+        raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after {least} "
+                       f"already; give period {least}.")

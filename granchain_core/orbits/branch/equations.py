@@ -13,7 +13,7 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...stop import Stop
-from ..flow import Flow, StroboscopicMap, relative_change
+from ..flow import Flow, StroboscopicMap, least_period, relative_change
 from .axis import KnobAxis
 
 #: Relative residual at which Newton's method stops.
@@ -60,9 +60,13 @@ class BranchEquations:
         """The knob's value in z."""
         return self.axis.value(float(z[-1]))
 
-    def strobe(self, value: float, periods: int | None = None) -> StroboscopicMap:
+    def stroboscopic_map(self, value: float, periods: int | None = None) -> StroboscopicMap:
         """The map at a knob value, always a new one, so that equal calls give equal bits."""
         return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop)
+
+    def least_period(self, x: np.ndarray, value: float) -> int:
+        """The drive periods after which the orbit through x repeats, at most `period`."""
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:
@@ -75,7 +79,7 @@ class BranchEquations:
         start, residuals = z, list[float]()
         for _ in range(_MOST):
             value, x = self.value(z), self.state(z)
-            flow = self.strobe(value)(x)
+            flow = self.stroboscopic_map(value)(x)
             residuals.append(relative_change(flow.end - x, x))
             if residuals[-1] <= GOOD or (len(residuals) > 2 and residuals[-1] > 0.3 * residuals[-2]):
                 break
@@ -86,7 +90,7 @@ class BranchEquations:
                 raise NumbersFailed(f"Newton's method went {np.linalg.norm(z - start):.1e} away after residuals "
                                     f"{said(residuals)}.", "no-convergence")
             if residuals[-1] > _LAST:
-                change = self.strobe(self.value(z)).end(self.state(z)) - self.state(z)
+                change = self.stroboscopic_map(self.value(z)).end(self.state(z)) - self.state(z)
                 if relative_change(change, self.state(z)) < _NEAR:
                     z = z - np.linalg.solve(matrix, np.append(change, (z - start) @ normal))
         if not residuals[-1] <= ACCEPTED:
@@ -113,7 +117,7 @@ class BranchEquations:
         moved = self.axis.value(p + _DIFFERENCE)
         if moved == value:  # at the knob's largest value the difference is taken downwards
             moved = self.axis.value(p - _DIFFERENCE)
-        return (self.strobe(moved).end(x) - flow.end) / (self.axis.coordinate(moved) - p)
+        return (self.stroboscopic_map(moved).end(x) - flow.end) / (self.axis.coordinate(moved) - p)
 
 
 def said(residuals: list[float] | tuple[float, ...]) -> str:

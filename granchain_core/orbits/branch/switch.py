@@ -44,7 +44,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
             tried.append(problem.sentence)
             continue
         x = twice.state(solved.z)
-        halves = once.strobe(twice.value(solved.z)).end(x) - x
+        halves = once.stroboscopic_map(twice.value(solved.z)).end(x) - x
         if np.linalg.norm(halves) / once.weight > _DOUBLED * 2.0 * distance:
             return Branch(branch.axis, 2 * branch.period, (_arm(twice, solved, direction),))
         tried.append("the orbit found repeats after half of its period.")
@@ -54,7 +54,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
 
 def _eigenvector(equations: BranchEquations, x: np.ndarray, value: float) -> np.ndarray:
     """Unit eigenvector of the multiplier nearest to −1."""
-    found, vectors = np.linalg.eig(equations.strobe(value)(x).derivative)
+    found, vectors = np.linalg.eig(equations.stroboscopic_map(value)(x).derivative)
     vector = np.real(vectors[:, np.argmin(np.abs(found + 1.0))])
     return vector / np.linalg.norm(vector)
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...errors import NumbersFailed
-from ..flow import relative_change
 from .equations import BranchEquations, Solved, said
 from .point import BranchPoint, branch_point
 from .special import SpecialPoint, special_between
@@ -40,8 +39,6 @@ _OFF = 0.3
 _PASSES = 0.2
 #: The branch has closed if the corrected point is this near to the seed.
 _CLOSED = 1e-7
-#: A state that comes back this near, relative to its largest entry, before its period has a shorter one.
-SHORTER = 1e-8
 #: Points from the seed on before the branch may close on itself.
 _AWAY = 4
 
@@ -124,11 +121,11 @@ class Walk(Iterator[BranchPoint]):
 
     def _refuse_shorter(self, solved: Solved) -> None:
         """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
-        x, value, n = self.equations.state(solved.z), self.equations.value(solved.z), self.equations.period
-        for d in range(1, n):
-            if n % d == 0 and relative_change(self.equations.strobe(value, d).end(x) - x, x) < SHORTER:
-                raise NumbersFailed(f"the step leads to an orbit that repeats after {d} of {n} drive periods",
-                                    "no-convergence")
+        n = self.equations.period
+        least = self.equations.least_period(self.equations.state(solved.z), self.equations.value(solved.z))
+        if least < n:
+            raise NumbersFailed(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
+                                "no-convergence")
 
     def _predicted(self, last: BranchPoint) -> np.ndarray:
         """A step along the tangent, bent as the branch has bent since the point before."""
@@ -206,7 +203,7 @@ class Walk(Iterator[BranchPoint]):
 
     def _halves(self, point: BranchPoint) -> np.ndarray:
         """Difference of the state half an orbit later from the state now."""
-        return self.equations.strobe(point.knob, self.equations.period // 2).end(point.x) - point.x
+        return self.equations.stroboscopic_map(point.knob, self.equations.period // 2).end(point.x) - point.x
 
     def _closing(self, last: BranchPoint, point: BranchPoint) -> BranchPoint | None:
         """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
@@ -229,7 +226,7 @@ def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
     x, images = seed.x, []
     for _ in range(equations.period):
         images.append(equations.point(x, seed.knob))
-        x = equations.strobe(seed.knob, 1).end(x)
+        x = equations.stroboscopic_map(seed.knob, 1).end(x)
     return images
 
 

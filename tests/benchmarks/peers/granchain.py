@@ -12,7 +12,7 @@ from granchain_core import Scene, scene
 from granchain_core.errors import NumbersFailed
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.kernels.simd.width import BATCH_LANES
+from granchain_core.kernels.width import BATCH_LANES
 from granchain_core.lower import lower
 from granchain_core.stop import Stop
 
@@ -66,7 +66,7 @@ def certified_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE)
     def point(frequency: float) -> tuple[float, bool]:
         engine = Engine(_scene(frequency), Setting("dop853", tolerance=tolerance), 1)
         engine.periods(problem.PASSED, watch=False)
-        engine.forget_peaks()
+        engine.reset_peaks()
         strobes, tops = engine.periods(problem.WATCHED)
         return float(tops[:, 2].max()), _returns(strobes)
 
@@ -86,7 +86,7 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
     """Exactly 100 + 20 periods of every point in lanes on this thread: longest first, places filled as they end."""
     lowered = [lower(_scene(f)) for f in sorted(frequencies)]
     total = problem.PASSED + problem.WATCHED
-    values, rest = np.zeros(len(lowered)), np.zeros(2 * lowered[0].row)
+    values, rest = np.zeros(len(lowered)), np.zeros(2 * lowered[0].bodies)
     began = time.perf_counter()
     block = Batch(lowered[0].scene, Stop())
     waiting, place = iter(range(len(lowered))), {}

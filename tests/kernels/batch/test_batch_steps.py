@@ -33,7 +33,7 @@ def scenes_of(case: str):
 def put(block: Batch, lane: int, one, refine: float) -> None:
     """Start a scene from rest; it is looked at after its periods."""
     lowered = lower(one)
-    block.put(lane, lowered, lowered.scaled(rest(one)), refine, look=PERIODS, earliest=NEVER)
+    block.put(lane, lowered, lowered.scaled(rest(one)), refine, return_at=PERIODS, earliest=NEVER)
 
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
@@ -46,7 +46,7 @@ def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
         lane, finite = block.run()
         assert finite
         strobes[lane], tops[lane] = block.strobes(lane)[: PERIODS + 1, 0].copy(), block.tops(lane, PERIODS)
-        block.state.look[lane] = NEVER
+        block.state.return_at[lane] = NEVER
     return np.array([strobes[i] for i in range(len(scenes))]), np.array([tops[i] for i in range(len(scenes))])
 
 

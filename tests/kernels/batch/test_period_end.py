@@ -52,10 +52,10 @@ def test_a_jump_is_kept_only_if_changes_are_smaller_behind_it(before: float, kep
     """Else the chain goes back to where it was extrapolated from, and waits twice as long."""
     block = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
     state = block.state
-    state.unproved[LANE], state.before[LANE, :, 1:-1], state.ready[LANE], state.wait[LANE] = before, 0.25, 10_000, 16
+    state.change_before_extrapolation[LANE], state.before[LANE, :, 1:-1], state.extrapolate_from[LANE], state.pause[LANE] = before, 0.25, 10_000, 16
     assert not period_end.check_coarse.py_func(state, LANE)
-    assert state.unproved[LANE] == 0.0
-    assert (state.y[1, LANE] != 0.25) == kept and (state.wait[LANE] == 16) == kept
+    assert state.change_before_extrapolation[LANE] == 0.0
+    assert (state.y[1, LANE] != 0.25) == kept and (state.pause[LANE] == 16) == kept
 
 
 def excess(power: float, r: float) -> float:

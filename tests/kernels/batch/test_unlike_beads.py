@@ -29,20 +29,20 @@ def test_unlike_beads_in_lanes() -> None:
     block = Batch(scenes[0], Stop())
     assert block.lanes.unequal is not None
     for lane, one in enumerate(scenes):
-        block.put(lane, lower(one), lower(one).scaled(rest(one)), 12.0, look=PERIODS, earliest=NEVER)
+        block.put(lane, lower(one), lower(one).scaled(rest(one)), 12.0, return_at=PERIODS, earliest=NEVER)
     for _ in scenes:
         lane, finite = block.run()
         assert finite
         true = Engine(scenes[lane], Setting("dop853", tolerance=1e-11), 1).periods(PERIODS, watch=False)[0][:, 0]
         found = block.strobes(lane)[: PERIODS + 1, 0]
         assert np.abs(found - true).max() < 1e-6 * np.abs(true).max()
-        block.state.look[lane] = NEVER
+        block.state.return_at[lane] = NEVER
 
 
 def test_the_drive_phase_in_lanes_is_set_right_every_period() -> None:
     """Sine and cosine are turned from step to step; at the end of a period they are 0 and 1, not what turning left."""
     one = scene("sec2").evolve(N=1, f=1130.0)
     block = Batch(one, Stop())
-    block.put(3, lower(one), lower(one).scaled(rest(one)), 1.0, look=200, earliest=NEVER)
+    block.put(3, lower(one), lower(one).scaled(rest(one)), 1.0, return_at=200, earliest=NEVER)
     assert block.run() == (3, True)
     assert tuple(block.state.phase[:, 3]) == (0.0, 1.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core.kernels.dop853.tableau import ALL_STAGES, DENSE, E3, E5, STAGES, A, C
+from granchain_core.kernels.dop853.tableau import ALL_STAGES, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 
 #: The coefficients are given to 16 digits; a sum of 16 terms of order ten then holds to 1e-14.
 ROUNDING = 2e-14
@@ -60,7 +60,7 @@ def dense(x: float, slope) -> float:
     """The dense output at fraction x of a unit step from 0 of y' = slope(t), by the formulas of the kernel."""
     k = np.array([slope(c) for c in C])
     change = B @ k
-    rows = [change, k[0] - change, 2 * change - (k[STAGES] + k[0]), *(DENSE @ k)]
+    rows = [change, k[0] - change, 2 * change - (k[STAGES] + k[0]), *(DENSE_WEIGHTS @ k)]
     value = rows[6] * x
     for i, factor in ((5, 1 - x), (4, x), (3, 1 - x), (2, x), (1, 1 - x)):
         value = (value + rows[i]) * factor

@@ -53,7 +53,7 @@ def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
     total = elastic + damping * (overlap > 0.0) * (speeds[:-1] - speeds[1:])
     w = v - damping * (overlap[:-1] - overlap[1:]) / masses
     lowered = lower(chosen)
-    row, scales, slots = lowered.row, lowered.scales, lowered.slots
+    row, scales, slots = lowered.bodies, lowered.scales, lowered.slots
     y, dy, space = np.zeros(2 * row), np.zeros(2 * row), lowered.forces()
     y[1 : row - 1], y[row + 1 : -1] = u / scales.length, w / scales.velocity
     motion.py_func(slots, u0 / scales.length, v0 / scales.velocity, y, dy, space)

@@ -40,7 +40,7 @@ def evaluated(chosen, u, v, time, compiled=True):
     """
     slope_of, force = (compiled_motion, compiled_force) if compiled else (motion, contact_force)
     lowered = lower(chosen)
-    row, scales, slots = lowered.row, lowered.scales, lowered.slots
+    row, scales, slots = lowered.bodies, lowered.scales, lowered.slots
     y, dy, space = np.zeros(2 * row), np.zeros(2 * row), lowered.forces()
     y[1 : row - 1], y[row + 1 : -1] = u / scales.length, v / scales.velocity
     theta = 2 * np.pi * chosen.f * time
@@ -89,7 +89,7 @@ def acceleration_from_w(lowered, theta, y, compiled, step=1e-6):
 
     Its error is (step·rate)² and rounding/step, with the kinks of the contacts further away than the step: about 1e-6.
     """
-    row, space = lowered.row, lowered.forces()
+    row, space = lowered.bodies, lowered.forces()
     slope = np.zeros_like(y)
     slope_of = compiled_motion if compiled else motion
     slope_of(lowered.slots, y[0], lowered.slots.driver.beta * np.cos(theta), y.copy(), slope, space)
@@ -122,7 +122,7 @@ def test_rest_without_overlap_is_an_equilibrium_and_preload_keeps_it_one():
         chosen = scene("sec2").evolve(F0=preload, D=0.0, wall="rigid")
         lowered, _, _, dy, total = evaluated(chosen, np.zeros(11), np.zeros(11), 0.0)
         np.testing.assert_allclose(total * lowered.scales.force, preload, rtol=1e-14)  # rounding of (F0/K)^{2/3·3/2}
-        np.testing.assert_allclose(dy[lowered.row + 1 : -1], 0.0, atol=1e-13)  # of forces of order one
+        np.testing.assert_allclose(dy[lowered.bodies + 1 : -1], 0.0, atol=1e-13)  # of forces of order one
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -132,7 +132,7 @@ def test_a_velocity_goes_into_w_and_comes_back(law):
     u, v = random_state(chosen, 1)
     lowered, theta, expected, _, _ = evaluated(chosen, u, v, 0.2 / chosen.f)
     y, dy = expected.copy(), np.zeros_like(expected)
-    y[lowered.row + 1 : -1] = v / lowered.scales.velocity
+    y[lowered.bodies + 1 : -1] = v / lowered.scales.velocity
     place(lowered.slots, theta, y, dy, lowered.forces(), True)
     np.testing.assert_allclose(y, expected, atol=1e-14 * np.abs(expected).max())  # the same sums, rounded
     np.testing.assert_allclose(dy[1:6], v / lowered.scales.velocity, atol=1e-14 * np.abs(expected).max())

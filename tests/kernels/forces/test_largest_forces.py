@@ -1,4 +1,4 @@
-"""Jumps of closing contacts: from formulas to every method, every part of the program and the picture."""
+"""Jumps of closing contacts, in every method and every part of the program."""
 
 from __future__ import annotations
 
@@ -11,57 +11,6 @@ from granchain_core import Run, Scene, resonance_curve, run, scene, settled
 from granchain_core.diagram import diagram
 from granchain_core.integrate import METHODS, Engine, Setting, State, certified, live
 from granchain_core.integrate.methods import jump_errors
-from granchain_core.kernels.dop853.force_search import is_monotone
-from granchain_core.kernels.forces.crossings import brief_touch, closing_rate
-from granchain_core.kernels.forces.largest import cubic_top
-
-OWN, PULL = 1.3, -0.7
-
-
-def overlap_at(s: float, speed: float) -> tuple[float, float]:
-    """An overlap and its rate at time s of a contact that closes at 0 with `speed`: δ̈ = PULL − OWN δ̇ while closed."""
-    if s <= 0.0:
-        return speed * s + 0.5 * PULL * s * s, speed + PULL * s
-    end = PULL / OWN
-    rate = end + (speed - end) * np.exp(-OWN * s)
-    return end * s + (speed - end) * (1.0 - np.exp(-OWN * s)) / OWN, rate
-
-
-def crossing(h: float, part: float, speed: float = 0.9) -> tuple[float, float]:
-    """What a step of size h, whose part `part` lies before the closing, makes of the instant and the rate there."""
-    (before, rate), (after, rate_after) = (overlap_at(s, speed) for s in (-part * h, (1.0 - part) * h))
-    return closing_rate.py_func(before, after, rate, rate_after + OWN * after, OWN, h)
-
-
-@pytest.mark.parametrize("part", [0.03, 0.5, 0.97])
-def test_the_rate_at_a_closing_is_of_third_order(part: float) -> None:
-    """Against the exact solution with constant pull; without its own damping the rate is then a parabola but for the
-    trapezium of the small correction, of order h⁴: the error falls 8-fold or more with half the step."""
-    errors = [abs(crossing(h, part)[1] / 0.9 - 1.0) for h in (0.2, 0.1)]
-    print(errors)
-    assert errors[0] < 2e-4
-    assert errors[1] < max(errors[0] / 6.0, 1e-12)
-    assert crossing(0.1, part)[0] == pytest.approx(part, abs=1e-4)
-
-
-def test_a_touch_within_a_step_is_that_of_constant_acceleration() -> None:
-    """δ = top − a s²/2 around its turn: it closes at the rate √(2 a top), whatever part of the step lies before."""
-    a, top, h = 0.8, 1e-3, 0.3
-    for turn in (0.3, 0.5, 0.7):
-        (before, rate), (after, later) = ((top - 0.5 * a * s * s, -a * s) for s in (-turn * h, (1.0 - turn) * h))
-        assert brief_touch.py_func(before, after, rate, later, h) == pytest.approx(np.sqrt(2.0 * a * top), rel=1e-12)
-    assert brief_touch.py_func(-1.0, -1.0, 0.1, -0.1, h) == 0.0
-
-
-def test_the_top_between_two_states_is_the_cubics() -> None:
-    """sin over a step of 0.2 around its top: a cubic through values and slopes is good to h⁴/384."""
-    for shift in (-0.15, -0.1, -0.02):
-        ends = [np.pi / 2 + shift, np.pi / 2 + shift + 0.2]
-        top = cubic_top.py_func(np.sin(ends[0]), np.cos(ends[0]), np.sin(ends[1]), np.cos(ends[1]), 0.2)
-        assert top == pytest.approx(1.0, abs=0.2**4 / 384)
-    assert cubic_top.py_func(1.0, 0.5, 2.0, 0.5, 0.1) == 2.0
-    assert cubic_top.py_func(1.0, np.nan, 2.0, -0.5, 0.1) == 2.0
-
 
 #: One bead that touches the driver when that starts with its full speed: the first force there is D A₀ 2πf, at t = 0+.
 STRIKE = scene("sec2").evolve(N=1, D=400.0, f=500.0, accuracy=1e-6)
@@ -113,7 +62,6 @@ def test_a_jump_is_read_where_the_overlap_vanishes(beads: int) -> None:
     exact = jump_and_force(chain, certified(1e-11), on_its_way.state)[1]
     for refine in (4, 6, 8, 12, 16):
         least, force = jump_and_force(chain, live(refine), on_its_way.state)
-        print(refine, force / exact - 1.0, least)
         assert abs(force / exact - 1.0) < least
 
 
@@ -121,7 +69,7 @@ def jump_and_force(chain: Scene, setting: Setting, state: State) -> tuple[float,
     """Lower bound of the relative error of the largest input force, which is at a jump, and that force [scaled]."""
     engine = Engine(chain, setting, 1)
     engine.start(state)
-    engine.forget_peaks()
+    engine.reset_peaks()
     tops = engine.largest_forces(1)
     assert engine.jumps[0] == tops[0]
     return jump_errors(setting, engine.lowered, 1, engine.jumps, tops)[0], tops[0]
@@ -170,7 +118,7 @@ def test_a_long_chain_sees_the_jumps_at_its_ends() -> None:
         assert abs(force / true - 1.0) < stated < 2e-3  # of which 1/(1 − |μ|) is a part
 
 
-#: How near the top of the driver's way a bead stands that it brushes.
+#: How near the top of the driver's way a bead stands that it just touches.
 NEAR = 2e-3
 
 
@@ -193,17 +141,3 @@ def test_touches_shorter_than_a_step_are_found_or_said_not_to_be_resolved(method
     expected = engine.lowered.slots.dissipation.coefficient * rate
     assert touched[0, 3] == pytest.approx(expected, rel=0.02 if resolves else 0.1)
     assert engine.tops[0] >= touched[0, 3]
-
-
-def test_a_cubic_called_monotone_is_largest_at_an_end() -> None:
-    """Random values and slopes, against the cubic on a fine grid; a force that is zero throughout is monotone too."""
-    rng, x, called = np.random.default_rng(8), np.linspace(0.0, 1.0, 1001), 0
-    for f0, s0, f1, s1, h in rng.uniform(-1.0, 1.0, (2000, 5)) * (1.0, 8.0, 1.0, 8.0, 0.4) + (0.0, 0.0, 0.0, 0.0, 0.5):
-        if is_monotone.py_func(f0, s0, f1, s1, h):
-            a, b = h * s0, h * s1
-            cubic = f0 + x * (a + x * (3.0 * (f1 - f0) - 2.0 * a - b + x * (2.0 * (f0 - f1) + a + b)))
-            assert cubic.max() <= max(f0, f1) + 1e-14  # some roundings of values below 10
-            called += 1
-    assert 100 < called < 1900
-    assert is_monotone.py_func(0.0, 0.0, 0.0, 0.0, 1.0)
-    assert not is_monotone.py_func(1.0, 1.0, 1.0, -1.0, 1.0) and not is_monotone.py_func(1.0, np.nan, 2.0, 1.0, 1.0)

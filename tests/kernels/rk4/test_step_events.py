@@ -7,12 +7,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from granchain_core.kernels.contact_cubic import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END
 from granchain_core.kernels.dop853 import run as certified
 from granchain_core.kernels.effects.balance import Balance
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from granchain_core.kernels.rk4 import contact_events as events
 from granchain_core.kernels.rk4 import step as fixed_step
-from granchain_core.kernels.rk4.contact_events import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END
 
 
 def ends_of(*roots: float, sign: float = 1.0) -> tuple[float, float, float, float]:

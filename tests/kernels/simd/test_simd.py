@@ -56,7 +56,7 @@ def test_a_lane_that_is_not_finite_does_not_lose_the_others() -> None:
     block = Batch(scenes[0], Stop())
     for lane, one in enumerate(scenes):
         y = lower(one).scaled(rest(one))
-        block.put(lane, lower(one), y * (np.nan if lane == 0 else 1.0), 1, look=5, earliest=5)
+        block.put(lane, lower(one), y * (np.nan if lane == 0 else 1.0), 1, return_at=5, earliest=5)
     block.state.y[1, 0] = np.nan
     lane, finite = block.run()
     assert lane == 0 and not finite

@@ -10,7 +10,7 @@ import sys
 import pytest
 
 from granchain_core import resonance_curve, scene
-from granchain_core.kernels.simd import width
+from granchain_core.kernels import width
 
 FREQUENCIES = [130.0, 255.0, 340.0, 470.0, 850.0, 1130.0, 1576.0, 2000.0, 2500.0]
 #: In a process of its own, because kernels are compiled for one number of lanes.

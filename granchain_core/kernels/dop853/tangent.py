@@ -10,20 +10,20 @@ Check      ∫ trace = −∫ Σ_c g_c (1/m_c + 1/m_{c+1}) dt is the logarithm o
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from ..dop853.flow_attempt import keep_gaps
-from ..dop853.tableau import STAGES, A, C
-from ..dop853.time_map import rate_at
-from ..effects.contact import positive_part
+from ..contact_cubic import TINY
+from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import damping
 from ..effects.foundation import foundation_pull
 from ..effects.preload import overlap
 from ..jit import by_slot, inline_llvm, inline_numba, internal
 from ..simd.vector import blank, load, store
+from .flow_attempt import keep_gaps
+from .tableau import STAGES, A, C
+from .time_map import rate_at
 
 
 class Tangent(NamedTuple):
@@ -58,14 +58,14 @@ def _(tangent, slots, state, slope, stage):
 
 
 @by_slot
-def carry(tangent, slots, time, h, path):
+def carry(tangent, slots, time, h, contacts):
     """Carry the tangents through the accepted step of size h; returns its share of ∫ trace. Absent: there are none."""
     return 0.0
 
 
 @carry.of(Tangent)
-def _(tangent, slots, time, h, path):
-    share = linearise(slots, time, h, path, tangent)
+def _(tangent, slots, time, h, contacts):
+    share = linearise(slots, time, h, contacts, tangent)
     for stage in range(STAGES + 1):
         for earlier in range(stage):
             tangent.weights[stage, earlier] = h * A[stage, earlier]
@@ -76,7 +76,7 @@ def _(tangent, slots, time, h, path):
 
 
 @inline_numba
-def linearise(slots, time, h, path, tangent):
+def linearise(slots, time, h, contacts, tangent):
     """Tangent stiffness s and damping g of every contact in every stage, times dt/dx; returns ∫ trace over the step.
 
     A contact that is closed has the damping of one though rounding may have its overlap below zero.
@@ -87,10 +87,10 @@ def linearise(slots, time, h, path, tangent):
         share = h * A[STAGES, stage]
         for c in range(tangent.gaps.shape[1]):
             s, g = 0.0, 0.0
-            if path.closed[c] != 0 and c >= tangent.first_contact:
+            if contacts.closed[c] != 0 and c >= tangent.first_contact:
                 d = positive_part(tangent.gaps[stage, c])
-                s = rate * 1.5 * slots.chain.stiffness[c] * sqrt(d)
-                g = rate * damping(slots.dissipation, d + 1e-300)
+                s = rate * elastic_slope(slots.chain.stiffness[c], d)
+                g = rate * damping(slots.dissipation, d + TINY)
             tangent.stiffness[stage, c], tangent.damping[stage, c] = s, g
             trace -= share * g * (inverse_mass[c] + inverse_mass[c + 1])
     return trace

@@ -1,4 +1,4 @@
-"""Random brushes: a bead or a driver touches its neighbour, or misses it, by as little as 1e-7 of an amplitude.
+"""Random grazing touches: a bead or a driver touches its neighbour, or misses it, by as little as 1e-7 of an amplitude.
 
 One bead with a gap on both sides (a negative static overlap), in scaled units. Either a driver of amplitude 1 comes
 within the gap's depth of it while it rests, or it swings on its foundation and comes as near to the wall. Depths are

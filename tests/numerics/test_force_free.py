@@ -23,7 +23,7 @@ def thrown(law: str) -> Scene:
     return replace(pressed, start_velocity=((3, 1e-3),))
 
 
-def test_a_slack_contact_pushes_again() -> None:
+def test_a_force_free_contact_pushes_again() -> None:
     """Against RK4 with steps so short that the one kink, which it does not see, costs it less than 1e-8: its own change
     from half as many steps."""
     chain = thrown("tsuji")
@@ -33,11 +33,11 @@ def test_a_slack_contact_pushes_again() -> None:
     assert np.abs(fine.displacement - finer.displacement).max() / largest < 1e-8
     assert np.abs(found.displacement - finer.displacement).max() / largest < 1e-8
     force = found.force[:, 2] / found.force[:, 2].max()
-    assert abs(force[:3]).max() < 1e-12  # slack at first
+    assert abs(force[:3]).max() < 1e-12  # without force at first
     assert force[-1] > 0.5
 
 
-def test_a_slack_contact_moves_as_if_it_were_open() -> None:
+def test_a_force_free_contact_moves_as_if_it_were_open() -> None:
     """Two beads that fly apart from an overlap: neither feels the other, from the first step to the opening and on.
 
     Against RK4, whose error is that of a force's fourth root at the opening, below 1e-6 with these steps.

@@ -1,0 +1,68 @@
+"""An overlap within a step as a cubic, from its values and rates at both ends: its turning point and its root."""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from .jit import inline_numba, internal
+
+#: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
+#: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
+GAP, RATE, GAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
+#: Size of an overlap that only has a sign: above zero the contact counts as closed, but its force is negligible.
+TINY = 1e-300
+
+
+@internal
+def hermite_root(d0, s0, d1, s1, high):
+    """The root in [0, high] of the cubic with values d0, d1 and slopes s0, s1 at 0 and 1; its sign changes there."""
+    low = 0.0
+    a = 2.0 * (d0 - d1) + s0 + s1
+    b = 3.0 * (d1 - d0) - 2.0 * s0 - s1
+    x = d0 / (d0 - d1) if high == 1.0 else 0.5 * high
+    for _ in range(40):
+        value = d0 + x * (s0 + x * (b + x * a))
+        if (value > 0.0) == (d0 > 0.0):
+            low = x
+        else:
+            high = x
+        slope = s0 + x * (2.0 * b + 3.0 * a * x)
+        nearer = x - value / slope if slope != 0.0 else low
+        if not (low < nearer < high):
+            nearer = 0.5 * (low + high)
+        if abs(nearer - x) < 1e-12:
+            return nearer
+        x = nearer
+    return x
+
+
+@internal
+def hermite_turn(d0, s0, d1, s1):
+    """Where the same cubic turns between ends at which its slopes have opposite signs."""
+    a = 2.0 * (d0 - d1) + s0 + s1
+    b = 3.0 * (d1 - d0) - 2.0 * s0 - s1
+    # s0 + 2b x + 3a x² = 0, the root between 0 and 1, without cancellation
+    disc = sqrt(max(0.0, b * b - 3.0 * a * s0))
+    return s0 / (disc - b) if s0 > 0.0 else -s0 / (disc + b)
+
+
+@inline_numba
+def contact_root(d0, s0, d1, s1):
+    """Fraction of a step at which one contact opens or closes; 2 if it does not."""
+    if d0 == 0.0:  # beads that touch: pushed together they close here, and do not where they only part
+        if s0 > 0.0 and d1 > 0.0:
+            return 0.0
+        return 2.0
+    if (d0 > 0.0) != (d1 > 0.0):
+        return hermite_root(d0, s0, d1, s1, 1.0)
+    away = s0 if d0 > 0.0 else -s0
+    back = s1 if d0 > 0.0 else -s1
+    if away >= 0.0 or back <= 0.0:
+        return 2.0
+    x = hermite_turn(d0, s0, d1, s1)
+    if not 0.0 < x < 1.0:
+        return 2.0
+    turned = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
+    if (turned > 0.0) == (d0 > 0.0):
+        return 2.0
+    return hermite_root(d0, s0, d1, s1, x)

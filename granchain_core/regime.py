@@ -1,0 +1,94 @@
+"""What kind of motion it is, with the evidence: periodic n, quasi-periodic, chaotic, or unsettled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Regime:
+    """What kind of motion it is, and the evidence.
+
+    Attributes
+    ----------
+    name : str
+        "periodic", "quasi-periodic", "chaotic" or "unsettled".
+    period : int or None
+        In drive periods, where the motion is periodic.
+    decay : float or None
+        Factor by which changes shrank per orbit, where that was observed.
+    distance : float or None
+        Bound on the relative distance to the orbit.
+    periods_run : int
+        Drive periods that were run.
+    lyapunov : tuple of float or None
+        Lyapunov exponent per drive period and its standard error, where it was measured.
+    multiplier : float or None
+        Largest |μ| of the n-period map, where it was computed.
+    followed : bool
+        The motion was still on its way, and the orbit that it approaches was found by Newton's method or extrapolation.
+    approaches : int or None
+        Period of an orbit that an unsettled motion approaches.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> regime = settle(scene("sec2").evolve(N=2, f=2000.0)).regime
+    >>> regime.name, regime.period, regime.distance < 1e-4
+    ('periodic', 1, True)
+    """
+
+    name: str
+    period: int | None
+    decay: float | None
+    distance: float | None
+    periods_run: int
+    lyapunov: tuple[float, float] | None = None
+    multiplier: float | None = None
+    followed: bool = False
+    approaches: int | None = None
+
+    @classmethod
+    def unsettled(cls, periods_run: int) -> Regime:
+        """A motion of which nothing is known after `periods_run` periods."""
+        return cls("unsettled", None, None, None, periods_run)
+
+    @property
+    def contraction(self) -> float:
+        """Factor by which a distance shrinks per orbit: |μ|, else the observed decay, else a half."""
+        if self.multiplier is not None:
+            return min(1.0 - 1e-6, self.multiplier)
+        return min(0.999, self.decay or 0.5)
+
+    @property
+    def evidence(self) -> str:
+        """|μ| where it was computed, else the decay that was seen; empty where neither is known."""
+        if self.multiplier is not None:
+            return f"|μ| {modulus_words(self.multiplier)}"
+        if self.decay is None:
+            return ""
+        shown = self.period or self.approaches or 1
+        return f"decay {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
+
+    @property
+    def sentence(self) -> str:
+        """The regime in words for the dashboard."""
+        evidence = f" ({self.evidence})" if self.evidence else ""
+        if self.name == "periodic":
+            how = "followed to its orbit after" if self.followed else "settled within"
+            return f"period {self.period}, {how} {self.periods_run} periods{evidence}"
+        if self.name == "unsettled":
+            towards = f", on its way to period {self.approaches}{evidence}" if self.approaches else ""
+            return f"not settled after {self.periods_run} periods{towards}"
+        assert self.lyapunov is not None
+        return f"{self.name}, Lyapunov exponent {self.lyapunov[0]:+.3f} ± {self.lyapunov[1]:.3f} per period"
+
+
+def modulus_words(modulus: float) -> str:
+    """A modulus with enough figures to distinguish it from 1 and from 0."""
+    if abs(modulus - 1.0) < 0.01:
+        return f"{modulus:.6f}" if abs(modulus - 1.0) < 1e-4 else f"{modulus:.4f}"
+    if modulus < 0.0095:
+        mantissa, exponent = f"{modulus:.0e}".split("e")
+        return f"{mantissa}e{int(exponent)}"
+    return f"{modulus:.2f}" if modulus >= 0.095 else f"{modulus:.3f}"

@@ -1,0 +1,37 @@
+"""The imports of the project's Python files, for the tests of its architecture."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[2]
+
+
+class Import(NamedTuple):
+    """One import: the module, dotted and absolute, and the names taken from it with what they are called here.
+
+    `import …` takes no names.
+    """
+
+    module: str
+    names: tuple[tuple[str, str], ...] = ()
+
+
+def parsed(path: Path) -> ast.Module:
+    """A file as a syntax tree."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def imports_in(path: Path, everywhere: bool = True) -> Iterator[Import]:
+    """What a file imports: everywhere, in functions and for type checking too, or only at its top."""
+    tree, package = parsed(path), path.relative_to(ROOT).parts[:-1]
+    for node in ast.walk(tree) if everywhere else tree.body:
+        if isinstance(node, ast.Import):
+            yield from (Import(alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else ()
+            yield Import(".".join([*above, *([node.module] if node.module else [])]),
+                         tuple((alias.name, alias.asname or alias.name) for alias in node.names))

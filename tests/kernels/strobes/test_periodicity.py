@@ -1,0 +1,62 @@
+"""Regimes of sequences of states that are known: linear maps around a point, and the limit of a decaying one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core.kernels.strobes.extrapolation import ORBITS, reduced_rank
+from granchain_core.steady import regime as regimes
+
+
+def strobes(multipliers: list[complex], amplitudes: list[float], count: int, seed: int = 1) -> np.ndarray:
+    """Stroboscopic states of a linear map around a point: (count + 1, 2, 3)."""
+    rng = np.random.default_rng(seed)
+    fixed, modes = rng.standard_normal((2, 3)), rng.standard_normal((len(multipliers), 2, 3))
+    k = np.arange(count + 1)
+    return fixed + sum(a * np.multiply.outer(np.real(np.asarray(mu, dtype=complex) ** k), m)
+                       for mu, a, m in zip(multipliers, amplitudes, modes, strict=True))
+
+
+@pytest.mark.parametrize("rate", [0.5, 0.9, 0.97])
+def test_the_distance_bound_holds_for_a_linear_map(rate: float) -> None:
+    """Settled is said only where the true distance is below the bound, and the rate is found."""
+    for count in range(20, 2000, 40):
+        states = strobes([rate], [1.0], count)
+        found = regimes.find_period(states)
+        if found.name == "periodic":
+            true = np.abs(states[-1] - strobes([rate], [0.0], 0)[0]).max()
+            largest = np.abs(states).max()
+            assert true < 20 * regimes.SETTLED_DISTANCE * largest  # states are scaled row by row, within a factor of ten
+            assert found.period == 1
+            return
+    pytest.fail("never settled")
+
+
+def test_a_slow_approach_is_not_called_settled_by_a_small_change() -> None:
+    """|μ| = 0.9999: a change of 1e-8 a period is a distance of 1e-4 (docs/model.md, Steady states)."""
+    assert regimes.find_period(strobes([0.9999], [1e-4], 400)).name == "unsettled"
+
+
+@pytest.mark.parametrize("period", [2, 3, 4, 7])
+def test_roots_of_one_give_their_period(period: int) -> None:
+    """A multiplier e^{2πi/n} that does not decay is an orbit of period n."""
+    found = regimes.find_period(strobes([np.exp(2j * np.pi / period), 0.3], [1.0, 1.0], 200))
+    assert (found.name, found.period) == ("periodic", period)
+
+
+def test_a_closed_curve_is_not_periodic() -> None:
+    """An irrational rotation is quasi-periodic: no period is found, and with a zero exponent it is called that."""
+    states = strobes([np.exp(2j * np.pi * (np.sqrt(5) - 1) / 2)], [1.0], 420)
+    assert regimes.find_period(states).name == "unsettled"
+    assert regimes.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), states, 420).name == "quasi-periodic"
+    assert regimes.regime_from_exponents(np.array([0.1, 0.11, 0.09, 0.1]), states, 420).name == "chaotic"
+
+
+@pytest.mark.parametrize("modes", [1, 3, ORBITS - 2])
+def test_the_limit_of_a_linear_map_with_few_modes_is_found_at_once(modes: int) -> None:
+    """k differences remove k − 1 modes; what is left are roundings of the states over the smallest 1 − μ, some 1e-14."""
+    states = strobes([0.98 - 0.1 * i for i in range(modes)], [1.0] * modes, ORBITS)
+    limit = np.zeros((2, 3))
+    reduced_rank(states, np.zeros((ORBITS, 6)), np.zeros((ORBITS, ORBITS)), limit)
+    np.testing.assert_allclose(limit, strobes([0.5] * modes, [0.0] * modes, 0)[0], atol=1e-9)

@@ -1,0 +1,116 @@
+"""Resonance curves of section 2: what they show, the errors they claim, and curves that fail or are cancelled."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import NumbersFailed, resonance_curve, scene, settled
+from granchain_core.steady.curve import CurvePoint
+from granchain_core.stop import Stop
+
+
+@pytest.fixture(scope="module")
+def curve():
+    """298 points from 30 to 3000 Hz, from rest."""
+    return resonance_curve(scene("sec2"), np.linspace(30.0, 3000.0, 298))
+
+
+#: docs/model.md, `sec2`: frequency [Hz] and elastic output force [N].
+PEAKS = [(340.0, 0.622), (620.0, 1.194), (1130.0, 1.110), (1580.0, 0.762), (1940.0, 0.327)]
+
+
+@pytest.mark.parametrize(("frequency", "force"), PEAKS)
+def test_the_five_peaks_are_where_they_belong(curve, frequency, force):
+    """On this grid of frequencies, to the digits that the page gives."""
+    f, elastic = curve.column("frequency"), curve.column("max_output_force_elastic")
+    near = np.abs(f - frequency) <= 60.0
+    best = np.flatnonzero(near)[elastic[near].argmax()]
+    assert f[best] == pytest.approx(frequency)
+    assert elastic[best] == pytest.approx(force, abs=0.0005)
+
+
+def test_above_1980_hz_less_than_a_tenth_of_a_newton_arrives(curve):
+    """The chain is closed to higher frequencies."""
+    f, elastic = curve.column("frequency"), curve.column("max_output_force_elastic")
+    assert elastic[f > 1980.0].max() < 0.1
+
+
+def test_every_point_of_the_curve_has_its_regime_and_an_error_where_one_can_be_claimed(curve):
+    """Periodic points carry a small error estimate, others none; nothing failed."""
+    assert len(curve.points) == 298
+    assert not any(p.failure for p in curve.points)
+    for p in curve.points:
+        assert (p.error_estimate is None) == (p.regime.name != "periodic"), p.frequency
+    claimed = np.array([p.error_estimate for p in curve.points if p.error_estimate is not None])
+    assert len(claimed) > 150
+    assert np.median(claimed) < 1e-3
+
+
+def test_errors_claimed_on_the_curve_bound_the_true_ones(curve):
+    """Against the certified orbit sampled 512 times a period, at every twelfth periodic point."""
+    honest, compared = 0, 0
+    for p in [q for q in curve.points if q.regime.name == "periodic"][::12]:
+        found = settled(curve.scene.evolve(f=p.frequency), samples=512)
+        if found.regime.period != p.regime.period:
+            continue  # two attractors: nothing to compare
+        true = found.run.max_output_force_elastic
+        compared += 1
+        honest += abs(p.max_output_force_elastic - true) <= p.error_estimate * p.max_output_force + 1e-5 * true
+    assert compared >= 10
+    assert honest >= 0.95 * compared
+
+
+def test_up_and_down_sweeps_differ_where_there_is_hysteresis():
+    """The state is carried along: between 1250 and 1700 Hz the two directions sit on different branches somewhere."""
+    frequencies = np.arange(1250.0, 1701.0, 25.0)
+    up, down = (resonance_curve(scene("sec2"), frequencies, start) for start in ("up", "down"))
+    a, b = up.column("max_output_force_elastic"), down.column("max_output_force_elastic")
+    assert np.abs(a - b).max() > 0.05  # newtons; forces are known to 1e-5, so this is another branch
+
+
+def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
+    """Its point carries the sentence and NaN; the others are there, in every start."""
+    from granchain_core.steady import alone as module
+
+    true = module.steady_state
+
+    def fails_at_600(one, start, stop):
+        if one.f == 600.0:
+            raise NumbersFailed("made to fail", "not-finite")
+        return true(one, start, stop)
+
+    monkeypatch.setattr(module, "steady_state", fails_at_600)
+    # with a tension cut points are computed one by one from rest too
+    for start, chain in (("up", scene("sec2")), ("rest", scene("sec2").evolve(tension="cut"))):
+        found = resonance_curve(chain.evolve(N=3), [500.0, 600.0, 700.0], start)
+        assert [p.failure for p in found.points] == ["", "made to fail", ""]
+        forces = found.column("max_output_force")
+        assert np.isnan(forces[1])
+        assert np.isfinite(forces[[0, 2]]).all()
+
+
+@pytest.mark.parametrize("start", ["rest", "up", "down"])
+@pytest.mark.parametrize("count", [2, 20])
+def test_a_curve_of_the_stiffest_foundation_is_computed_or_says_why_not(start, count):
+    """k = 1e10 N/m is valid: every point has a force or a sentence, whatever its neighbours do."""
+    found = resonance_curve(scene("sec2").evolve(k=1e10, N=2), np.linspace(2000.0, 2500.0, count), start)
+    assert len(found.points) == count
+    assert all(p.failure or np.isfinite(p.max_output_force) for p in found.points)
+    assert not any(p.failure for p in found.points), found.points[0].failure
+
+
+@pytest.mark.parametrize("start", ["rest", "up", "down"])
+def test_a_cancelled_curve_keeps_what_it_has(start):
+    """Stopped after the third point: those points and soon an end."""
+    seen: list[float] = []
+    stop = Stop()
+
+    def look(point: CurvePoint) -> None:
+        seen.append(point.frequency)
+        if len(seen) >= 3:
+            stop.set()
+
+    found = resonance_curve(scene("sec2").evolve(N=3), np.linspace(300.0, 900.0, 60), start, stop=stop, on_point=look)
+    assert 3 <= len(found.points) < 60
+    assert sorted(seen) == [p.frequency for p in found.points]
