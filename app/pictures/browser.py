@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 from textwrap import wrap
 
-from bokeh.models import LayoutDOM, Plot
+from bokeh.models import LayoutDOM, Plot, Toolbar
 from PIL import Image
 
 from granchain_core import BadInput
@@ -56,6 +56,7 @@ def browser() -> str:
 
 def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int], scale: float = 1.5) -> bytes:
     """The figure in `size` [px] with its caption, `scale` times as many pixels as that."""
+    _without_tools(figure)
     width, height = size[0], size[1] + caption_height(title, caption, size[0])
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
         picture = Path(folder) / "picture.png"
@@ -74,10 +75,9 @@ def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
 
 def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int]) -> str:
     """The same as SVG."""
-    for plot in figure.select({"type": Plot}):
+    _without_tools(figure)
+    for plot in _plots(figure):
         plot.output_backend = "svg"
-    if isinstance(figure, Plot):
-        figure.output_backend = "svg"
     page = page_of(figure, title).replace("</body>", _EXPORT)
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
         told = _run(folder, page, "--dump-dom", f"--window-size={size[0]},{size[1]}")
@@ -85,6 +85,18 @@ def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
     if found is None:
         raise BadInput(f"{browser()} drew no SVG; write an HTML file instead.")
     return _with_caption(html.unescape(found[1]), title, caption, theme)
+
+
+def _plots(figure: LayoutDOM) -> list[Plot]:
+    return [*figure.select({"type": Plot}), *([figure] if isinstance(figure, Plot) else [])]
+
+
+def _without_tools(figure: LayoutDOM) -> None:
+    """A picture has no buttons."""
+    for plot in _plots(figure):
+        plot.toolbar_location = None
+    for bar in figure.select({"type": Toolbar}):
+        bar.visible = False
 
 
 def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:

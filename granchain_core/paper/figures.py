@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ..errors import unknown_name
+from ..errors import BadInput
 from ..stop import Stop
 from . import compute as by
 from .given import Given
 from .results import Result
 
 _IMAGES = ("The paper's measured series are images, whose numbers we do not have, so none is drawn; "
-           "your own file is (--data FILE).")
+           "your own is drawn over it (--data FILE).")
 _FEATURES = "Of the measurement only what the text states is drawn, its frequencies: the text gives no force. "
 _AMPLITUDES = ("Model (5) with the amplitudes of the presets: 11 µm at 60 Hz, 6 µm at 90 Hz, and for the paper's 100 Hz "
                "13 µm at 50 Hz, as the paper drove its own model. It took another amplitude at each frequency and "
@@ -73,7 +73,8 @@ _TABLE = (
                 lambda given, stop, said: by.trains((90.0, 100.0), given, False, stop, said), ("series",),
                 (90.0, 100.0)),
     PaperFigure("8", "The chain of models (3) to (5): every bead on a weak foundation",
-                "The scene rig to scale; the springs, which stand for the flexures, are symbols. κ = 0.001 is k/(K√A0).",
+                "The scene rig to scale; the springs, which stand for the flexures, are symbols. κ = 0.001 is k/(K√A0). "
+                "In model (3) a given force F_in takes the driver's place.",
                 lambda *_: by.rig("rig")),
     PaperFigure("9", "Model and measurement: largest transmitted force, and force trains at 60 Hz",
                 "(a) " + _FEATURES + "Model (3) needs the measured input force at every frequency; in its place model (5) "
@@ -83,7 +84,7 @@ _TABLE = (
                 lambda given, stop, said: by.response(given, True, stop, said), ("curve", "series"), (60.0,)),
     PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
                 "Model (3) from rest, fed with a measured input force or, without one, with that of model (5), and shown "
-                "after 60 periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable (|μ| 1.22) and does not find the "
+                "after 60 periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable and does not find the "
                 "chain's motion. " + _IMAGES,
                 lambda given, stop, said: by.trains((90.0, 100.0), given, True, stop, said), ("series",),
                 (90.0, 100.0)),
@@ -105,7 +106,10 @@ FIGURES: dict[str, PaperFigure] = {one.number: one for one in _TABLE}
 def figure_of(number: str) -> PaperFigure:
     """The figure with this number; `BadInput` names the nearest one."""
     if number not in FIGURES:
-        raise unknown_name("figure", number, FIGURES)
+        numbers = [int(one) for one in FIGURES if one.isdigit()]
+        near = min(max(int(number), numbers[0]), numbers[-1]) if number.isdigit() else "1"
+        raise BadInput(f"There is no figure {number[:20]!r}; there are {numbers[0]} to {numbers[-1]}, 3a and 3b, the "
+                       f"nearest is {near}.")
     return FIGURES[number]
 
 

@@ -53,6 +53,7 @@ def _drive(found: Settled, periods: int, time: Range1d, theme: Theme) -> figure:
     in_theme(plot.line("force", "time", source=source, x_range_name="force"), line_color="input", line_width=1.8)
     plot.xaxis[1].axis_label = "displacement (µm)"
     plot.yaxis.axis_label = "time (ms)"
+    plot.title.text = {"fig3a": "(a)", "fig3b": "(b)"}[run.scene.name]
     for axis in plot.xaxis:
         axis.ticker = BasicTicker(desired_num_ticks=3)
     return dress(plot, theme)
@@ -71,9 +72,9 @@ def _map(found: Settled, periods: int, time: Range1d, theme: Theme) -> figure:
     image = plot.image([values], x=0.5, y=0.0, dw=beads, dh=time.start, color_mapper=colours)
     plot.add_tools(HoverTool(renderers=[image], tooltips=[("bead", "$x{0}"), ("time", "$y{0.000} ms"),
                                                           ("kinetic energy", "@image{0.0000} µJ")]))
-    bar = ColorBar(color_mapper=colours, title="µJ", width=12, padding=6, ticker=BasicTicker(desired_num_ticks=5),
-                   background_fill_color=theme.card, title_text_color=theme.soft, major_label_text_color=theme.ink,
+    bar = ColorBar(color_mapper=colours, width=12, padding=6, ticker=BasicTicker(desired_num_ticks=5),
+                   background_fill_color=theme.card, major_label_text_color=theme.ink,
                    major_label_text_font_size=f"{theme.small - 2}px", bar_line_color=None)
     plot.add_layout(bar, "right")
-    plot.title.text = f"{found.run.scene.f:g} Hz, {found.regime.name}, period {found.regime.period}"
+    plot.title.text = f"{found.run.scene.f:g} Hz, period {found.regime.period}: kinetic energy (µJ)"
     return dress(plot, theme)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from bokeh.layouts import gridplot
 from bokeh.models import ColumnDataSource, HoverTool, LayoutDOM, Whisker
 from bokeh.plotting import figure
@@ -14,10 +15,26 @@ from granchain_core.experiment import Measured
 from ..theme import Theme, in_theme
 
 
-def grid(rows: Sequence[Sequence[figure | None]]) -> LayoutDOM:
-    """Panels in rows, which fill the room."""
+def grid(rows: Sequence[Sequence[figure]]) -> LayoutDOM:
+    """Panels in rows, which fill the room; the wheel scrolls the page until its tool is chosen."""
+    for row in rows:
+        for plot in row:
+            plot.toolbar.active_scroll = None
     return gridplot([list(row) for row in rows], sizing_mode="stretch_both", toolbar_location="right",
                     toolbar_options={"logo": None, "autohide": True}, merge_tools=True)
+
+
+def fewer(values: np.ndarray, part: float = 2e-4) -> np.ndarray:
+    """Indices of equally spaced samples without those that a straight line replaces, to `part` of the range."""
+    kept = np.ones(len(values), dtype=bool)
+    limit = part * float(np.ptp(values)) if len(values) else 0.0
+    for step in (1, 2, 4, 8, 16):
+        middle = np.arange(step, len(values) - step, 2 * step)
+        straight = np.abs(values[middle] - 0.5 * (values[middle - step] + values[middle + step])) <= limit
+        until = np.concatenate([[0], np.cumsum(kept)])
+        alone = until[middle + step] - until[middle - step + 1] == 1
+        kept[middle[straight & alone]] = False
+    return np.flatnonzero(kept)
 
 
 def inside_legend(plot: figure, theme: Theme, place: str = "top_right") -> None:

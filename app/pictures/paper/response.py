@@ -36,7 +36,7 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
         line = Span(location=feature.frequency, dimension="height", line_dash=[2, 4])
         plot.add_layout(in_theme(line, line_color="drive" if feature.is_resonance else "soft", line_width=1.8))
     stated = ColumnDataSource({
-        "x": [f.frequency for f in shown.features], "y": [1.14 * high] * len(shown.features),
+        "x": [f.frequency for f in shown.features], "y": [1.36 * high] * len(shown.features),
         "words": [f"{f.frequency:g} Hz, {f.kind}" for f in shown.features],
         "source": [f.source for f in shown.features]}, name="stated")
     in_theme(plot.text("x", "y", text="words", source=stated, angle=-math.pi / 2, text_font_size="12px",
@@ -44,7 +44,7 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
     if shown.states:
         _states(plot, shown)
     measured_curve(plot, shown.measured, 1.0)
-    plot.y_range.update(start=0, end=1.16 * high)
+    plot.y_range.update(start=0, end=1.38 * high)
     plot.xaxis.axis_label, plot.yaxis.axis_label = "drive frequency f (Hz)", "largest elastic output force (N)"
     plot.title.text = "(a) lines: model (5) from rest; upright: what the text states"
     dress(plot, theme)
@@ -66,6 +66,7 @@ def _curve(plot: figure, one: Curve, dash: str | list[int], role: str, marked: b
     line = plot.line("x", "y", source=source, line_dash=dash, legend_label=words)
     in_theme(line, line_color=role, line_width=1.8)
     marks = plot.scatter("x", "y", source=source, marker="marker", size="size", fill_color="colour", line_color="colour",
+                         line_width=1.5,
                          **({"legend_group": "regime"} if marked else {}))
     plot.add_tools(HoverTool(renderers=[marks if marked else line], tooltips=[
         ("", words), ("drive frequency", "@x{0.0} Hz"), *FORCES, ("motion", "@sentence")]))

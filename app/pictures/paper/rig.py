@@ -64,7 +64,7 @@ def _wall(plot: figure, place: float, radius: float, height: float) -> None:
     wall = plot.quad(left=[place], right=[place + radius], bottom=[-0.5 * height - radius], top=[0.5 * height + radius],
                      hatch_pattern="/", hatch_alpha=0.6, fill_alpha=0.2)
     in_theme(wall, fill_color="steel", line_color="ink", line_width=1.6, hatch_color="ink")
-    _words(plot, [place + 1.25 * radius], 0.0, ["wall"], "ink")
+    _words(plot, [place + 0.5 * radius], 0.5 * height + 1.1 * radius, ["wall"], "ink", align="center", up=True)
 
 
 def _springs(plot: figure, centres: np.ndarray, radius: float) -> None:
@@ -98,7 +98,7 @@ def _fixture(plot: figure, centres: np.ndarray, radius: float, end: float) -> No
     laser = plot.segment([left - 4.0 * radius], [3.6 * radius], [left - 4.0 * radius], [0.0], line_dash=[2, 3])
     in_theme(laser, line_color="drive", line_width=1.6)
     for x, y, words in ((left - 7.6 * radius, 1.8 * radius, "shaker"), (left - 6.5 * radius, 4.1 * radius, "laser vibrometer"),
-                        (left - 4.4 * radius, -1.0 * radius, "stinger, force transducer"),
+                        (left - 7.6 * radius, -1.8 * radius, "stinger, force transducer"),
                         (float(centres[4]), shaft + 0.8 * radius, "flexures in holders on threaded shafts"),
                         (end - 7.2 * radius, -1.4 * radius, "force transducer at the wall")):
         _words(plot, [x], y, [words], "soft")

@@ -13,7 +13,7 @@ from granchain_core.paper import Column, Trains
 from granchain_core.paper.results import SHOWN
 
 from ..theme import Theme, dress, frame, in_theme
-from .panels import grid, inside_legend
+from .panels import fewer, grid, inside_legend
 
 _MS = 1e3
 _ROWS = (("velocity", "shaker velocity (mm/s)", 1e3, "drive"), ("input_force", "input force (N)", 1.0, "input"),
@@ -74,8 +74,9 @@ def _limits(shown: Trains, name: str, unit: float) -> tuple[float, float]:
 
 def _line(plot: figure, time: Any, values: Any, role: str, words: str, label: str, dash: list[int] | None = None,
           width: float = 1.8) -> None:
-    source = ColumnDataSource({"time": np.asarray(_MS * time, dtype=np.float32),
-                               "value": np.asarray(values, dtype=np.float32)}, name=words.split(",")[0])
+    kept = fewer(np.asarray(values))
+    source = ColumnDataSource({"time": np.asarray(_MS * time[kept], dtype=np.float32),
+                               "value": np.asarray(values[kept], dtype=np.float32)}, name=words.split(",")[0])
     line = plot.line("time", "value", source=source, line_dash=dash or "solid", legend_label=words)
     in_theme(line, line_color=role, line_width=width)
     plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
@@ -90,7 +91,9 @@ def _velocity(plot: figure, column: Column, last: bool) -> None:
         plot.add_layout(LinearAxis(y_range_name="contact", ticker=[0, 1], axis_label="contact",
                                    axis_line_color=None, major_tick_line_color=None, minor_tick_line_color=None,
                                    axis_label_text_font_style="normal"), "right")
-    step = plot.step(_MS * column.time, column.contact, mode="after", y_range_name="contact",
+    changes = np.flatnonzero(np.diff(column.contact)) + 1
+    kept = np.concatenate([[0], changes, [len(column.time) - 1]])
+    step = plot.step(_MS * column.time[kept], column.contact[kept], mode="after", y_range_name="contact",
                      legend_label="driver touches bead 1")
     in_theme(step, line_color="output", line_width=1.6)
     if scene.f != column.named:
