@@ -16,7 +16,7 @@ import tempfile
 from pathlib import Path
 from textwrap import wrap
 
-from bokeh.models import LayoutDOM, Plot, Toolbar
+from bokeh.models import GridPlot, LayoutDOM, Plot
 from PIL import Image
 
 from granchain_core import BadInput
@@ -95,8 +95,8 @@ def _without_tools(figure: LayoutDOM) -> None:
     """A picture has no buttons."""
     for plot in _plots(figure):
         plot.toolbar_location = None
-    for bar in figure.select({"type": Toolbar}):
-        bar.visible = False
+    for panels in [*figure.select({"type": GridPlot}), *([figure] if isinstance(figure, GridPlot) else [])]:
+        panels.toolbar_location = None
 
 
 def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:

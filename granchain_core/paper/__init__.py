@@ -2,6 +2,7 @@
 
 from .figures import FIGURES, PaperFigure, compute, figure_of
 from .given import Given, read_given
+from .numbers import numbers_of
 from .results import (
     Column,
     EnergyMaps,
@@ -14,7 +15,7 @@ from .results import (
     Trains,
     Transmission,
 )
-from .statements import Statement, numbers_of, statements
+from .statements import Statement, statements
 
 __all__ = [
     "FIGURES", "Column", "EnergyMaps", "Given", "Observers", "PaperFigure", "Result", "Rig", "RigCurves",
