@@ -22,7 +22,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="FILE", help="FILE.html, .png, .svg or .csv; figure-N.html by default")
     parser.add_argument("--data", action="append", default=[], metavar="[HZ=]FILE",
                         help="your measurement over it: a CSV whose header names columns and units, beginning with "
-                             "time_s (a series; HZ is its frequency in the paper) or frequency_Hz (a curve, the shaker)")
+                             "time_s (a series; HZ is its frequency in the paper) or frequency_Hz (curve, shaker)")
     parser.add_argument("--theme", default="light", metavar="light|dark|projector", help="colours of the picture")
 
 

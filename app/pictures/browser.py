@@ -1,8 +1,8 @@
 """A figure as PNG or SVG: drawn by BokehJS in a Chromium without a window, as Bokeh's own export does.
 
-Bokeh's `export_png` and `export_svg` need Selenium and a driver beside the browser. Chromium alone is enough: it takes a
-picture of a page (`--screenshot`) and prints a page as it has become (`--dump-dom`), here with what
-BokehJS's `export("svg")` has put into it.
+Bokeh's `export_png` and `export_svg` need Selenium and a driver beside the browser. Chromium alone is enough: it takes
+a picture of a page (`--screenshot`) and prints a page as it has become (`--dump-dom`), here with what BokehJS's
+`export("svg")` has put into it.
 """
 
 from __future__ import annotations
@@ -49,12 +49,13 @@ def browser() -> str:
     """The browser that draws; `BadInput` in one sentence where there is none."""
     found = next((path for name in _NAMES if (path := shutil.which(name))), None)
     if found is None:
-        raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: apt "
-                       "install chromium), or write an HTML file, whose own menu saves a picture.")
+        raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: "
+                       "apt install chromium), or write an HTML file, whose own menu saves a picture.")
     return found
 
 
-def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int], scale: float = 1.5) -> bytes:
+def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int],
+           scale: float = 1.5) -> bytes:
     """The figure in `size` [px] with its caption, `scale` times as many pixels as that."""
     _without_tools(figure)
     width, height = size[0], size[1] + caption_height(title, caption, size[0])
@@ -106,9 +107,11 @@ def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
         raise BadInput("The browser's SVG has no size; write an HTML file instead.")
     width, height = float(sizes[1]), float(sizes[2])
     lines = wrap(f"{title}. {caption}", int(width / 7.6))
-    text = "".join(f'<text x="16" y="{height + 22 + 20 * i:g}">{html.escape(line)}</text>' for i, line in enumerate(lines))
+    text = "".join(f'<text x="16" y="{height + 22 + 20 * i:g}">{html.escape(line)}</text>'
+                   for i, line in enumerate(lines))
     whole = height + 30 + 20 * len(lines)
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{whole:g}" viewBox="0 0 {width:g} {whole:g}">'
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{whole:g}" '
+            f'viewBox="0 0 {width:g} {whole:g}">'
             f'<title>{html.escape(title)}</title><rect width="100%" height="100%" fill="{theme.card}"/>{drawn}'
             f'<g font-family="system-ui, DejaVu Sans, sans-serif" font-size="14" fill="{theme.ink}">{text}</g></svg>\n')
 

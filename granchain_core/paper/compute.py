@@ -76,8 +76,8 @@ def shaker(given: Given) -> ShakerAmplitude:
 def response(given: Given, observed: bool, stop: Stop | None, progress: Progress) -> RigResponse:
     """Figures 6 and 9; `observed` adds model (3) and more amplitudes, as figure 9 does."""
     amplitudes = MODELLED if observed else MIDDLE
-    curves = [_curve(scene("rig").evolve(A0=a, kappa=0.001), RIG, stop,
-                     lambda done, i=i: progress((i + done) / (len(amplitudes) + 1)))
+    part = 1.0 / (len(amplitudes) + 1)
+    curves = [_curve(scene("rig").evolve(A0=a, kappa=0.001), RIG, stop, _within(progress, i * part, part))
               for i, a in enumerate(amplitudes)]
     states = tuple((f, _state(name, stop)) for f, name in STATES.items()) if observed else ()
     panel = RigCurves(tuple(curves), stated_features(), states, given.curve)
@@ -129,6 +129,11 @@ def _observer(chain: Scene, series: Series | None, back: float,
 
 def _state(name: str, stop: Stop | None) -> Settled:
     return settled(scene(name), samples=_TRAIN, stop=stop)
+
+
+def _within(progress: Progress, begin: float, part: float) -> Progress:
+    """Progress of a part of a computation as that of the whole."""
+    return lambda done: progress(begin + part * done)
 
 
 def _curve(chain: Scene, frequencies: np.ndarray, stop: Stop | None, progress: Progress) -> Curve:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from ..steady.curve import Curve, CurvePoint
@@ -12,8 +14,9 @@ def turning_points(curve: Curve) -> tuple[list[CurvePoint], list[CurvePoint]]:
     """Peaks and dips of the elastic output force, without the curve's ends."""
     force = curve.column("max_output_force_elastic")
     turns = extrema(np.asarray(force, dtype=float))
-    high, low = [], []
-    for before, here in zip(turns, turns[1:-1], strict=False):
+    high: list[CurvePoint] = []
+    low: list[CurvePoint] = []
+    for before, here in pairwise(turns[:-1]):
         (high if force[here] > force[before] else low).append(curve.points[here])
     return high, low
 
@@ -27,7 +30,7 @@ def dips(curve: Curve) -> list[CurvePoint]:
     """The first dip after each resonance but the last."""
     tops = [p.frequency for p in peaks(curve)]
     found = []
-    for low, high in zip(tops, tops[1:], strict=False):
+    for low, high in pairwise(tops):
         between = [p for p in turning_points(curve)[1] if low < p.frequency < high]
         found.append(between[0])
     return found

@@ -54,8 +54,10 @@ def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], 
             given = replace(given, series={**given.series, at: found})
         elif getattr(given, kind) is not None:
             raise BadInput(f"Two files hold {_WORDS[kind]}; give one.")
+        elif isinstance(found, Shaker):
+            given = replace(given, shaker=found)
         else:
-            given = replace(given, **{kind: found})
+            given = replace(given, curve=found)
     return given
 
 
@@ -98,8 +100,9 @@ def moved(series: Series, back: float) -> Series:
     """A series `back` seconds earlier, of which the first `SHOWN` seconds are kept."""
     time = series.time - back
     kept = (time >= 0.0) & (time <= SHOWN)
-    return Series(time[kept], *(None if values is None else values[kept] for values in (
-        series.velocity, series.input_force, series.output_force)), series.understood)
+    velocity, entered, arrived = (None if values is None else values[kept] for values in (
+        series.velocity, series.input_force, series.output_force))
+    return Series(time[kept], velocity, entered, arrived, series.understood)
 
 
 def _component(time: np.ndarray, values: np.ndarray, f: float) -> tuple[float, float]:

@@ -60,7 +60,8 @@ def _peaks() -> Numbers:
 def _dips() -> Numbers:
     found = dips(_section_2())
     same = {_words(p.regime) for p in found[:-1]}
-    return [*(p.frequency for p in found[:-1]), " or ".join(sorted(same)), found[-1].frequency, _words(found[-1].regime)]
+    return [*(p.frequency for p in found[:-1]), " or ".join(sorted(same)), found[-1].frequency,
+            _words(found[-1].regime)]
 
 
 def _stop_band() -> Numbers:

@@ -69,7 +69,8 @@ class EnergyMaps:
             index, time = repeated(found.run, periods)
             for i, t in zip(index, time, strict=True):
                 yield {"scene": found.run.scene.name, "time_s": t,
-                       "drive_displacement_m": found.run.drive_displacement[i], "input_force_N": found.run.input_force[i],
+                       "drive_displacement_m": found.run.drive_displacement[i],
+                       "input_force_N": found.run.input_force[i],
                        **{f"kinetic_energy_{bead}_J": energy
                           for bead, energy in enumerate(found.run.kinetic_energy[i], 1)}}
 

@@ -28,7 +28,7 @@ class Statement:
         return re.findall(r"\*\*(.+?)\*\*", self.ours)
 
     def wrong(self, found: Sequence[float | str]) -> list[str]:
-        """Where the row does not say what was found: other words, numbers off by more than a unit of their last digit."""
+        """Where the row does not say what was found: another word, or a number off by more than its last digit."""
         if len(found) != len(self.computed):
             return [f"{self.key}: {len(found)} values for {len(self.computed)} in bold"]
         return [f"{self.key}: {said} is {value}" for said, value in zip(self.computed, found, strict=True)

@@ -1,4 +1,4 @@
-"""The figures of Zhang et al. 2016: `paper_figure` draws the result of any of them, each type of result in its module."""
+"""The figures of Zhang et al. 2016: `paper_figure` draws any result, each type of them in its module."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from ..theme import Theme, dress, frame, in_theme
 from .panels import inside_legend, measured_curve
 from .trains import trains
 
-_DASHES = ("solid", [8, 3], [3, 3], [10, 3, 2, 3])
+_DASHES: tuple[str | list[int], ...] = ("solid", [8, 3], [3, 3], [10, 3, 2, 3])
 _COLOURS = ("output", "input", "second", "naive")
 
 
@@ -65,9 +65,8 @@ def _curve(plot: figure, one: Curve, dash: str | list[int], role: str, marked: b
     words = f"A0 = {1e6 * one.scene.A0:g} µm"
     line = plot.line("x", "y", source=source, line_dash=dash, legend_label=words)
     in_theme(line, line_color=role, line_width=1.8)
-    marks = plot.scatter("x", "y", source=source, marker="marker", size="size", fill_color="colour", line_color="colour",
-                         line_width=1.5,
-                         **({"legend_group": "regime"} if marked else {}))
+    marks = plot.scatter("x", "y", source=source, marker="marker", size="size", fill_color="colour",
+                         line_color="colour", line_width=1.5, **({"legend_group": "regime"} if marked else {}))
     plot.add_tools(HoverTool(renderers=[marks if marked else line], tooltips=[
         ("", words), ("drive frequency", "@x{0.0} Hz"), *FORCES, ("motion", "@sentence")]))
 

@@ -41,8 +41,9 @@ def rig(shown: Rig, theme: Theme) -> figure:
     _dimension(plot, float(centres[1]) - radius, end, low - 1.1 * radius,
                f"{scene.N} beads, {end - float(centres[1]) + radius:.1f} mm")
     bead = scene.bead(1)
-    plot.title.text = (f"m = {1e3 * bead.mass:g} g, R = {radius:g} mm, E = {bead.young / 1e9:g} GPa, ν = {bead.poisson:g}, "
-                       f"K = {scene.K:.4g} N/m^1.5, wall {scene.wall_factor:.3g} K, D = {scene.D:g} N s/m"
+    plot.title.text = (f"m = {1e3 * bead.mass:g} g, R = {radius:g} mm, E = {bead.young / 1e9:g} GPa, "
+                       f"ν = {bead.poisson:g}, K = {scene.K:.4g} N/m^1.5, wall {scene.wall_factor:.3g} K, "
+                       f"D = {scene.D:g} N s/m"
                        + (f", k = {scene.k / 1e3:.3g} kN/m (κ = {scene.kappa:.3g})" if scene.k else ""))
     return dress(plot, theme)
 
@@ -56,8 +57,8 @@ def _driver(plot: figure, radius: float, amplitude: float, f: float) -> None:
                          angle=[np.pi / 2, -np.pi / 2])
     in_theme(arrow, line_color="drive", line_width=2.0)
     in_theme(heads, line_color="drive", fill_color="drive")
-    _words(plot, [-0.4 * radius], 2.2 * radius, [f"driver: u0 = A0 sin(2πft), A0 = {1e6 * amplitude:g} µm, f = {f:g} Hz"],
-           "drive")
+    _words(plot, [-0.4 * radius], 2.2 * radius,
+           [f"driver: u0 = A0 sin(2πft), A0 = {1e6 * amplitude:g} µm, f = {f:g} Hz"], "drive")
 
 
 def _wall(plot: figure, place: float, radius: float, height: float) -> None:
@@ -80,24 +81,27 @@ def _springs(plot: figure, centres: np.ndarray, radius: float) -> None:
 def _fixture(plot: figure, centres: np.ndarray, radius: float, end: float) -> None:
     """What the text describes without sizes, in grey: flexures, shaft, pillars, shaker, vibrometer, transducers."""
     shaft, foot = 4.2 * radius, -1.2 * radius
-    pillars = plot.quad(left=[centres[1] - 2.6 * radius, end + radius], right=[centres[1] - 2.1 * radius, end + 1.5 * radius],
+    pillars = plot.quad(left=[centres[1] - 2.6 * radius, end + radius],
+                        right=[centres[1] - 2.1 * radius, end + 1.5 * radius],
                         bottom=[foot - 0.4 * radius] * 2, top=[shaft + radius] * 2, fill_alpha=0.3, line_dash=[5, 3])
     in_theme(pillars, fill_color="soft", line_color="soft", line_width=1.2)
     rod = plot.segment([centres[1] - 2.1 * radius], [shaft], [end + radius], [shaft], line_dash=[5, 3])
     in_theme(rod, line_color="soft", line_width=3.0)
-    flexures = plot.segment(centres[1:], np.full(len(centres) - 1, radius), centres[1:], np.full(len(centres) - 1, shaft))
+    ones = np.ones(len(centres) - 1)
+    flexures = plot.segment(centres[1:], radius * ones, centres[1:], shaft * ones)
     in_theme(flexures, line_color="second", line_width=1.6)
     left = float(centres[1] - radius)
     boxes = plot.quad(left=[left - 7.6 * radius, left - 0.45 * radius, end - 0.02 * radius],
                       right=[left - 4.8 * radius, left, end + 0.4 * radius],
-                      bottom=[-1.2 * radius, -0.3 * radius, -0.3 * radius], top=[1.2 * radius, 0.3 * radius, 0.3 * radius],
-                      fill_alpha=0.5, line_dash=[5, 3])
+                      bottom=[-1.2 * radius, -0.3 * radius, -0.3 * radius],
+                      top=[1.2 * radius, 0.3 * radius, 0.3 * radius], fill_alpha=0.5, line_dash=[5, 3])
     in_theme(boxes, fill_color="steel", line_color="soft", line_width=1.2)
     stinger = plot.segment([left - 4.8 * radius], [0.0], [left - 0.45 * radius], [0.0])
     in_theme(stinger, line_color="drive", line_width=4.0)
     laser = plot.segment([left - 4.0 * radius], [3.6 * radius], [left - 4.0 * radius], [0.0], line_dash=[2, 3])
     in_theme(laser, line_color="drive", line_width=1.6)
-    for x, y, words in ((left - 7.6 * radius, 1.8 * radius, "shaker"), (left - 6.5 * radius, 4.1 * radius, "laser vibrometer"),
+    for x, y, words in ((left - 7.6 * radius, 1.8 * radius, "shaker"),
+                        (left - 6.5 * radius, 4.1 * radius, "laser vibrometer"),
                         (left - 7.6 * radius, -1.8 * radius, "stinger, force transducer"),
                         (float(centres[4]), shaft + 0.8 * radius, "flexures in holders on threaded shafts"),
                         (end - 7.2 * radius, -1.4 * radius, "force transducer at the wall")):

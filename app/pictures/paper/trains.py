@@ -34,8 +34,8 @@ def trains(shown: Trains, theme: Theme) -> LayoutDOM:
                 _velocity(plot, column, place == len(shown.columns) - 1)
                 plot.title.text = _heading(column)
             if name == "output_force" and column.observer_time is not None:
-                _line(plot, column.observer_time, column.observer, "second", f"model (3), {column.observer_words}", label,
-                      [6, 3])
+                _line(plot, column.observer_time, column.observer, "second", f"model (3), {column.observer_words}",
+                      label, [6, 3])
             measured = None if column.measured is None else getattr(column.measured, name)
             if column.measured is not None and measured is not None:
                 _line(plot, column.measured.time, unit * measured, "ink", "measured", label, [4, 3], 1.2)
