@@ -53,7 +53,7 @@ PAGES = (
     Row("hard", "hard cases", HardPage, Hard,
         "Cases in which solvers of granular chains go wrong without warning, each compared with a known result.",
         roomy=False),
-    Row("paper", "the paper", PaperPage, Paper,
+    Row("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", roomy=False),
 )
 

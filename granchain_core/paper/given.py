@@ -83,7 +83,7 @@ def _frequency(hertz: float | None, frequencies: Sequence[float], path: str, num
 
 
 def behind(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, force: np.ndarray) -> float:
-    """By how much a series must be moved back to be in phase with the model, from 0 to 1/f [s].
+    """By how much a series must be moved back so that its last `SHOWN` seconds are from 0 on, in phase with the model [s].
 
     The phase is that of the component at `f` [Hz], the frequency of the model's drive: of the input force or, where
     that was not measured, of the velocity. What has no such component, as an output force alone, is not moved.
@@ -92,12 +92,15 @@ def behind(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, for
         if measured is not None:
             (phase, _), (own, size) = _component(time, model, f), _component(series.time, measured, f)
             if size > _CLEAR * float(np.ptp(measured)):
-                return float(np.mod((own - phase) / (2.0 * np.pi * f), 1.0 / f))
-    return 0.0
+                late = float(np.mod((own - phase) / (2.0 * np.pi * f), 1.0 / f))
+                break
+    else:
+        late = 0.0
+    return late + max(0.0, np.floor((float(series.time[-1]) - SHOWN - late) * f + 1e-9)) / f
 
 
 def moved(series: Series, back: float) -> Series:
-    """A series `back` seconds earlier, of which the first `SHOWN` seconds are kept."""
+    """A series `back` seconds earlier, of which what is then from 0 to `SHOWN` is kept."""
     time = series.time - back
     kept = (time >= 0.0) & (time <= SHOWN)
     velocity, entered, arrived = (None if values is None else values[kept] for values in (

@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable
 
 import pytest
-from drawn import source
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
@@ -17,7 +16,7 @@ COMPILED = 150_000
 
 def opened(page: Page) -> Locator:
     """The page, opened from its tab."""
-    page.get_by_role("tab", name="the paper").click()
+    page.get_by_role("tab", name="paper").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
     sheet = page.locator('[data-cover="paper"]')
     expect(sheet).to_contain_text("Choose one")
@@ -41,10 +40,11 @@ def test_figures_are_drawn_with_caption_and_rows(visit: Visit) -> None:
     expect(picture.locator("canvas").first).to_be_visible()
     chosen(sheet, "3a")
     expect(sheet.get_by_role("img", name="Figure 3a")).to_be_visible(timeout=COMPILED)
-    until(page, lambda: len(source(page, "drive", "drive", large=False).get("force", [])) > 700)
-    before = page.evaluate("granchain.nextTheme()")
-    assert before is None or before
-    expect(sheet.get_by_role("img", name="Figure 3a").locator("canvas").first).to_be_visible()
+    until(page, lambda: bool(page.evaluate("granchain.paper.figure.model('drive and force')?.data.force.length > 700")))
+    page.evaluate("window.kept = granchain.paper.figure.document; granchain.nextTheme()")  # another theme, another figure
+    until(page, lambda: bool(page.evaluate(
+        "granchain.paper.figure.document && kept !== granchain.paper.figure.document")))
+    assert page.evaluate("granchain.paper.figure.model('drive').background_fill_color") == "#161a21"
 
 
 def test_a_figure_is_given_up_when_the_page_is_left(visit: Visit) -> None:

@@ -60,7 +60,7 @@ class PaperPage {
     );
     if (rows !== this.stated) this.rows.replaceChildren(...(rows.length ? [statedTable(rows)] : [paragraph()]));
     this.stated = rows;
-    window.granchain.paper = { sentence: chosen ? `Figure ${chosen}: ${title}.` : "" };
+    window.granchain.paper = { figure: this.figure, sentence: chosen ? `Figure ${chosen}: ${title}.` : "" };
     window.granchain.emit("paper");
   }
 

@@ -48,7 +48,7 @@ def _drive(found: Settled, periods: int, time: Range1d, theme: Theme) -> figure:
                                major_tick_line_color=None, minor_tick_line_color=None,
                                axis_label_text_font_style="normal"), "above")
     source = ColumnDataSource({"time": _MS * seconds, "displacement": _MICRO * run.drive_displacement[index],
-                               "force": run.input_force[index]}, name="drive")
+                               "force": run.input_force[index]}, name="drive and force")
     in_theme(plot.line("displacement", "time", source=source), line_color="drive", line_width=1.8)
     in_theme(plot.line("force", "time", source=source, x_range_name="force"), line_color="input", line_width=1.8)
     plot.xaxis[1].axis_label = "displacement (µm)"
