@@ -83,7 +83,7 @@ def _frequency(hertz: float | None, frequencies: Sequence[float], path: str, num
 
 
 def behind(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, force: np.ndarray) -> float:
-    """By how much a series must be moved back so that its last `SHOWN` seconds are from 0 on, in phase with the model [s].
+    """How far a series must be moved back, so that its last `SHOWN` seconds are from 0 on and in phase [s].
 
     The phase is that of the component at `f` [Hz], the frequency of the model's drive: of the input force or, where
     that was not measured, of the velocity. What has no such component, as an output force alone, is not moved.

@@ -25,6 +25,8 @@ from .features import dips, peaks
 Numbers = list[float | str]
 _DENSITY = 7850.0
 """Density of the rig's beads [kg/m³], from the text."""
+_FINE = 3840
+"""Samples a period that find the largest kinetic energy to 1e-8; a picture's 96 miss 4 % of it."""
 
 
 @functools.cache
@@ -70,7 +72,7 @@ def _stop_band() -> Numbers:
 
 
 def _energy() -> Numbers:
-    found = [_settled("fig3a"), _settled("fig3b")]
+    found = [settled(scene(name), samples=_FINE) for name in ("fig3a", "fig3b")]
     ratios = [pushes(one.run) or (0, 0) for one in found]
     return [*(f"{strong}:{periods}" for strong, periods in ratios),
             *(1e6 * float(one.run.kinetic_energy.max()) for one in found)]

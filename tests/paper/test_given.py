@@ -49,7 +49,7 @@ def test_the_first_line_says_what_a_file_is_and_in_which_units(tmp_path: Path) -
     ("frequency_Hz,velocity_m_s,displacement_m\n50,1,2\n", "Line 1: name the columns"),
 ])
 def test_what_is_not_certain_is_refused(text: str, said: str, tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match="data.csv") as problem:
+    with pytest.raises(BadInput, match=r"data\.csv") as problem:
         read_experiment(written(tmp_path, text))
     assert said in str(problem.value)
 
@@ -69,7 +69,7 @@ def test_a_figure_says_which_files_it_takes(number: str, header: str, files: tup
 
 
 def test_a_missing_file_is_told() -> None:
-    with pytest.raises(BadInput, match="Cannot read none.csv"):
+    with pytest.raises(BadInput, match=r"Cannot read none\.csv"):
         read_experiment("none.csv")
 
 
