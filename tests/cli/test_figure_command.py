@@ -60,6 +60,7 @@ def test_an_svg_is_one_picture_with_its_caption(tmp_path: Path) -> None:
     words = " ".join(one.text or "" for one in tree.iter("{http://www.w3.org/2000/svg}text"))
     assert "velocity amplitude V0 (mm/s)" in words and "Figure 5: What the shaker does" in words
     assert len(list(tree.iter("{http://www.w3.org/2000/svg}path"))) > 10
+    assert not list(tree.iter("{http://www.w3.org/2000/svg}image"))  # lines, not pixels
 
 
 @pytest.mark.parametrize(("words", "said"), [

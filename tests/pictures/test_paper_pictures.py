@@ -108,6 +108,8 @@ def test_measured_points_are_drawn_hollow_and_in_front() -> None:
     with_data = type(curve)(curve.curve, Measured(frequency, np.array([0.1, 0.2]), np.array([0.01, 0.01]), ""))  # type: ignore[attr-defined,call-arg]
     drawn = paper_figure(with_data, THEMES["light"])
     assert list(source(drawn, "measured")["high"]) == pytest.approx([0.11, 0.21])
+    bars = next(one for one in drawn.center if type(one).__name__ == "Whisker")
+    assert bars.line_color == THEMES["light"].ink
     dots = next(one for one in drawn.renderers if getattr(one, "data_source", None) is not None and one.data_source.name == "measured")
     assert dots.glyph.fill_color is None and dots.level == "annotation"
 

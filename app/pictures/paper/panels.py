@@ -51,10 +51,9 @@ def hollow_points(plot: figure, x: Any, y: Any, error: Any, words: str, hover: S
         data |= {"low": y - error, "high": y + error}
     source = ColumnDataSource(data, name="measured")
     if error is not None:
-        bars = Whisker(base="x", upper="high", lower="low", source=source, level="annotation")
-        for head in (bars.upper_head, bars.lower_head):
-            head.size = 6
-        plot.add_layout(bars)
+        bars = Whisker(base="x", upper="high", lower="low", source=source, level="annotation", upper_head=None,
+                       lower_head=None)
+        plot.add_layout(in_theme(bars, line_color="ink", line_width=1.2))
     dots = plot.scatter("x", "y", source=source, size=8, fill_color=None, level="annotation", legend_label=words)
     in_theme(dots, line_color="ink", line_width=1.2)
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[("", words), *hover]))

@@ -69,7 +69,9 @@ def _limits(shown: Trains, name: str, unit: float) -> tuple[float, float]:
         every += [column.observer for column in shown.columns if column.observer is not None]
     low, high = (float(pick([float(pick(v)) for v in every])) for pick in (np.min, np.max))
     room = 0.08 * (high - low)
-    return low - room, high + (5.0 if name == "velocity" else 2.5) * room
+    lines = 1 + (2 if name == "velocity" else 0) + any(column.measured is not None for column in shown.columns)
+    lines += any(column.observer is not None and name == "output_force" for column in shown.columns)
+    return low - room, high + 2.0 * lines * room  # with room for a legend of so many lines
 
 
 def _line(plot: figure, time: Any, values: Any, role: str, words: str, label: str, dash: list[int] | None = None,
