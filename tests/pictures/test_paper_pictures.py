@@ -103,11 +103,14 @@ def test_measured_points_are_drawn_hollow_and_in_front() -> None:
     frequency = np.array([60.0, 90.0])
     shaker = paper_figure(compute("5", Given(shaker=Shaker(frequency, np.array([2e-3, 4e-3]), ""))), THEMES["light"])
     found = [one.data for one in shaker.select({"type": ColumnDataSource}) if one.name == "measured"]
-    assert [list(one["y"]) for one in found] == [pytest.approx([2.0, 4.0]), pytest.approx([5.305, 7.074], abs=1e-3)]
+    assert sorted(list(one["y"]) for one in found) == [pytest.approx([2.0, 4.0]), pytest.approx([5.305, 7.074], abs=1e-3)]
     curve = result("2")
     with_data = type(curve)(curve.curve, Measured(frequency, np.array([0.1, 0.2]), np.array([0.01, 0.01]), ""))  # type: ignore[attr-defined,call-arg]
     drawn = paper_figure(with_data, THEMES["light"])
     assert list(source(drawn, "measured")["high"]) == pytest.approx([0.11, 0.21])
+    assert drawn.y_range.end > 1.2
+    high = paper_figure(type(curve)(curve.curve, Measured(frequency, np.array([0.1, 9.0]), None, "")), THEMES["light"])  # type: ignore[attr-defined,call-arg]
+    assert high.y_range.end > 9.0  # no measured point is outside
     bars = next(one for one in drawn.center if type(one).__name__ == "Whisker")
     assert bars.line_color == THEMES["light"].ink
     dots = next(one for one in drawn.renderers if getattr(one, "data_source", None) is not None and one.data_source.name == "measured")

@@ -32,6 +32,8 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
         _curve(plot, one, dash, role, marked=len(shown.curves) == 1)
     high = max(p.max_output_force_elastic for one in shown.curves for p in one.points
                if math.isfinite(p.max_output_force_elastic))
+    if shown.measured is not None:
+        high = max(high, float(shown.measured.force.max()))
     for feature in shown.features:
         line = Span(location=feature.frequency, dimension="height", line_dash=[2, 4])
         plot.add_layout(in_theme(line, line_color="drive" if feature.is_resonance else "soft", line_width=1.8))
