@@ -1,4 +1,4 @@
-"""The command line: serve, scenes, warm, run, curve, orbit, branch, observe, map, accuracy, check.
+"""The command line: serve, scenes, warm, run, curve, orbit, branch, observe, map, figure, accuracy, check.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled. With --json exactly one object goes to stdout: the result or, if the computation failed or was over
@@ -41,6 +41,7 @@ _COMMANDS = {
     "check": "the hard cases: figure, bar and verdict; status 3 if one fails",
     "curve": "resonance curve: largest forces over frequency",
     "map": "regime and largest forces over two knobs",
+    "figure": "a figure of the paper with our numbers",
 }
 
 

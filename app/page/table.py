@@ -16,6 +16,8 @@ from ..pages.hard_cases.view import Hard
 from ..pages.map.page import MapTab
 from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer
+from ..pages.paper.page import PaperPage
+from ..pages.paper.view import Paper
 from ..pages.stability.page import StabilityPage
 from ..pages.stability.view import Stability
 from ..parts.component import Component
@@ -51,6 +53,8 @@ PAGES = (
     Row("hard", "hard cases", HardPage, Hard,
         "Cases in which solvers of granular chains go wrong without warning, each compared with a known result.",
         roomy=False),
+    Row("paper", "paper", PaperPage, Paper,
+        "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", roomy=False),
 )
 
 

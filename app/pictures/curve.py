@@ -23,18 +23,22 @@ FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), 
 """A tooltip's lines for the columns of `forces_in_words`."""
 
 
-def curve(found: Sequence[Curve], theme: Theme) -> figure:
-    """Curves over one frequency axis, one for each way of sweeping; where the numbers failed there is no point."""
-    largest = max((p.max_output_force for one in found for p in one.points if math.isfinite(p.max_output_force)),
+def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure:
+    """Curves over one frequency axis, one for each way of sweeping; where the numbers failed there is no point.
+
+    `elastic` draws the elastic part of the output force, as the paper does.
+    """
+    drawn = "max_output_force_elastic" if elastic else "max_output_force"
+    largest = max((getattr(p, drawn) for one in found for p in one.points if math.isfinite(p.max_output_force)),
                   default=1.0)
-    scale = force_scale("largest output force", largest)
+    scale = force_scale("largest elastic output force" if elastic else "largest output force", largest)
     plot = frame(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
     for one in found:
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
         keys = [regime_key(p.regime.name, p.regime.period) for p in points]
         styles = [REGIMES[key] for key in keys]
         source = ColumnDataSource(name=one.start, data={
-            "frequency": [p.frequency for p in points], "force": [p.max_output_force / scale.factor for p in points],
+            "frequency": [p.frequency for p in points], "force": [getattr(p, drawn) / scale.factor for p in points],
             "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
             "size": [style[2] + 3 for style in styles], "regime": keys,
             "sentence": [p.regime.sentence for p in points], **forces_in_words(points)})

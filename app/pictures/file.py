@@ -2,11 +2,40 @@
 
 from __future__ import annotations
 
+import html
+
 from bokeh.embed import file_html
 from bokeh.models import LayoutDOM
 from bokeh.resources import INLINE
+
+from .theme import Theme
+
+#: Height of a line of a caption, the room around a caption, and how many characters a pixel of its width holds.
+_LINE, _ROOM, _PER_PIXEL = 20, 22, 1 / 7.6
+_PAGE = """{%% block contents %%}
+<style>
+  html, body { height: 100%%; margin: 0; background: %(card)s; color: %(ink)s; }
+  body { display: flex; flex-direction: column; }
+  main { flex: 1; min-height: 0; }
+  p { flex: none; margin: 6px 16px 14px; font: 15px/%(line)dpx system-ui, "DejaVu Sans", sans-serif; }
+</style>
+<main>{{ super() }}</main>
+<p>%(caption)s</p>
+{%% endblock %%}"""
 
 
 def page_of(figure: LayoutDOM, title: str) -> str:
     """A whole page with a figure of this package, which fills the window; Bokeh's own scripts are in it."""
     return str(file_html(figure, INLINE, title))
+
+
+def captioned_page(figure: LayoutDOM, title: str, caption: str, theme: Theme) -> str:
+    """The same with the title in bold and a caption under the figure."""
+    words = f"<b>{html.escape(title)}.</b> {html.escape(caption)}".replace("{", "&#123;")
+    template = _PAGE % {"card": theme.card, "ink": theme.ink, "line": _LINE, "caption": words}
+    return str(file_html(figure, INLINE, title, template=template))
+
+
+def caption_height(title: str, caption: str, width: int) -> int:
+    """Room that `captioned_page` needs for its caption in a window of this width [px]."""
+    return _ROOM + _LINE * -(-(len(title) + len(caption) + 2) // int(width * _PER_PIXEL))

@@ -23,7 +23,7 @@ from .queues import COMPILATIONS, CURVES, Stop
 _COMPILED = {"picture": ("the kernels for this set of effects", 10), "map": ("the kernels", 10),
              "attractors": ("the kernels", 10), "observer": ("the observer's kernels", 10),
              "accuracy": ("the kernels of all methods", 20), "stability": ("the tangent flow", 20),
-             "branches": ("the kernels for branches", 40)}
+             "branches": ("the kernels for branches", 40), "paper": ("the figure's kernels", 20)}
 
 _ROOT = Path(__file__).resolve().parents[2]
 

@@ -1,0 +1,106 @@
+"""`granchain figure N`: a figure of the paper with our numbers, drawn or as a table."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import sys
+from pathlib import Path
+from typing import Any
+
+from granchain_core import BadInput
+
+from .common import in_background, say, show_percent
+
+_KINDS = (".html", ".htm", ".png", ".svg", ".csv")
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `figure`."""
+    parser.add_argument("number", metavar="N", help="1 to 12, 3a or 3b; 'list' says what each shows")
+    parser.add_argument("--out", metavar="FILE", help="FILE.html, .png, .svg or .csv; figure-N.html by default")
+    parser.add_argument("--data", action="append", default=[], metavar="[HZ=]FILE",
+                        help="your measurement over it: a CSV whose header names columns and units, beginning with "
+                             "time_s (a series; HZ is its frequency in the paper) or frequency_Hz (curve, shaker)")
+    parser.add_argument("--theme", default="light", metavar="light|dark|projector", help="colours of the picture")
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Compute a figure and write it."""
+    from granchain_core.paper import FIGURES, compute, figure_of, read_given
+    from granchain_core.store import check_writable
+
+    if arguments.number == "list":
+        for one in FIGURES.values():
+            print(f"{one.number:>3}  {one.title}")
+        return
+    figure = figure_of(arguments.number)
+    out = arguments.out or f"figure-{figure.number}.html"
+    kind = _checked(out, arguments.theme)
+    check_writable(out)
+    given = read_given(figure.number, figure.takes, figure.frequencies, arguments.data)
+    for sentence in given.sentences:
+        say(sentence)
+    progress = show_percent if sys.stderr.isatty() else _quiet
+    result = in_background(lambda stop: compute(figure.number, given, stop, progress))
+    Path(out).write_bytes(_written(figure, result, kind, arguments.theme))
+    print(f"figure {figure.number}: {figure.title}; {out}")
+
+
+def _quiet(_: float) -> None:
+    """Progress is for a person at a terminal."""
+
+
+def _checked(name: str, theme: str) -> str:
+    """The kind of file; `BadInput`, before anything is computed, for one that cannot be written."""
+    from granchain_core.errors import unknown_name
+
+    kind = Path(name).suffix.lower()
+    if kind not in _KINDS:
+        raise BadInput(f"A figure is written as .html, .png, .svg or .csv; name it "
+                       f"{Path(name).with_suffix('.html')}, not {name}.")
+    from app.pictures.theme import THEMES
+
+    if theme not in THEMES:
+        raise unknown_name("theme", theme, THEMES)
+    if kind in (".png", ".svg"):
+        from app.pictures.browser import browser
+
+        browser()
+    return kind
+
+
+def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
+    """The content of the file."""
+    if kind == ".csv":
+        return table_of(result).encode("utf-8")
+    from app.pictures.browser import png_of, svg_of
+    from app.pictures.file import captioned_page
+    from app.pictures.paper import paper_figure, size_of
+    from app.pictures.theme import THEMES
+
+    colours = THEMES[theme]
+    drawn, title = paper_figure(result, colours), f"Figure {figure.number}: {figure.title}"
+    if kind == ".png":
+        return png_of(drawn, title, figure.caption, colours, size_of(result))
+    if kind == ".svg":
+        return svg_of(drawn, title, figure.caption, colours, size_of(result)).encode("utf-8")
+    return captioned_page(drawn, title, figure.caption, colours).encode("utf-8")
+
+
+def table_of(result: Any) -> str:
+    """The numbers of a figure as CSV: columns with their units, empty where a line has no such number."""
+    rows = list(result.rows())
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    file = io.StringIO()
+    writer = csv.DictWriter(file, names, lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({name: _number(value) for name, value in row.items()})
+    return file.getvalue()
+
+
+def _number(value: Any) -> Any:
+    """Nine significant figures; words and nothing as they are."""
+    return f"{value:.9g}" if isinstance(value, float) else value

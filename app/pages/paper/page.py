@@ -1,0 +1,85 @@
+"""The page "The paper" of one visitor: a figure is computed when it is chosen, and given up when the page is left."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from granchain_core import scene
+from granchain_core.paper import PaperFigure, Result, compute, figure_of
+from granchain_core.warm import CERTIFIED, CURVE, LIVE, OBSERVER, ORBIT
+
+from ...page.hooks import Page
+from ...page.host import Host
+from ...page.progress import progress
+from ...page.task import Job, Task
+from ...serve.queues import LONG
+from .view import Paper
+
+_MOTION = (LIVE, CERTIFIED)
+_TRAINS = (("rig", _MOTION),)
+_FED = (("rig", (*_MOTION, CURVE, ORBIT, OBSERVER)),)
+#: The kernels of each figure: presets, and pieces of their structures. Figures without an entry need none.
+_KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
+    "2": (("sec2", (*_MOTION, CURVE)),), **dict.fromkeys(("3", "3a", "3b"), (("sec2", _MOTION),)),
+    "6": (("rig", (*_MOTION, CURVE)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
+    "11": tuple((name, (*_MOTION, ORBIT, OBSERVER)) for name in ("fig11-free", "fig11-founded")),
+}
+#: Parts of a computation between two reports of how far it is.
+_STEPS = 50
+
+
+class PaperPage(Page):
+    """The figures that were computed stay until the visitor leaves the dashboard."""
+
+    def __init__(self, host: Host, view: Paper) -> None:
+        self._view = view
+        self._task = Task(host, LONG, self._say, "The figure")
+        self._found: dict[str, Result] = {}
+        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+            "paper-show": self._show, "paper-leave": lambda _: self.leave()}
+
+    def leave(self) -> None:
+        """Give up what is being computed."""
+        if self._task.cancel():
+            self._say("stopped")
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+
+    def _show(self, message: dict[str, Any]) -> None:
+        figure = figure_of(str(message.get("figure")))
+        self._task.cancel()
+        self._view.choose(figure)
+        if figure.number in self._found:
+            self._say("done")
+            self._view.draw(figure, self._found[figure.number])
+            return
+        self._say("waiting")
+        self._task.start(lambda job: self._compute(figure, job))
+
+    def _compute(self, figure: PaperFigure, job: Job) -> None:
+        """In a thread of the queue."""
+        for name, pieces in _KERNELS.get(figure.number, ()):
+            job.compile(scene(name), *pieces)
+        job.say("computing")
+        told = [0]
+
+        def report(done: float) -> None:
+            if done < 1.0:
+                job.give_way()
+            if int(_STEPS * done) > told[0]:
+                told[0] = int(_STEPS * done)
+                job.later(self._view.display, done=done)
+
+        job.later(self._arrived, figure, compute(figure.number, stop=job.stop, progress=report))
+
+    def _arrived(self, figure: PaperFigure, result: Result) -> None:
+        self._found[figure.number] = result
+        self._view.draw(figure, result)
+
+    def _say(self, status: str, sentence: str = "") -> None:
+        if status == "waiting":
+            self._view.display(done=0.0)
+        self._view.display(**progress("paper", status), failure=sentence)

@@ -1,0 +1,97 @@
+// The page "The paper", over the pictures: figures are computed when they are chosen, with caption and rows of the table.
+
+import { button, meter, pageHead, paragraph, part, table } from "../../parts/dom.js";
+import { Embedded } from "../../parts/embedded.js";
+
+const ABOUT =
+  "The figures of Zhang et al. (2016), computed here from the presets. Choose one; what the paper states and where we differ stands under it.";
+const TITLES = ["the paper states", "we get", "do they differ?", "command"];
+
+// Text with what is between two stars in bold.
+const bold = (text) => text.split("**").map((piece, i) => (i % 2 ? part("b", { textContent: piece }) : piece));
+
+function statedTable(rows) {
+  const cells = ({ paper, ours, differs, command }) =>
+    [[paper], bold(ours), [differs], [part("code", { textContent: command })]].map((content) =>
+      part("td", {}, ...content),
+    );
+  return table(TITLES, part("tbody", {}, ...rows.map((row) => part("tr", {}, ...cells(row)))));
+}
+
+class PaperPage {
+  constructor(model) {
+    const send = (message) => model.send_msg(message);
+    this.model = model;
+    const { figures = [] } = model.state;
+    this.buttons = figures.map(({ number, title }) =>
+      button(number, () => send({ do: "paper-show", figure: number }), {
+        title,
+        ariaLabel: `figure ${number}: ${title}`,
+      }),
+    );
+    this.numbers = figures.map(({ number }) => number);
+    this.stop = button("stop", () => send({ do: "paper-leave" }));
+    this.meter = meter("progress of the figure");
+    this.status = part("span", { className: "status" });
+    const choice = part("div", { className: "choice" }, "figure ", ...this.buttons);
+    const head = pageHead("The paper", this.meter, this.stop, this.status);
+    this.warning = part("p", { className: "warn", hidden: true });
+    this.picture = part("div", { className: "picture", hidden: true });
+    this.caption = part("p", { className: "caption", ariaLive: "polite" });
+    this.rows = part("div", { className: "rows" });
+    const found = part("div", { className: "found" }, this.picture, this.caption, this.rows);
+    this.root = part("div", { className: "part sheet" }, head, choice, this.warning, found);
+    this.figure = new Embedded(this.picture);
+    this.leave = () => model.state.running && send({ do: "paper-leave" });
+  }
+
+  show() {
+    const { chosen, title, caption, rows = [], running, done, progress, failure } = this.model.state;
+    this.buttons.forEach((one, i) => {
+      one.ariaPressed = String(this.numbers[i] === chosen);
+    });
+    this.meter.hidden = this.stop.hidden = !running;
+    this.meter.value = done ?? 0;
+    this.status.textContent = progress ?? "";
+    this.warning.textContent = failure ?? "";
+    this.warning.hidden = !failure;
+    this.caption.replaceChildren(
+      ...(chosen ? [part("b", { textContent: `Figure ${chosen}: ${title}. ` }), caption] : [ABOUT]),
+    );
+    if (rows !== this.stated) this.rows.replaceChildren(...(rows.length ? [statedTable(rows)] : [paragraph()]));
+    this.stated = rows;
+    window.granchain.paper = { figure: this.figure, sentence: chosen ? `Figure ${chosen}: ${title}.` : "" };
+    window.granchain.emit("paper");
+  }
+
+  // A figure is drawn where it is seen: hidden, it would have no size.
+  draw() {
+    if (window.granchain.covered !== "paper" || !this.item) return;
+    this.picture.hidden = false;
+    this.picture.style.aspectRatio = this.item.shape;
+    this.figure.load(this.item.figure, this.item.words);
+  }
+
+  receive(message) {
+    if (message.type === "clear") {
+      this.item = null;
+      this.picture.hidden = true;
+      this.figure.remove();
+    } else if (message.type === "figure") {
+      this.item = message;
+      this.draw();
+    }
+  }
+}
+
+export function render({ model }) {
+  const page = new PaperPage(model);
+  model.on("state", () => page.show());
+  model.on("msg:custom", (message) => page.receive(message));
+  window.granchain.on("cover", (name) => {
+    if (name === "paper") requestAnimationFrame(() => page.draw());
+    else page.leave();
+  });
+  page.show();
+  return page.root;
+}

@@ -1,0 +1,117 @@
+"""A user's files for a figure: which kinds it takes, and at which frequency of the paper a series belongs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..errors import BadInput
+from ..experiment import Measured, Series, Shaker, read_experiment
+from .results import SHOWN
+
+
+@dataclass(frozen=True)
+class Given:
+    """Measured data of one figure: a resonance curve, the shaker's amplitude, series by the paper's frequency [Hz]."""
+
+    curve: Measured | None = None
+    shaker: Shaker | None = None
+    series: dict[float, Series] = field(default_factory=dict)
+
+    @property
+    def sentences(self) -> list[str]:
+        """How every file was understood."""
+        found = [one.understood for one in (self.curve, self.shaker) if one is not None]
+        return found + [f"at {f:g} Hz {one.understood}" for f, one in sorted(self.series.items())]
+
+
+#: A component smaller than this part of the signal's range has no phase to align by.
+_CLEAR = 1e-3
+_KINDS = {Measured: "curve", Shaker: "shaker", Series: "series"}
+_WORDS = {"curve": "a resonance curve (frequency_Hz, force_N)",
+          "shaker": "the shaker's amplitude (frequency_Hz, velocity_m_s or displacement_m)",
+          "series": "time series (time_s and velocity_m_s, input_force_N, output_force_N)"}
+
+
+def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], files: Sequence[str]) -> Given:
+    """The files of `--data`, each FILE or HZ=FILE. Raises `BadInput` for what the figure does not take."""
+    given = Given()
+    for name in files:
+        if not takes:
+            raise BadInput(f"Figure {number} shows nothing that was measured, so it takes no --data.")
+        hertz, path = _split(name)
+        found = read_experiment(path)
+        kind = _KINDS[type(found)]
+        if kind not in takes:
+            raise BadInput(f"Figure {number} takes {' and '.join(_WORDS[one] for one in takes)}; "
+                           f"{path} is {_WORDS[kind]}.")
+        if isinstance(found, Series):
+            at = _frequency(hertz, frequencies, path, number)
+            if at in given.series:
+                raise BadInput(f"Two series are given for {at:g} Hz; give one.")
+            given = replace(given, series={**given.series, at: found})
+        elif getattr(given, kind) is not None:
+            raise BadInput(f"Two files hold {_WORDS[kind]}; give one.")
+        elif isinstance(found, Shaker):
+            given = replace(given, shaker=found)
+        else:
+            given = replace(given, curve=found)
+    return given
+
+
+def _split(name: str) -> tuple[float | None, str]:
+    hertz, equals, path = name.partition("=")
+    try:
+        return (float(hertz), path) if equals else (None, name)
+    except ValueError:
+        return None, name
+
+
+def _frequency(hertz: float | None, frequencies: Sequence[float], path: str, number: str) -> float:
+    if hertz is None and len(frequencies) == 1:
+        return frequencies[0]
+    known = ", ".join(f"{f:g}" for f in frequencies)
+    if hertz is None:
+        raise BadInput(f"Figure {number} shows series at {known} Hz; say to which {path} belongs, for example "
+                       f"--data {frequencies[0]:g}={path}.")
+    if hertz not in frequencies:
+        nearest = min(frequencies, key=lambda f: abs(f - hertz))
+        raise BadInput(f"Figure {number} has no series at {hertz:g} Hz; it has {known} Hz, the nearest is {nearest:g}.")
+    return hertz
+
+
+def behind(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, force: np.ndarray) -> float:
+    """How far a series must be moved back, so that its last `SHOWN` seconds are from 0 on and in phase [s].
+
+    The phase is that of the component at `f` [Hz], the frequency of the model's drive: of the input force or, where
+    that was not measured, of the velocity. What has no such component, as an output force alone, is not moved.
+    """
+    for model, measured in ((force, series.input_force), (velocity, series.velocity)):
+        if measured is not None:
+            (phase, _), (own, size) = _component(time, model, f), _component(series.time, measured, f)
+            if size > _CLEAR * float(np.ptp(measured)):
+                late = float(np.mod((own - phase) / (2.0 * np.pi * f), 1.0 / f))
+                break
+    else:
+        late = 0.0
+    return late + max(0.0, np.floor((float(series.time[-1]) - SHOWN - late) * f + 1e-9)) / f
+
+
+def moved(series: Series, back: float) -> Series:
+    """A series `back` seconds earlier, of which what is then from 0 to `SHOWN` is kept."""
+    time = series.time - back
+    kept = (time >= 0.0) & (time <= SHOWN)
+    velocity, entered, arrived = (None if values is None else values[kept] for values in (
+        series.velocity, series.input_force, series.output_force))
+    return Series(time[kept], velocity, entered, arrived, series.understood)
+
+
+def _component(time: np.ndarray, values: np.ndarray, f: float) -> tuple[float, float]:
+    """Phase 2πfs and amplitude of the part a·cos(2πf(t − s)) of `values`, over whole periods where there is one."""
+    whole = np.floor((time[-1] - time[0]) * f + 1e-9) / f
+    inside = time - time[0] <= whole if whole > 0.0 else np.ones(len(time), dtype=bool)
+    t, v = time[inside], values[inside]
+    component = 2.0 * np.trapezoid((v - v.mean()) * np.exp(2j * np.pi * f * t), t) / (t[-1] - t[0])
+    return float(np.angle(component)), float(abs(component))

@@ -1,0 +1,159 @@
+"""The numbers in the table of the paper, computed: for every row those that are bold in it, in order."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from ..diagram import attractors
+from ..errors import unknown_name
+from ..observe import figure_11
+from ..orbits import periodic_orbit
+from ..scene import scene
+from ..state import rest
+from ..steady.curve import Curve, resonance_curve
+from ..steady.regime import Regime
+from ..steady.resonance import pushes
+from ..steady.settled import Settled, settled
+from .compute import SECTION_2, STATES
+from .features import dips, peaks
+
+Numbers = list[float | str]
+_DENSITY = 7850.0
+"""Density of the rig's beads [kg/m³], from the text."""
+_FINE = 3840
+"""Samples a period that find the largest kinetic energy to 1e-8; a picture's 96 miss 4 % of it."""
+
+
+@functools.cache
+def _settled(name: str, **changes: float) -> Settled:
+    return settled(scene(name).evolve(**changes))
+
+
+@functools.cache
+def _section_2() -> Curve:
+    return resonance_curve(scene("sec2"), SECTION_2)
+
+
+def _words(regime: Regime) -> str:
+    return f"period {regime.period}" if regime.period else regime.name
+
+
+def _elastic(name: str, **changes: float) -> float:
+    return _settled(name, **changes).run.max_output_force_elastic
+
+
+def _scales() -> Numbers:
+    chain = scene("sec2")
+    rate = math.sqrt(chain.K * math.sqrt(chain.A0) / chain.bead(1).mass)
+    return [chain.K, rate, chain.D / (chain.bead(1).mass * rate), _elastic("sec2", D=50.0), _elastic("sec2")]
+
+
+def _peaks() -> Numbers:
+    found = peaks(_section_2())
+    places = [value for p in found for value in (p.frequency, p.max_output_force_elastic)]
+    return [*places, *(float(p.regime.period or 0) for p in found)]
+
+
+def _dips() -> Numbers:
+    found = dips(_section_2())
+    same = {_words(p.regime) for p in found[:-1]}
+    return [*(p.frequency for p in found[:-1]), " or ".join(sorted(same)), found[-1].frequency,
+            _words(found[-1].regime)]
+
+
+def _stop_band() -> Numbers:
+    beyond = [p for p in _section_2().points if p.frequency >= 2000.0]
+    return [max(p.max_output_force_elastic for p in beyond), beyond[-1].max_output_force_elastic]
+
+
+def _energy() -> Numbers:
+    found = [settled(scene(name), samples=_FINE) for name in ("fig3a", "fig3b")]
+    ratios = [pushes(one.run) or (0, 0) for one in found]
+    return [*(f"{strong}:{periods}" for strong, periods in ratios),
+            *(1e6 * float(one.run.kinetic_energy.max()) for one in found)]
+
+
+def _mass() -> Numbers:
+    chain = scene("fig12-90")
+    bead = chain.pattern[0]
+    mass = 4.0 / 3.0 * math.pi * bead.radius**3 * _DENSITY
+    rounded = periodic_orbit(chain)
+    exact = periodic_orbit(replace(chain, pattern=(replace(bead, mass=mass),)), rounded.period, rounded.state)
+    change = abs(exact.multipliers[0]) / abs(rounded.multipliers[0]) - 1.0
+    return [1e3 * mass, abs(change / (mass / bead.mass - 1.0))]
+
+
+def _shaker() -> Numbers:
+    return [1e3 * 2.0 * math.pi * f * 7e-6 for f in (20.0, 60.0, 160.0)]
+
+
+def _one_amplitude() -> Numbers:
+    found = [_settled("rig", f=f, A0=7e-6, kappa=0.001) for f in (60.0, 90.0, 100.0)]
+    forces = [one.run.max_output_force_elastic for one in found]
+    return [forces[0], _words(found[0].regime), *forces[1:]]
+
+
+def _stiffness() -> Numbers:
+    stiff = _settled("rig", k=0.001 * scene("rig").K).run
+    ends = [scene("rig").evolve(A0=a, kappa=0.001) for a in (6e-6, 13e-6)]
+    return [stiff.max_output_force, stiff.max_input_force, *(one.k / 1e3 for one in ends),
+            *(one.foundation_frequency for one in ends)]
+
+
+def _output_force() -> Numbers:
+    runs = [_settled("fig12-60").run, _settled("fig3b").run]
+    return [force for one in runs for force in (one.max_output_force, one.max_output_force_elastic)]
+
+
+def _model_3() -> Numbers:
+    orbits = [periodic_orbit(scene(name), observer=True) for name in STATES.values()]
+    return [float(np.abs(one.observer_multipliers).max()) for one in orbits if one.observer_multipliers is not None]
+
+
+def _model_4() -> Numbers:
+    found = figure_11((100.0, 200.0), periods=2)
+    outside = [float(len(one.outside)) for one in found]
+    orbits = [one.twin.orbit for one in found[:2]]
+    return [*outside, float(np.abs(found[0].outside).max()),
+            *(float(np.abs(orbit.multipliers).max()) for orbit in orbits if orbit is not None)]
+
+
+def _states() -> Numbers:
+    found = [_settled(name) for name in STATES.values()]
+    same = {_words(one.regime) for one in found}
+    return [*(one.run.max_output_force_elastic for one in found), " or ".join(sorted(same))]
+
+
+def _two_solutions() -> Numbers:
+    chain, values = scene("fig12-100"), []
+    for changes in ({"f": 100.0, "A0": 7e-6}, {"f": 100.0, "A0": 10e-6}, {}):
+        values.append(attractors(chain.evolve(**changes, **({"kappa": 0.001} if changes else {})), 32))
+    counts = {float(len(one)) for one in values[:2]}
+    words = {_words(one.regime) for found in values[:2] for one in found}
+    hard = settled(chain.evolve(f=100.0), rest(chain))
+    return [counts.pop() if len(counts) == 1 else math.nan, " or ".join(sorted(words)), _words(hard.regime),
+            float(len(values[2])), " or ".join(sorted({_words(one.regime) for one in values[2]}))]
+
+
+def _contact() -> Numbers:
+    chain = scene("fig12-100")
+    return [1e6 * chain.A0 * chain.f / 100.0, 1e3 * 2.0 * math.pi * chain.f * chain.A0]
+
+
+_NUMBERS: dict[str, Callable[[], Numbers]] = {
+    "scales": _scales, "peaks": _peaks, "dips": _dips, "stop band": _stop_band, "energy": _energy, "mass": _mass,
+    "shaker": _shaker, "one amplitude": _one_amplitude, "stiffness": _stiffness, "output force": _output_force,
+    "model 3": _model_3, "model 4": _model_4, "states": _states, "two solutions": _two_solutions, "contact": _contact,
+}
+
+
+def numbers_of(key: str) -> Numbers:
+    """What is bold in the row with this key, computed: numbers in the row's units, and words."""
+    if key not in _NUMBERS:
+        raise unknown_name("row", key, _NUMBERS)
+    return _NUMBERS[key]()

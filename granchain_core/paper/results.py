@@ -1,0 +1,238 @@
+"""What the figures are drawn from. Every result has `rows`, the numbers of its figure as columns of a table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..experiment import Feature, Measured, Series, Shaker
+from ..observe import Figure11
+from ..result import Run
+from ..scene import Scene
+from ..steady.curve import Curve
+from ..steady.settled import Settled
+
+Row = dict[str, Any]
+#: Time shown of force trains [s]: six periods at 60 Hz, nine at 90 Hz, five at 50 Hz.
+SHOWN = 0.1
+
+
+class Result(Protocol):
+    """The result of any figure."""
+
+    def rows(self) -> Iterator[Row]:
+        """The figure's numbers, one dictionary a line; units are in the names."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """Figures 1, 4 and 8: a chain at rest, its dimensions from the scene. `fixture` adds what stands around it."""
+
+    scene: Scene
+    fixture: bool = False
+
+    def rows(self) -> Iterator[Row]:
+        """The place, radius and mass of every bead; the driver is bead 0."""
+        place = 0.0
+        for number, bead in enumerate((self.scene.bead(1), *self.scene.beads)):
+            place += bead.radius if number == 0 else 2.0 * bead.radius
+            yield {"bead": number, "centre_m": place, "radius_m": bead.radius, "mass_kg": bead.mass,
+                   "foundation_N_per_m": self.scene.k if number else 0.0}
+
+
+@dataclass(frozen=True, eq=False)
+class Transmission:
+    """Figure 2: the curve from rest, and a measured one."""
+
+    curve: Curve
+    measured: Measured | None = None
+
+    def rows(self) -> Iterator[Row]:
+        """One line a frequency; measured points follow."""
+        yield from _curve_rows(self.curve)
+        yield from _measured_rows(self.measured)
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyMaps:
+    """Figure 3: settled orbits, repeated for `periods` drive periods each."""
+
+    parts: tuple[tuple[Settled, int], ...]
+
+    def rows(self) -> Iterator[Row]:
+        """One line an instant: drive, force, and the kinetic energy of every bead."""
+        for found, periods in self.parts:
+            index, time = repeated(found.run, periods)
+            for i, t in zip(index, time, strict=True):
+                yield {"scene": found.run.scene.name, "time_s": t,
+                       "drive_displacement_m": found.run.drive_displacement[i],
+                       "input_force_N": found.run.input_force[i],
+                       **{f"kinetic_energy_{bead}_J": energy
+                          for bead, energy in enumerate(found.run.kinetic_energy[i], 1)}}
+
+
+@dataclass(frozen=True, eq=False)
+class ShakerAmplitude:
+    """Figure 5: velocity amplitude V0 = 2πf A0 over f [Hz] for amplitudes A0 [m], and the measured one."""
+
+    frequency: np.ndarray
+    amplitudes: tuple[float, ...]
+    measured: Shaker | None = None
+
+    def velocity(self, amplitude: float) -> np.ndarray:
+        """V0 over the frequencies [m/s]."""
+        return np.asarray(2.0 * math.pi * self.frequency * amplitude)
+
+    def rows(self) -> Iterator[Row]:
+        """One line a frequency and amplitude; measured points follow."""
+        for amplitude in self.amplitudes:
+            for f, v in zip(self.frequency, self.velocity(amplitude), strict=True):
+                yield {"source": "computed", "frequency_Hz": f, "velocity_m_s": v, "displacement_m": amplitude}
+        if self.measured is not None:
+            for f, v, a in zip(self.measured.frequency, self.measured.velocity, self.measured.displacement,
+                               strict=True):
+                yield {"source": "measured", "frequency_Hz": f, "velocity_m_s": v, "displacement_m": a}
+
+
+@dataclass(frozen=True, eq=False)
+class RigCurves:
+    """Panel (a) of figures 6 and 9: the rig's curves at constant amplitudes, what the text states, single states."""
+
+    curves: tuple[Curve, ...]
+    features: tuple[Feature, ...]
+    states: tuple[tuple[float, Settled], ...] = ()
+    """States at amplitudes of their own, each at the frequency [Hz] that the paper names."""
+    measured: Measured | None = None
+
+    def rows(self) -> Iterator[Row]:
+        """Lines of every curve, then the states, then measured points."""
+        for one in self.curves:
+            for row in _curve_rows(one):
+                yield {"panel": "a", **row}
+        for named, found in self.states:
+            yield {"panel": "a", "source": f"state shown at {named:g} Hz", "A0_m": found.run.scene.A0,
+                   "frequency_Hz": found.run.scene.f,
+                   "max_output_force_elastic_N": found.run.max_output_force_elastic,
+                   "regime": found.regime.name, "period": found.regime.period}
+        for row in _measured_rows(self.measured):
+            yield {"panel": "a", **row}
+
+
+@dataclass(frozen=True, eq=False)
+class Column:
+    """One frequency of figures 6b, 7, 9b, 10 and 12: force trains over `SHOWN` seconds.
+
+    named : the frequency the paper gives it [Hz]. found : the settled orbit of model (5). time (T,) from 0 [s];
+    velocity, input_force, output_force, contact (T,) of it, `contact` being whether driver and bead 1 touch. observer :
+    output force of model (3) at `observer_time`, or None. measured : a user's series shifted so that it is in phase.
+    """
+
+    named: float
+    found: Settled
+    time: np.ndarray
+    velocity: np.ndarray
+    input_force: np.ndarray
+    output_force: np.ndarray
+    contact: np.ndarray
+    observer_time: np.ndarray | None = None
+    observer: np.ndarray | None = None
+    observer_words: str = ""
+    measured: Series | None = None
+
+    def rows(self) -> Iterator[Row]:
+        """Lines of model (5), then of model (3), then of the measured series."""
+        for values in zip(self.time, self.velocity, self.input_force, self.output_force, self.contact, strict=True):
+            yield {"frequency_in_paper_Hz": self.named, "source": "model (5)", "f_Hz": self.found.run.scene.f,
+                   "A0_m": self.found.run.scene.A0,
+                   **dict(zip(("time_s", "velocity_m_s", "input_force_N", "output_force_N", "contact"), values,
+                              strict=True))}
+        if self.observer_time is not None and self.observer is not None:
+            for t, force in zip(self.observer_time, self.observer, strict=True):
+                yield {"frequency_in_paper_Hz": self.named, "source": "model (3)", "time_s": t,
+                       "output_force_N": force}
+        if self.measured is not None:
+            columns = {f"{name}": getattr(self.measured, attribute) for name, attribute in (
+                ("velocity_m_s", "velocity"), ("input_force_N", "input_force"), ("output_force_N", "output_force"))}
+            for i, t in enumerate(self.measured.time):
+                yield {"frequency_in_paper_Hz": self.named, "source": "measured", "time_s": t,
+                       **{name: values[i] for name, values in columns.items() if values is not None}}
+
+
+@dataclass(frozen=True, eq=False)
+class Trains:
+    """Figures 7, 10 and 12: one column for each frequency."""
+
+    columns: tuple[Column, ...]
+
+    def rows(self) -> Iterator[Row]:
+        """The lines of all columns."""
+        for column in self.columns:
+            yield from column.rows()
+
+
+@dataclass(frozen=True, eq=False)
+class RigResponse:
+    """Figures 6 and 9: (a) curves, (b) trains at 60 Hz."""
+
+    curves: RigCurves
+    column: Column
+
+    def rows(self) -> Iterator[Row]:
+        """The lines of both panels."""
+        yield from self.curves.rows()
+        for row in self.column.rows():
+            yield {"panel": "b", **row}
+
+
+@dataclass(frozen=True, eq=False)
+class Observers:
+    """Figure 11: multipliers of model (4) and the first beads of both chains, without and with foundation."""
+
+    parts: tuple[Figure11, ...]
+
+    def rows(self) -> Iterator[Row]:
+        """Multipliers, then the two first beads over time."""
+        for part in self.parts:
+            orbit = part.twin.orbit
+            assert orbit is not None and orbit.observer_multipliers is not None
+            for whose, found in (("chain", orbit.multipliers), ("observer", orbit.observer_multipliers)):
+                for mu in found:
+                    yield {"kappa": part.kappa, "f_Hz": part.frequency, "multiplier_of": whose, "real": mu.real,
+                           "imaginary": mu.imag, "modulus": abs(mu)}
+        for part in self.parts:
+            chain, observer = part.first_beads
+            for t, x, y in zip(part.twin.time, chain, observer, strict=True):
+                yield {"kappa": part.kappa, "f_Hz": part.frequency, "time_s": t, "chain_bead_1_m": x,
+                       "observer_bead_1_m": y}
+
+
+def repeated(run: Run, periods: float) -> tuple[np.ndarray, np.ndarray]:
+    """Indices into a recorded orbit, again and again for so many drive periods, and their times from 0 [s].
+
+    A motion that does not repeat is shown once, as far as it was recorded.
+    """
+    rows = len(run.time) - 1
+    count = round(periods * run.samples) + 1
+    if run.regime.name != "periodic":
+        count = min(count, rows + 1)
+        return np.arange(count), np.arange(count) / (run.samples * run.scene.f)
+    return np.arange(count) % rows, np.arange(count) / (run.samples * run.scene.f)
+
+
+def _curve_rows(curve: Curve) -> Iterator[Row]:
+    for p in curve.points:
+        yield {"source": "computed", "A0_m": curve.scene.A0, "frequency_Hz": p.frequency,
+               "max_output_force_elastic_N": p.max_output_force_elastic, "max_output_force_N": p.max_output_force,
+               "max_input_force_N": p.max_input_force, "relative_error_elastic": p.force_errors.elastic,
+               "regime": p.regime.name, "period": p.regime.period}
+
+
+def _measured_rows(measured: Measured | None) -> Iterator[Row]:
+    if measured is not None:
+        errors = measured.error if measured.error is not None else [None] * len(measured.frequency)
+        for f, force, error in zip(measured.frequency, measured.force, errors, strict=True):
+            yield {"source": "measured", "frequency_Hz": f, "measured_force_N": force, "measured_error_N": error}

@@ -1,0 +1,48 @@
+"""The table of docs/paper.md: what the paper states, what we get, where they differ, the command that shows it."""
+
+from __future__ import annotations
+
+import functools
+import re
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..scene import ASSETS
+
+
+@dataclass(frozen=True)
+class Statement:
+    """One row: the paper's words and ours, with what is computed in bold, **0.622** or **period 1**."""
+
+    key: str
+    figures: tuple[str, ...]
+    paper: str
+    ours: str
+    differs: str
+    command: str
+
+    @property
+    def computed(self) -> list[str]:
+        """What is bold, in order."""
+        return re.findall(r"\*\*(.+?)\*\*", self.ours)
+
+    def wrong(self, found: Sequence[float | str]) -> list[str]:
+        """Where the row does not say what was found: another word, or a number off by more than its last digit."""
+        if len(found) != len(self.computed):
+            return [f"{self.key}: {len(found)} values for {len(self.computed)} in bold"]
+        return [f"{self.key}: {said} is {value}" for said, value in zip(self.computed, found, strict=True)
+                if not (said == value if isinstance(value, str) else abs(float(said) - value) <= unit_of(said))]
+
+
+def unit_of(number: str) -> float:
+    """One unit of the last digit, 0.001 of "0.622" and 1e6 of "9.758e9"."""
+    mantissa, _, exponent = number.lower().partition("e")
+    return float(10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2])))
+
+
+@functools.cache
+def statements() -> tuple[Statement, ...]:
+    """All rows, in the order of the paper."""
+    data = tomllib.loads((ASSETS / "paper" / "statements.toml").read_text(encoding="utf-8"))
+    return tuple(Statement(**{**row, "figures": tuple(row["figures"])}) for row in data["statement"])

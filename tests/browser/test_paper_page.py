@@ -1,0 +1,72 @@
+"""The page "The paper" as a visitor meets it: a figure is drawn with caption and rows, in both themes, and given up when left."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+from started import until
+
+Visit = Callable[..., Page]
+#: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
+COMPILED = 150_000
+
+
+def opened(page: Page) -> Locator:
+    """The page, opened from its tab."""
+    page.get_by_role("tab", name="paper").click()
+    page.locator("#tabs").get_by_role("button", name="open the page").click()
+    sheet = page.locator('[data-cover="paper"]')
+    expect(sheet).to_contain_text("Choose one")
+    return sheet
+
+
+def chosen(sheet: Locator, number: str) -> None:
+    """Click on the button of a figure."""
+    sheet.get_by_role("button", name=re.compile(rf"^figure {number}:")).click()
+
+
+def test_figures_are_drawn_with_caption_and_rows(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    chosen(sheet, "5")
+    expect(sheet.locator(".caption")).to_contain_text("Figure 5: What the shaker does")
+    expect(sheet.locator(".caption")).to_contain_text("are images, whose numbers we do not have")
+    expect(sheet.locator("tbody tr")).to_have_count(1)
+    expect(sheet.locator("tbody b").first).to_have_text("0.88")
+    picture = sheet.get_by_role("img", name="Figure 5")
+    expect(picture.locator("canvas").first).to_be_visible()
+    chosen(sheet, "3a")
+    expect(sheet.get_by_role("img", name="Figure 3a")).to_be_visible(timeout=COMPILED)
+    until(page, lambda: bool(page.evaluate("granchain.paper.figure.model('drive and force')?.data.force.length > 700")))
+    page.evaluate("window.kept = granchain.paper.figure.document; granchain.nextTheme()")  # another theme, another figure
+    until(page, lambda: bool(page.evaluate(
+        "granchain.paper.figure.document && kept !== granchain.paper.figure.document")))
+    assert page.evaluate("granchain.paper.figure.model('drive').background_fill_color") == "#161a21"
+
+
+def test_a_figure_is_given_up_when_the_page_is_left(visit: Visit) -> None:
+    page = visit()
+    sheet = opened(page)
+    chosen(sheet, "9")  # the longest one: four curves
+    expect(sheet.get_by_role("button", name="stop")).to_be_visible()
+    page.keyboard.press("Escape")
+    page.locator("#tabs").get_by_role("button", name="open the page").click()
+    expect(sheet.locator(".status")).to_have_text("stopped", timeout=3000)
+    expect(sheet.locator(".picture")).to_be_hidden()
+    chosen(sheet, "1")
+    expect(sheet.get_by_role("img", name="Figure 1")).to_be_visible()
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
+def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
+    page = visit(viewport={"width": size[0], "height": size[1]})
+    sheet = opened(page)
+    chosen(sheet, "4")
+    picture = sheet.get_by_role("img", name="Figure 4")
+    expect(picture.locator("canvas").first).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") == size[0]
+    box = picture.bounding_box()
+    assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > 200

@@ -1,0 +1,64 @@
+"""docs/paper.md: its table is that of the code, its numbers are computed, its pictures are there, its example runs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import pytest
+from documents import ROOT, blocks
+
+from granchain_core import BadInput
+from granchain_core.paper import FIGURES, Statement, numbers_of, statements
+from granchain_core.paper.statements import unit_of
+from tools.paper.page import PAGE, gallery, table, with_parts
+
+TEXT = PAGE.read_text(encoding="utf-8")
+#: The rows as the page has them: figures, paper, ours, differs, command.
+ROWS = [re.split(r" \| ", line.strip("| ")) for line in TEXT.splitlines() if re.match(r"\| (3, 3a|\d+(, \d+)*) ?[,|]", line)]
+
+
+def test_the_table_and_the_gallery_are_those_of_the_code() -> None:
+    assert with_parts(TEXT, statements()) == TEXT  # else run: python -m tools.paper
+    assert table(statements()) in TEXT and gallery() in TEXT
+    assert len(ROWS) == len(statements()) > 10
+
+
+def test_every_figure_has_a_row_and_a_picture_of_moderate_size() -> None:
+    assert {number for one in statements() for number in one.figures} == set(FIGURES)
+    for number in set(FIGURES) - {"3a", "3b"}:
+        picture = ROOT / "docs" / "paper" / f"figure-{number}.png"
+        assert picture.read_bytes().startswith(b"\x89PNG") and picture.stat().st_size < 150_000
+
+
+@pytest.mark.parametrize("place", range(len(ROWS)), ids=lambda place: statements()[place].key)
+def test_what_is_bold_is_what_is_computed(place: int) -> None:
+    """Words as they are, numbers within one unit of their last digit, in the document's own text."""
+    row = statements()[place]
+    as_printed = Statement(row.key, row.figures, ROWS[place][1], ROWS[place][2], row.differs, row.command)
+    assert as_printed.computed
+    assert as_printed.wrong(numbers_of(row.key)) == []
+
+
+@pytest.mark.parametrize(("ours", "found", "wrong"), [
+    ("**0.622** N", [0.6226], 0), ("**0.622** N", [0.6236], 1), ("**9.758e9**", [9.7589e9], 0), ("**9.758e9**", [9.7599e9], 1),
+    ("**period 1** at **5** Hz", ["period 1", 5.0], 0), ("**period 1**", ["chaotic"], 1), ("**1** and **2**", [1.0], 1),
+])
+def test_a_wrong_number_is_found(ours: str, found: Sequence[float | str], wrong: int) -> None:
+    assert len(Statement("one", ("1",), "", ours, "", "").wrong(found)) == wrong
+
+
+def test_a_unit_of_the_last_digit() -> None:
+    assert [unit_of(one) for one in ("173", "0.622", "9.758e9")] == [1.0, pytest.approx(1e-3), pytest.approx(1e6)]
+
+
+def test_a_row_that_does_not_exist_is_told() -> None:
+    with pytest.raises(BadInput, match="Unknown row 'peak'"):
+        numbers_of("peak")
+
+
+def test_the_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    (code,) = (block.text for block in blocks(PAGE) if block.language == "python")
+    (promised,) = re.findall(r"^print\(.*\)\s+# (.+)$", code, re.MULTILINE)
+    exec(compile(code, "docs/paper.md", "exec"), {})
+    assert capsys.readouterr().out.strip() == promised
