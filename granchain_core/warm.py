@@ -7,6 +7,7 @@ which can be compiled in its own process: `python -m granchain_core.warm PIECE`,
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import json
@@ -26,7 +27,7 @@ from .accuracy.work_precision import compile_methods
 from .integrate import Engine, Setting, certified, live
 from .integrate.batch import Batch, can_share_batch, is_uniform
 from .kernels import jit
-from .kernels.jit import CACHE_FOLDER
+from .kernels.cache import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
 from .lower import lower
 from .observe.pair import Pair
@@ -129,16 +130,20 @@ PIECES: dict[str, Callable[[Scene], None]] = {
 def compile_piece(shown: Scene, piece: str) -> None:
     """Compile one piece for the scene's structure, or load it from the cache, and mark it as compiled."""
     PIECES[piece](shown.evolve(f=max(shown.f, 1000.0)))  # short periods
-    _marker(structure(shown), piece).touch()
+    if CACHE_FOLDER is not None:
+        with contextlib.suppress(OSError):  # the kernels could not be kept either, which has been said (kernels/cache.py)
+            _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 
 def is_warm(shown: Scene, pieces: Iterable[str] = (LIVE, CERTIFIED)) -> bool:
     """Whether these pieces of the scene's structure have been compiled on this machine."""
-    return all(_marker(structure(shown), piece).exists() for piece in pieces)
+    if CACHE_FOLDER is None:
+        return False
+    return all(_marker(CACHE_FOLDER, structure(shown), piece).exists() for piece in pieces)
 
 
-def _marker(name: str, piece: str) -> Path:
-    return CACHE_FOLDER / f"compiled-{_sources_stamp()}-{name}-{piece}".replace(" ", "-").replace(",", "")
+def _marker(folder: Path, name: str, piece: str) -> Path:
+    return folder / f"compiled-{_sources_stamp()}-{name}-{piece}".replace(" ", "-").replace(",", "")
 
 
 @functools.cache
