@@ -9,6 +9,7 @@ Numba names no interface for this: `KernelCache` replaces the classes by which i
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import logging
@@ -112,10 +113,8 @@ def _temporary_folder(name: str, problem: str) -> Path | None:
 
 def _is_ours(folder: Path) -> bool:
     """Make the folder, or find it there: no link, with this user as owner and no rights for anybody else."""
-    try:
+    with contextlib.suppress(FileExistsError):
         folder.mkdir(mode=0o700)
-    except FileExistsError:
-        pass
     found = folder.lstat()
     return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and stat.S_IMODE(found.st_mode) == 0o700
 
@@ -158,7 +157,6 @@ class _Files(caching.IndexDataCacheFile):
     _source_stamp: Any
     _data_path: Callable[[str], str]
     _dump: Callable[[Any], bytes]
-    _open_for_write: Callable[[str], Any]
 
     def save(self, key: Any, data: Any) -> None:
         """Add one compiled version."""
@@ -196,10 +194,8 @@ class _Files(caching.IndexDataCacheFile):
         if hashlib.sha256(content).digest() == digest:
             return content
         say_once(f"Damaged kernels in {Path(self._cache_path).parent} are dropped and compiled again.")
-        try:
+        with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
             os.unlink(path)
-        except OSError:  # it cannot be removed, or another process was first; it is not read in any case
-            pass
         raise FileNotFoundError(path)
 
 
