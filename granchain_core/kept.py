@@ -23,6 +23,8 @@ from .errors import BadInput
 BLOCK = 128
 #: Time after which a smaller block is written [s].
 SECONDS = 0.5
+#: Writing takes at most one part in so many of the time.
+_SHARE = 20.0
 #: Ending of a block's file name.
 _SUFFIX = ".block"
 #: Version of the format.
@@ -45,17 +47,20 @@ class Kept(Generic[Piece]):
     """The folder of one computation, which grows while it is computed; any thread may add to it.
 
     `kind` is what is computed, in a word; `digest` identifies it and `words` describe it to a person. `pack` turns
-    pieces into the content of a block. The folder is made for the first block.
+    pieces into the content of a block. The folder is made for the first block. With `newest_only` a block replaces
+    those before it.
     """
 
     def __init__(self, out: str | Path, kind: str, digest: str, words: str,
-                 pack: Callable[[list[Piece]], bytes]) -> None:
+                 pack: Callable[[list[Piece]], bytes], newest_only: bool = False) -> None:
         self.folder = folder_of(out)
-        self._kind, self._words, self._pack = kind, words, pack
+        self._kind, self._words, self._pack, self._newest_only = kind, words, pack, newest_only
         self._head = {"version": _VERSION, "digest": digest, "words": words}
         self._pieces: list[Piece] = []
         self._lock = threading.Lock()
-        self._number, self._last = 0, time.monotonic()
+        self._number, self._due = 0, time.monotonic() + SECONDS
+        self._later: threading.Timer | None = None
+        self._problem: BadInput | None = None
 
     def open(self, resume: bool) -> None:
         """Look what is there: an unfinished computation must be this one and be resumed. Raises `BadInput`."""
@@ -81,32 +86,57 @@ class Kept(Generic[Piece]):
                 yield content
 
     def add(self, piece: Piece) -> None:
-        """Add a finished piece; it is written when a block is full or `SECONDS` have passed."""
+        """Add a finished piece; it is written when a block is full, at the latest after `SECONDS`.
+
+        Raises `BadInput` where that was impossible.
+        """
         with self._lock:
+            if self._problem is not None:
+                raise self._problem
+            if self._newest_only:
+                self._pieces.clear()
             self._pieces.append(piece)
-            due = len(self._pieces) >= BLOCK or time.monotonic() - self._last > SECONDS
-        if due:
+            left = self._due - time.monotonic()
+            if self._later is None and left > 0.0:
+                self._later = threading.Timer(left, self._write_later)
+                self._later.daemon = True
+                self._later.start()
+        if left <= 0.0 or len(self._pieces) >= BLOCK:
             self.write()
+
+    def _write_later(self) -> None:
+        try:
+            self.write()
+        except BadInput as problem:  # for the thread that adds the next piece
+            self._problem = problem
 
     def write(self) -> None:
         """Write the pieces added since the last block. Raises `BadInput` where that is impossible."""
         with self._lock:
-            if self._pieces:
-                content = self._pack(self._pieces)
-                self._pieces.clear()
-                self._number += 1
-                try:
-                    if self._number == 1:
-                        self._begin()
-                    self._write(f"{time.time_ns():x}-{os.getpid()}-{self._number}{_SUFFIX}", content)
-                except OSError as problem:
-                    raise self._denied(problem) from None
-            self._last = time.monotonic()
+            self._later = None
+            if not self._pieces:
+                return
+            began, content = time.monotonic(), self._pack(self._pieces)
+            self._pieces.clear()
+            self._number += 1
+            name = f"{time.time_ns():x}-{os.getpid()}-{self._number}{_SUFFIX}"
+            try:
+                if self._number == 1:
+                    self._begin()
+                self._write(name, content)
+                if self._newest_only:
+                    self._clear(name)
+            except OSError as problem:
+                raise self._denied(problem) from None
+            now = time.monotonic()
+            self._due = now + max(SECONDS, _SHARE * (now - began))
 
     def remove(self) -> None:
         """Remove the folder once the result is written: the head last, so that what is left belongs to it."""
         try:
-            self._clear()
+            with self._lock:
+                self._pieces.clear()
+                self._clear()
             self._head_file.unlink(missing_ok=True)
             if self.folder.exists():
                 self.folder.rmdir()
@@ -122,10 +152,11 @@ class Kept(Generic[Piece]):
         if not self._head_file.exists():
             self._write(self._head_file.name, json.dumps(self._head).encode())
 
-    def _clear(self) -> None:
-        """Remove all blocks, and files that a killed process was writing."""
+    def _clear(self, but: str = "") -> None:
+        """Remove all blocks but one, and files that a killed process was writing."""
         for path in [*self.folder.glob(f"*{_SUFFIX}"), *self.folder.glob(".*.tmp")]:
-            path.unlink(missing_ok=True)
+            if path.name != but:
+                path.unlink(missing_ok=True)
 
     def _write(self, name: str, content: bytes) -> None:
         temporary = self.folder / f".{name}.{os.getpid()}.tmp"
