@@ -86,9 +86,8 @@ def _followed(arguments: argparse.Namespace) -> Branch:
         found = in_background(work)
     except (Cancelled, KeyboardInterrupt):
         if arguments.out and begun:  # the orbits found so far can be continued
-            with unbroken():
-                save_branch(begun[0].branch, arguments.out)
-                _remove(begun[0].kept)
+            save_branch(begun[0].branch, arguments.out)
+            _remove(begun[0].kept)
             count = len(begun[0].branch.points)
             raise Cancelled(f"{count} orbits are in {arguments.out}; go on with --resume") from None
         raise
