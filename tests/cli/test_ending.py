@@ -137,6 +137,22 @@ def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[...
     assert command.end() == 143  # that of the first
 
 
+@pytest.mark.parametrize("number", SENTENCE)
+def test_a_signal_after_the_command_is_done_changes_nothing(number: signal.Signals, started: Callable[..., Command]) -> None:
+    """Python takes some time to leave, in which its default would end the process with another status."""
+    program = ("import atexit, time\nfrom app.cli import ending\nending.begin()\n"
+               "atexit.register(lambda: (print('leaving', flush=True), time.sleep(1.0)))\n"
+               "class Late:\n    def __del__(self):\n        time.sleep(1.0)\nlate = Late()\n"
+               "raise SystemExit(ending.leave(0))\n")
+    command = started(program=("-c", program))
+    assert command.process.stdout is not None and command.process.stdout.readline() == "leaving\n"
+    command.send(number)
+    time.sleep(1.2)
+    if command.process.poll() is None:
+        command.send(number)
+    assert command.end() == 0 and command.err == ""
+
+
 def test_an_ignored_interrupt_stays_ignored(started: Callable[..., Command]) -> None:
     """As in a shell's background jobs."""
     program = ("import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nfrom app.cli import ending\nending.begin()\n"
