@@ -122,7 +122,7 @@ def leave(done: int) -> int:
     Threads may still wait for a compiler, and Python would wait for them.
     """
     if _ASKED.status is None:
-        for number in _STATUS:  # a signal that comes now is too late: Python would let it end the process in its own way
+        for number in _STATUS:  # one that comes now is too late, and Python would go back to the default
             signal.signal(number, signal.SIG_IGN)
         return done
     for stream in (sys.stdout, sys.stderr):
