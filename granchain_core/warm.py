@@ -2,31 +2,31 @@
 
 A *structure* is the set of effects a scene has; moving a slider never changes it, adding a foundation or another
 dissipation law does, and the kernels of a new structure are compiled once per machine. They come in pieces, each of
-which can be compiled in its own process: `python -m granchain_core.warm PIECE`, the scene as JSON on standard input.
+which can be compiled in its own process.
 """
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
-import json
 import os
 import sys
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from contextlib import ExitStack
 from itertools import cycle
-from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 
 from .accuracy.effect_cost import CODE, MOTION
 from .accuracy.work_precision import compile_methods
+from .children import pool, starting
 from .integrate import Engine, Setting, certified, live
 from .integrate.batch import Batch, can_share_batch, is_uniform
 from .kernels import jit
-from .kernels.jit import CACHE_FOLDER
+from .kernels.cache import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
 from .lower import lower
 from .observe.pair import Pair
@@ -129,16 +129,20 @@ PIECES: dict[str, Callable[[Scene], None]] = {
 def compile_piece(shown: Scene, piece: str) -> None:
     """Compile one piece for the scene's structure, or load it from the cache, and mark it as compiled."""
     PIECES[piece](shown.evolve(f=max(shown.f, 1000.0)))  # short periods
-    _marker(structure(shown), piece).touch()
+    if CACHE_FOLDER is not None:
+        with contextlib.suppress(OSError):  # the kernels were not kept either; kernels/cache.py has said so
+            _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 
 def is_warm(shown: Scene, pieces: Iterable[str] = (LIVE, CERTIFIED)) -> bool:
     """Whether these pieces of the scene's structure have been compiled on this machine."""
-    return all(_marker(structure(shown), piece).exists() for piece in pieces)
+    if CACHE_FOLDER is None:
+        return False
+    return all(_marker(CACHE_FOLDER, structure(shown), piece).exists() for piece in pieces)
 
 
-def _marker(name: str, piece: str) -> Path:
-    return CACHE_FOLDER / f"compiled-{_sources_stamp()}-{name}-{piece}".replace(" ", "-").replace(",", "")
+def _marker(folder: Path, name: str, piece: str) -> Path:
+    return folder / f"compiled-{_sources_stamp()}-{name}-{piece}".replace(" ", "-").replace(",", "")
 
 
 @functools.cache
@@ -168,12 +172,9 @@ def warm_presets(workers: int = 2) -> Iterable[str]:
     for name in scene_names():
         seen.setdefault(structure(scene(name)), scene(name))
     with ExitStack() as stack:
-        pools = [stack.enter_context(ProcessPoolExecutor(1, mp_context=get_context("spawn"))) for _ in range(workers)]
-        jobs = [pool.submit(_compile, (one, piece))
-                for one, pool in zip(seen.values(), cycle(pools), strict=False) for piece in PIECES]
+        pools = [stack.enter_context(pool(1)) for _ in range(workers)]
+        with starting():
+            jobs = [one_of_them.submit(_compile, (one, piece))
+                    for one, one_of_them in zip(seen.values(), cycle(pools), strict=False) for piece in PIECES]
         for job in as_completed(jobs):
             yield job.result()
-
-
-if __name__ == "__main__":
-    compile_piece(Scene.from_json(json.load(sys.stdin)), sys.argv[1])

@@ -1,85 +1,37 @@
 """The command line: serve, scenes, warm, run, curve, orbit, branch, observe, map, figure, accuracy, check.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
-130 cancelled. With --json exactly one object goes to stdout: the result or, if the computation failed or was over
-budget, its outcome, a sentence and what is known. Progress goes to stderr.
+130 cancelled by Ctrl-C, 143 by SIGTERM.
+
+Nothing is imported here: the commands take a second to load, and Ctrl-C in that second must end as it does later.
+`entry` therefore first says what signals do (ending.py), and then loads the rest.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
-from collections.abc import Sequence
-from importlib import import_module
-from typing import NoReturn
-
-from app.cli.common import say, show_json
-from granchain_core import BadInput, Cancelled, NumbersFailed
-from granchain_core.errors import OverBudget, outcome_of, unknown_name
-
-DONE, BAD_INPUT, FAILED, CANCELLED = 0, 2, 3, 130
-
-
-class _Parser(argparse.ArgumentParser):
-    """A parser whose errors are `BadInput`: one sentence, no usage text."""
-
-    def error(self, message: str) -> NoReturn:
-        raise BadInput(f"{self.prog}: {message}; see '{self.prog} --help'.")
-
-
-#: What each command is for, in the order of `granchain --help`. The module of its name has its options, `add_options`,
-#: and does it, `do`; only the one that is asked for is imported, because some need what takes a second to load.
-_COMMANDS = {
-    "serve": "open the dashboard",
-    "scenes": "list the scenes and what to look at",
-    "warm": "compile the kernels of all presets, ahead of time",
-    "run": "run a scene and record it",
-    "orbit": "periodic orbit and Floquet multipliers",
-    "branch": "branch of periodic orbits and its special points",
-    "accuracy": "what accuracy costs: error against time for every method",
-    "observe": "push a scene's chain by a measured force",
-    "check": "the hard cases: figure, bar and verdict; status 3 if one fails",
-    "curve": "resonance curve: largest forces over frequency",
-    "map": "regime and largest forces over two knobs",
-    "figure": "a figure of the paper with our numbers",
-}
-
-
-def _parser(words: Sequence[str]) -> _Parser:
-    """The parser, with the options of the command in `words`."""
-    asked_for = next((word for word in words if not word.startswith("-")), None)
-    parser = _Parser(prog="granchain", description="Driven granular chains: simulate, sweep, show.",
-                     allow_abbrev=False)
-    known = parser.add_subparsers(dest="command", parser_class=_Parser, metavar="COMMAND", required=True)
-    for name, about in _COMMANDS.items():
-        command = known.add_parser(name, help=about, description=about, allow_abbrev=False)
-        if name == asked_for:
-            module = import_module(f"app.cli.{name}")
-            module.add_options(command)
-            command.set_defaults(do=module.do)
-    return parser
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command; returns the exit status."""
-    words = list(sys.argv[1:] if arguments is None else arguments)
+    """Run one command in this process, by default that of its command line; returns the exit status."""
+    import sys
+
+    from .commands import do
+
+    return do(list(sys.argv[1:] if arguments is None else arguments))
+
+
+def entry() -> int:
+    """What `granchain` and `python -m app.cli` run: `main` in a process of its own, which signals may end."""
     try:
-        if words and not words[0].startswith("-") and words[0] not in _COMMANDS:
-            raise unknown_name("command", words[0], _COMMANDS)
-        parsed = _parser(words).parse_args(words)
-        return parsed.do(parsed) or DONE
-    except (BadInput, NumbersFailed) as problem:
-        say(problem)
-        if "--json" in words and isinstance(problem, (NumbersFailed, OverBudget)):
-            show_json(outcome_of(problem))
-        return BAD_INPUT if isinstance(problem, BadInput) else FAILED
-    except (KeyboardInterrupt, Cancelled):
-        say("Cancelled.")
-        return CANCELLED
-    except BrokenPipeError:
-        sys.stderr.close()
-        return DONE
+        from . import ending
 
+        ending.begin()
+        return ending.leave(main())
+    except KeyboardInterrupt:  # signals were not taken over yet
+        import os
 
-if __name__ == "__main__":
-    sys.exit(main())
+        os.write(2, b"Cancelled.\n")
+        os._exit(130)

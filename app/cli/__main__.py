@@ -1,7 +1,6 @@
 """`python -m app.cli` is `granchain`."""
 
-import sys
+from . import entry
 
-from . import main
-
-sys.exit(main())
+if __name__ == "__main__":
+    raise SystemExit(entry())

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import argparse
 import threading
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from granchain_core import BadInput, Cancelled
-from granchain_core.orbits import Arm, Branch, Continuation, begin_branch
+from granchain_core import BadInput, Cancelled, NumbersFailed
+from granchain_core.orbits import Arm, Branch, Continuation, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
+from granchain_core.orbits.branch.kept_orbits import KeptOrbits
 
-from .common import check_points, chosen_scene, in_background, say, say_if, show_json
+from .common import check_points, chosen_scene, in_background, say, say_if, show_json, unbroken
 from .foundation import kept_along
 from .options import add_result
 from .picture import add_option as add_picture
@@ -32,32 +34,20 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--both", action="store_true",
                         help="begin at the scene's own value of the knob and go both ways, to a and to b")
     parser.add_argument("--points", type=int, default=MOST_POINTS, metavar="m", help="most orbits each way")
-    parser.add_argument("--resume", metavar="FILE", help="continue a branch written by --out")
+    parser.add_argument("--resume", nargs="?", const="", metavar="FILE",
+                        help="go on with the branch of --out that was interrupted, or with the one in FILE")
     add_picture(parser)
 
 
 def do(arguments: argparse.Namespace) -> None:
     """Follow a branch of periodic orbits and report it."""
-    from granchain_core.store import check_writable, save_branch
+    from granchain_core.store import check_writable
 
     check_picture(arguments.picture)
     if arguments.out:
         check_writable(arguments.out)
     check_points(arguments.points, 2, MOST_POINTS)
-    kept: list[Branch] = []
-
-    def work(stop: Any) -> Branch:
-        kept.append(_begun(arguments, stop))
-        return Continuation(kept[0], stop).run(arguments.points, _Progress())
-
-    try:
-        found = in_background(work)
-    except (Cancelled, KeyboardInterrupt):
-        if arguments.out and kept:  # the orbits found so far can be continued
-            say(f"Saved {len(kept[0].points)} orbits to {save_branch(kept[0], arguments.out)}; go on with --resume.")
-        raise
-    if arguments.out:
-        save_branch(found, arguments.out)
+    found = _followed(arguments)
     write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", lambda theme: _drawn(found, theme))
     for arm in found.arms:
         say(f"{len(arm.points)} orbits {_way(arm)}: {arm.reason or 'stopped after the number of orbits asked for'}")
@@ -80,34 +70,124 @@ def branch_json(found: Branch) -> dict[str, Any]:
     }
 
 
-def _begun(arguments: argparse.Namespace, stop: Any) -> Branch:
-    """A new branch, or the one in the file of --resume."""
-    from granchain_core.store import load_branch
+def _followed(arguments: argparse.Namespace) -> Branch:
+    """The branch and its file; of one that was interrupted only what is missing is computed."""
+    from granchain_core.store import save_branch
 
+    begun: list[_Begun] = []
+
+    def work(stop: Any) -> Branch:
+        begun.append(one := _begun(arguments, stop))
+        if one.kept is not None:
+            one.kept.begin(one.branch)
+        return Continuation(one.branch, stop).run(arguments.points, _Progress(one))
+
+    try:
+        found = in_background(work)
+    except (Cancelled, KeyboardInterrupt):
+        if arguments.out and begun:  # the orbits found so far can be continued
+            save_branch(begun[0].branch, arguments.out)
+            _remove(begun[0].kept)
+            count = len(begun[0].branch.points)
+            raise Cancelled(f"{count} orbits are in {arguments.out}; go on with --resume") from None
+        raise
+    except NumbersFailed:
+        if begun and begun[0].kept is not None:
+            begun[0].kept.kept.write()
+        raise
+    if arguments.out:
+        with unbroken():
+            save_branch(found, arguments.out)
+            _remove(begun[0].kept)
+    return found
+
+
+def _remove(kept: KeptOrbits | None) -> None:
+    if kept is not None:
+        kept.kept.remove()
+
+
+@dataclass
+class _Begun:
+    """A branch that is to be followed, and where its orbits are kept meanwhile."""
+
+    branch: Branch
+    kept: KeptOrbits | None
+
+
+def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
+    """A new branch, or the one that --resume goes on with."""
     if arguments.resume:
-        if arguments.knob or arguments.start or arguments.end or arguments.period or arguments.set:
-            raise BadInput(f"--resume takes everything from {Path(arguments.resume).name}; it cannot be combined with "
-                           "--knob, --from, --to, --period or --set.")
-        found = load_branch(arguments.resume)
-        if found.axis.scene.name != arguments.scene:
-            raise BadInput(f"{arguments.resume} is a branch of {found.axis.scene.name}, not of {arguments.scene}.")
-        return found
+        found = _in_file(arguments)
+        kept = KeptOrbits(found.axis, len(found.arms) > 1, arguments.out) if arguments.out else None
+        if kept is not None:
+            kept.kept.open(resume=True)
+        return _Begun((kept.branch() if kept is not None else None) or found, kept)
+    if arguments.resume is not None and not arguments.out:
+        raise BadInput("--resume needs a FILE, or --out FILE, the file of the branch that was interrupted.")
     for option, value in (("--knob", arguments.knob), ("--from", arguments.start), ("--to", arguments.end)):
         if value is None:
             raise BadInput(f"granchain branch needs {option}, for example --knob f --from 340 --to 100.")
     chosen = chosen_scene(arguments)
     say_if(kept_along(chosen, arguments.knob))
-    return begin_branch(chosen, arguments.knob, arguments.start, arguments.end, arguments.period,
-                        both=arguments.both, stop=stop)
+    kept, there = None, None
+    if arguments.out:
+        kept = KeptOrbits(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end), arguments.both,
+                          arguments.out)
+        kept.kept.open(resume=arguments.resume is not None)
+        there = _interrupted(arguments, kept)
+    return _Begun(there or begin_branch(chosen, arguments.knob, arguments.start, arguments.end, arguments.period,
+                                        both=arguments.both, stop=stop), kept)
+
+
+def _interrupted(arguments: argparse.Namespace, kept: KeptOrbits) -> Branch | None:
+    """What there is of the branch that --resume asks for, in its blocks or in --out; None where nothing is."""
+    from granchain_core.store import load_branch
+
+    if arguments.resume is None:
+        return None
+    there, file = kept.branch(), Path(arguments.out)
+    if file.exists():
+        try:
+            written = load_branch(file)
+        except BadInput:
+            if there is None:
+                raise
+        else:
+            if kept.asks_for(written):  # the blocks may be gone in part, if the command was killed while removing them
+                there = max((one for one in (there, written) if one is not None), key=lambda one: len(one.points))
+            elif there is None:
+                raise BadInput(f"{file} holds another branch; give another --out.")
+    if there is not None:
+        if arguments.period not in (None, there.period):
+            raise BadInput(f"The branch to go on with has period {there.period}, not {arguments.period}.")
+        say(f"{len(there.points)} orbits are there already.")
+    return there
+
+
+def _in_file(arguments: argparse.Namespace) -> Branch:
+    """The branch in the file of --resume."""
+    from granchain_core.store import load_branch
+
+    if arguments.knob or arguments.start or arguments.end or arguments.period or arguments.set:
+        raise BadInput(f"--resume takes everything from {Path(arguments.resume).name}; it cannot be combined with "
+                       "--knob, --from, --to, --period or --set.")
+    found = load_branch(arguments.resume)
+    if found.axis.scene.name != arguments.scene:
+        raise BadInput(f"{arguments.resume} is a branch of {found.axis.scene.name}, not of {arguments.scene}.")
+    return found
 
 
 class _Progress:
-    """Reports progress on stderr; the threads of both arms call it after every orbit."""
+    """Keeps orbits and reports progress on stderr; the threads of both arms call it after every orbit."""
 
-    def __init__(self) -> None:
+    def __init__(self, begun: _Begun) -> None:
+        self._begun = begun
         self._lock = threading.Lock()
 
     def __call__(self, arm: Arm) -> None:
+        if self._begun.kept is not None:
+            self._begun.kept.add(self._begun.branch.period, arm)
         last = arm.points[-1]
         if len(arm.points) % _EVERY == 0:
             with self._lock:

@@ -7,15 +7,22 @@ import json
 import math
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from granchain_core import BadInput, Scene, scene
+from granchain_core import BadInput, Cancelled, Scene, scene
 from granchain_core.stop import Stop
 
+from . import ending
 from .foundation import kept_spring
 
 T = TypeVar("T")
+
+#: Between two looks whether a computation has ended [s].
+_LOOK = 0.05
+#: Time to end that a computation has after its stop flag is set [s].
+_PATIENCE = 1.2
 
 
 def chosen_scene(arguments: argparse.Namespace) -> Scene:
@@ -71,8 +78,10 @@ def check_points(points: int, fewest: int, most: int) -> None:
 
 
 def in_background(work: Callable[[Any], T]) -> T:
-    """Run `work(stop)` beside the main thread, so that Ctrl-C reaches a running kernel through its stop flag."""
+    """Run `work(stop)` beside the main thread, so that a signal reaches a running kernel through its stop flag.
 
+    Raises `Cancelled` after a signal, when the work has ended or has been given up: a compiler cannot be stopped.
+    """
     stop = Stop()
     result: list[T] = []
     problem: list[BaseException] = []
@@ -84,14 +93,25 @@ def in_background(work: Callable[[Any], T]) -> T:
             problem.append(error)
 
     thread = threading.Thread(target=target, daemon=True)
-    thread.start()
-    try:
-        while thread.is_alive():
-            thread.join(0.1)
-    except KeyboardInterrupt:
-        stop.set()
-        thread.join(5.0)
-        raise
+    with ending.told(stop.set) as asked:
+        thread.start()
+        try:
+            while thread.is_alive() and not asked():
+                thread.join(_LOOK)
+        except KeyboardInterrupt:  # in a process that has not taken signals over
+            stop.set()
+        if stop or asked():
+            thread.join(_PATIENCE)
+            raise Cancelled
     if problem:
         raise problem[0]
     return result[0]
+
+
+@contextmanager
+def unbroken() -> Iterator[None]:
+    """Write a result in this block: a signal waits for its end, and is obeyed then."""
+    with ending.told() as asked:
+        yield
+        if asked():
+            raise Cancelled

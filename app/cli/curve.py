@@ -5,14 +5,18 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from granchain_core import BadInput
+from granchain_core import BadInput, Scene
 
-from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent
+from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
+from .keeping import add_resume, finished, keeping
 from .options import add_result
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
+
+if TYPE_CHECKING:
+    from granchain_core import Curve, CurvePoint
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -22,6 +26,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
     parser.add_argument("--points", type=int, required=True, metavar="n")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
+    add_resume(parser, "curve")
     add_picture(parser)
 
 
@@ -29,8 +34,8 @@ def do(arguments: argparse.Namespace) -> None:
     """Compute the resonance curve of a scene."""
     import numpy as np
 
-    from granchain_core.steady.curve import MOST_POINTS, resonance_curve
-    from granchain_core.store import check_writable, save_curve
+    from granchain_core.steady.curve import MOST_POINTS
+    from granchain_core.store import check_writable
 
     chosen = chosen_scene(arguments)
     check_picture(arguments.picture)
@@ -40,25 +45,53 @@ def do(arguments: argparse.Namespace) -> None:
     low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
     if low > high:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
-    done = [0]
-
-    def count(point: Any) -> None:
-        done[0] += 1
-        if point.failure:
-            say(f"{point.frequency:g} Hz: {point.failure}")
-        if sys.stderr.isatty():
-            show_percent(done[0] / arguments.points)
-
-    frequencies = np.linspace(low, high, arguments.points)
-    swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start,
-                                                       stop=stop, on_point=count))
-    if arguments.out:
-        save_curve(swept, arguments.out)
+    swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points))
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", lambda theme: _drawn_curve(swept, theme))
     if arguments.json:
         show_json(_curve_json(swept))
     else:
         _show_curve(swept)
+
+
+def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any) -> Curve:
+    """The curve, of which only points that are not there yet are computed, and its file."""
+    from granchain_core.steady.curve import resonance_curve
+    from granchain_core.steady.kept_points import curve_digest, kept_points, points_in
+    from granchain_core.store import save_curve
+    from granchain_core.store.curves import load_curve
+
+    digest = curve_digest(chosen, frequencies, arguments.start)
+    there = finished(arguments, "curve", load_curve,
+                     lambda found: curve_digest(found.scene, found.column("frequency"), found.start) == digest)
+    kept = kept_points(chosen, frequencies, arguments.start, arguments.out) if arguments.out else None
+    known: list[CurvePoint] = []
+    if kept is not None:
+        if there is not None:
+            kept.remove()
+            return there
+        kept.open(arguments.resume)
+        known = points_in(kept)
+    if known:
+        say(f"{len(known)} of {len(frequencies)} points are there already.")
+    done = [len(known)]
+
+    def count(point: CurvePoint) -> None:
+        done[0] += 1
+        if kept is not None:
+            kept.add(point)
+        if point.failure:
+            say(f"{point.frequency:g} Hz: {point.failure}")
+        if sys.stderr.isatty():
+            show_percent(done[0] / len(frequencies))
+
+    with keeping(kept, lambda: f"{done[0]} of {len(frequencies)} points"):
+        swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start, stop=stop,
+                                                           on_point=count, known=known))
+    if kept is not None:
+        with unbroken():
+            save_curve(swept, arguments.out)
+            kept.remove()
+    return swept
 
 
 def _curve_json(swept: Any) -> dict[str, Any]:

@@ -7,19 +7,19 @@ import math
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from app.cli.common import chosen_scene, finite_or_null, in_background, say, say_if, show_json
+from app.cli.common import chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
 from app.cli.foundation import kept_along
+from app.cli.keeping import add_resume, finished, keeping
 from app.cli.options import add_json, add_scene
 from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput, Cancelled
 from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
-from granchain_core.diagram.blocks import Blocks, folder_of
+from granchain_core.diagram.blocks import Blocks
 from granchain_core.diagram.cells import ERRORS, REGIMES, cell_of
 from granchain_core.diagram.grid import MOST_CELLS
 from granchain_core.quantities import QUANTITIES
@@ -35,7 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                                  f"logarithmically; for example {example}")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
     parser.add_argument("--out", required=True, metavar="FILE", help="write an HDF5 file")
-    parser.add_argument("--resume", action="store_true", help="continue a map that was interrupted")
+    add_resume(parser, "map")
     add_json(parser)
     add_picture(parser)
 
@@ -76,7 +76,6 @@ def _number(option: str, text: str) -> float:
 def do(arguments: argparse.Namespace) -> None:
     """Compute, write and describe a two-parameter diagram."""
     from granchain_core.store import check_writable
-    from granchain_core.store.diagrams import load_diagram, save_diagram
 
     grid = Grid(chosen_scene(arguments), axis_from("--x", arguments.x), axis_from("--y", arguments.y))
     say_if(kept_along(grid.scene, grid.x.knob, grid.y.knob))
@@ -84,20 +83,28 @@ def do(arguments: argparse.Namespace) -> None:
     check_picture(arguments.picture)
     if arguments.picture:
         _refuse_too_many(grid)
-    if arguments.resume and Path(arguments.out).exists() and not folder_of(arguments.out).exists():
-        found = load_diagram(arguments.out)
-        if found.grid.digest != grid.digest:
-            raise BadInput(f"{arguments.out} is the finished map of another scene or grid; give another --out.")
-        say(f"{arguments.out} is finished already; nothing was computed.")
-        computed = 0
-    else:
-        client = _client(arguments.scheduler)
-        blocks = Blocks.open(grid, arguments.out, arguments.resume)
-        found, computed = in_background(lambda stop: _filled(blocks, client, stop))
-        save_diagram(found, arguments.out)
-        blocks.remove()
+    found, computed = _found(arguments, grid)
     write_picture(arguments.picture, f"A map of {grid.scene.name}", lambda theme: _drawn(found, theme))
     _tell(found, computed, arguments)
+
+
+def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
+    """The diagram and its file, of which only missing cells are computed, and how many those were."""
+    from granchain_core.store.diagrams import load_diagram, save_diagram
+
+    there = finished(arguments, "map", load_diagram,
+                     lambda found: found.complete and found.grid.digest == grid.digest)
+    if there is not None:
+        Blocks(grid, arguments.out).kept.remove()
+        return there, 0
+    client = _client(arguments.scheduler)
+    blocks, done = Blocks.open(grid, arguments.out, arguments.resume), [0]
+    with keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells"):
+        found, computed = in_background(lambda stop: _filled(blocks, client, stop, done))
+    with unbroken():
+        save_diagram(found, arguments.out)
+        blocks.kept.remove()
+    return found, computed
 
 
 def _refuse_too_many(grid: Grid) -> None:
@@ -125,24 +132,21 @@ def _client(address: str | None) -> Any:
     return connect(address)
 
 
-def _filled(blocks: Blocks, client: Any, stop: Stop) -> tuple[Diagram, int]:
-    """The whole diagram, of which only missing cells are computed, and how many those were."""
+def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[Diagram, int]:
+    """The whole diagram, of which only missing cells are computed, and how many those were; counts in `done`."""
     began, grid = time.perf_counter(), blocks.grid
     cells = blocks.cells()
     missing = [int(number) for number in grid.coarse_first() if cells["regime"][number] < 0]
-    done = grid.size - len(missing)
-    if done:
-        say(f"{done} of {grid.size} cells are there already.")
-    try:
-        for rows in _rows(grid, missing, client, stop):
-            cells[rows["number"]] = rows
-            done += len(rows)
-            blocks.add(rows)
-            if sys.stderr.isatty():
-                print(f"\r{100 * done / grid.size:3.0f} %", end="", file=sys.stderr, flush=True)
-    finally:
-        blocks.write()
-    if done < grid.size:
+    done[0] = grid.size - len(missing)
+    if done[0]:
+        say(f"{done[0]} of {grid.size} cells are there already.")
+    for rows in _rows(grid, missing, client, stop):
+        cells[rows["number"]] = rows
+        blocks.add(rows)
+        done[0] += len(rows)
+        if sys.stderr.isatty():
+            print(f"\r{100 * done[0] / grid.size:3.0f} %", end="", file=sys.stderr, flush=True)
+    if done[0] < grid.size:
         raise Cancelled
     return Diagram(grid, cells, time.perf_counter() - began), len(missing)
 

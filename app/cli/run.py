@@ -7,10 +7,12 @@ import sys
 from dataclasses import asdict
 from typing import Any
 
-from granchain_core import Run, Scene
+from granchain_core import BadInput, Run, Scene
+from granchain_core.integrate import method_for
 from granchain_core.run.budget import BUDGET
 
-from .common import chosen_scene, in_background, say, show_json, show_percent
+from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
+from .keeping import add_resume, finished, keeping
 from .options import add_result
 
 
@@ -23,30 +25,67 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--method", metavar="M", help="integration method instead of the one accuracy chooses")
     parser.add_argument("--budget", type=float, default=BUDGET, metavar="SECONDS", help="refuse what would take longer")
     parser.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
+    add_resume(parser, "run")
 
 
 def do(arguments: argparse.Namespace) -> None:
     """Run a scene and record it."""
-    from granchain_core.run.run import run as run_scene
-
     chosen = chosen_scene(arguments)
     if arguments.out:
-        from granchain_core.store import check_writable, save
+        from granchain_core.store import check_writable
 
         check_writable(arguments.out)
     if arguments.explain:
         _explain(chosen, arguments, sys.stderr if arguments.json else sys.stdout)
-    progress = show_percent if sys.stderr.isatty() else None
-    result = in_background(lambda stop: run_scene(chosen, arguments.periods, arguments.record, arguments.samples,
-                                                  arguments.method, stop=stop, progress=progress,
-                                                  budget=arguments.budget))
+    result = _result(chosen, arguments)
     _warn(result, arguments.budget)
-    if arguments.out:
-        save(result, arguments.out)
     if arguments.json:
         show_json(_run_json(result))
     else:
         _show_run(result)
+
+
+def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
+    """The run and its file; one that was interrupted goes on with the discarded periods it has finished."""
+    from granchain_core.run.kept_run import KeptRun
+    from granchain_core.run.run import run as run_scene
+
+    progress = show_percent if sys.stderr.isatty() else None
+    sizes = arguments.periods, arguments.record, arguments.samples
+
+    def computed(stop: Any, kept: KeptRun | None) -> Run:
+        return run_scene(chosen, *sizes, arguments.method, stop=stop, progress=progress, budget=arguments.budget,
+                         kept=kept)
+
+    if not arguments.out:
+        if arguments.resume:
+            raise BadInput("--resume needs --out FILE, the file of the run that was interrupted.")
+        return in_background(lambda stop: computed(stop, None))
+    from granchain_core.store import load, save
+
+    kept = KeptRun(chosen, *sizes, arguments.method, arguments.out)
+    there = finished(arguments, "run", load, lambda found: _is_asked_for(found, chosen, arguments))
+    if there is not None:
+        kept.kept.remove()
+        return there
+    kept.open(arguments.resume)
+    with keeping(kept.kept, lambda: f"{kept.done} of {arguments.periods} discarded periods of computation "
+                                    f"{kept.computation}"):
+        result = in_background(lambda stop: computed(stop, kept))
+    with unbroken():
+        save(result, arguments.out)
+        kept.kept.remove()
+    return result
+
+
+def _is_asked_for(found: Run, chosen: Scene, arguments: argparse.Namespace) -> bool:
+    """Whether the run in a file is the one that the words ask for."""
+    method = arguments.method or method_for(chosen.accuracy, chosen.cuts_tension).method
+    rows = arguments.record * arguments.samples + 1
+    periods = round(float(found.time[0]) / chosen.period)
+    return (found.scene.digest, found.start, found.samples, len(found.time), periods, found.cost.method) == (
+        chosen.digest, "initial velocity" if chosen.start_velocity else "rest", arguments.samples, rows,
+        arguments.periods, method)
 
 
 def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:

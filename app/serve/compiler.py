@@ -7,6 +7,7 @@ their own; this one then loads them from the cache.
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import threading
@@ -36,10 +37,10 @@ def compiling_words(page: str) -> str:
 
 def _compile(scene: Scene, piece: str) -> None:
     """Compile in another process or, if none can be started, in this one."""
-    command = [sys.executable, "-m", "granchain_core.warm", piece]
-    try:
+    command = [sys.executable, "-m", "app.serve.compiling_process", str(os.getpid()), piece]
+    try:  # in a session of its own, where a terminal's Ctrl-C does not reach it; its stderr is the server's
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+                       stdout=subprocess.DEVNULL, start_new_session=True)
     except (OSError, subprocess.CalledProcessError):
         compile_piece(scene, piece)
 

@@ -26,4 +26,5 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else address
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
-    server.run_until_shutdown()
+    server.start()
+    server.io_loop.start()  # until a signal ends the process (app/cli/ending.py); Bokeh's own waits for its threads

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
 
+from ..children import pool, starting
 from ..errors import NumbersFailed
 from .case import Check, run_case
 from .table import CASES
@@ -24,16 +24,18 @@ def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, li
     where one of them is ended from outside.
     """
     count = workers or min(2, os.cpu_count() or 1)
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"))
+    processes = pool(count)
     try:
-        running: dict[Future[list[Check]], str] = {pool.submit(_run, case.name, quick): case.name for case in CASES}
+        with starting():
+            running: dict[Future[list[Check]], str] = {processes.submit(_run, case.name, quick): case.name
+                                                       for case in CASES}
         for done in as_completed(running):
             yield running[done], done.result()
     except BrokenProcessPool:
         raise NumbersFailed("A process that ran hard cases was ended from outside, perhaps for its memory; run the "
                             "check again.", "worker-failed") from None
     finally:
-        pool.shutdown(wait=False, cancel_futures=True)
+        processes.shutdown(wait=False, cancel_futures=True)
 
 
 def in_order(rows: dict[str, list[Check]]) -> list[Check]:

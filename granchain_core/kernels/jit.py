@@ -1,10 +1,10 @@
-"""The one place that decides how kernels are compiled and where the compiled code is kept.
+"""The one place that decides how kernels are compiled; cache.py decides where the compiled code is kept.
 
 * `nogil`, so that threads really run kernels side by side.
 * No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`, which let an absent effect's
   neutral elements fold away and sums be vectorised.
-* Numba does not notice edits in *imported* kernels, so the cache folder is named by a hash of all sources in
-  this package and of the kind of processor: any edit starts an empty cache, and with an unchanged tree the second
+* Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by a hash of all sources
+  in this package and of the kind of processor: any edit starts an empty one, and with an unchanged tree the second
   process compiles nothing.
 """
 
@@ -12,20 +12,15 @@ from __future__ import annotations
 
 import functools
 import gc
-import hashlib
-import os
-import tempfile
-from pathlib import Path
 from typing import Any
 
-import llvmlite.binding
 import numba
 from numba import types
 from numba.core import event
 from numba.extending import overload
 
+from .cache import CACHE_FOLDER, KernelCache
 from .link_only import compiler_options
-from .width import BATCH_LANES
 
 #: What the compiler may do with floating-point numbers: not assume that none is NaN or infinite.
 FAST_MATH = ("nsz", "arcp", "contract", "reassoc")
@@ -65,32 +60,6 @@ class _CollectorPause(event.Listener):
 event.register("numba:compile", _CollectorPause())
 
 
-def _sources_hash() -> str:
-    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()} {BATCH_LANES}".encode())
-    for path in sorted(Path(__file__).parent.rglob("*.py")):
-        digest.update(path.name.encode())
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
-
-
-def cache_folder() -> Path:
-    """Folder of the compiled kernels: $GRANCHAIN_CACHE, else the user's cache, else a temporary one."""
-    chosen = os.environ.get("GRANCHAIN_CACHE")
-    base = Path(chosen) if chosen else Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "granchain"
-    folder = base / f"kernels-{_sources_hash()}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            return folder
-    except OSError:
-        folder = Path(tempfile.gettempdir()) / f"granchain-{os.getuid()}" / folder.name
-        folder.mkdir(parents=True, exist_ok=True)
-        return folder
-
-
-CACHE_FOLDER = cache_folder()
-
-
 class Internal:
     """A compiled function that only kernels call; called from Python it runs uncompiled.
 
@@ -109,18 +78,12 @@ class Internal:
         return self.py_func(*args)
 
 
-def _cached(function: Any, options: dict[str, Any]) -> Any:
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(CACHE_FOLDER)
-    try:
-        return numba.njit(cache=True, nogil=True, **options)(function)
-    finally:
-        numba.config.CACHE_DIR = before
-
-
 def kernel(function):
     """Decorator for compiled, cached kernels on floats and arrays that Python calls."""
-    return _cached(function, _OPTIONS)
+    compiled = numba.njit(nogil=True, **_OPTIONS)(function)
+    if CACHE_FOLDER is not None:
+        compiled._cache = KernelCache(function)  # as `cache=True` does, with another class
+    return compiled
 
 
 def internal(function):

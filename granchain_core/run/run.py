@@ -5,6 +5,7 @@ Every accuracy is reached by comparing two computations, none by trust in a tole
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -25,6 +26,7 @@ from ..steady.decide import REMEMBERED, regime_without_continuing
 from ..steady.regime import find_period
 from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
+from .kept_run import KeptRun, Reached
 from .stated import Computations
 
 #: Most drive periods of one run.
@@ -52,7 +54,7 @@ class _Attempt:
 
 def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, method: str | None = None,
         start: State | None = None, stop: Stop | None = None,
-        progress: Callable[[float], None] | None = None, budget: float = BUDGET) -> Run:
+        progress: Callable[[float], None] | None = None, budget: float = BUDGET, kept: KeptRun | None = None) -> Run:
     """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
 
     The motion is computed twice, the second time finer; the stated error starts from their largest difference
@@ -79,6 +81,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         Called with the fraction of the present computation, 0 to 1.
     budget : float
         Seconds the run may take; compiling does not count.
+    kept : KeptRun, optional
+        Checkpoints of a run from phase 0 on disk, to go on from and to add to (run/kept_run.py).
 
     Returns
     -------
@@ -115,8 +119,15 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     check_budget(scene, setting, periods, record, samples, budget)
 
+    number = itertools.count(1)
+
     def attempt(finer: Setting) -> _Attempt:
-        return _attempt(scene, finer, begin, (periods, record, samples), stop, progress, total)
+        engine = Engine(scene, finer, samples, balance=True, stop=stop)
+        engine.start(begin)
+        reached = kept.begin(next(number), engine) if kept is not None else None
+        if reached is None:
+            reached = Reached(engine, 0, engine.periods(0)[0])
+        return _attempt(reached, (periods, record), progress, total, kept)
 
     last, status, (error, *forces) = _refined(attempt, scene, setting, samples, budget)
     regime = _regime(scene, last, periods + record, stop)
@@ -167,20 +178,22 @@ def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
                        f"{MOST_ROWS:.0e} are recorded: record {max(1, MOST_ROWS // (samples * scene.N))} periods.")
 
 
-def _attempt(scene: Scene, setting: Setting, start: State, sizes: tuple[int, int, int], stop: Stop,
-             progress: Callable[[float], None] | None, total: Counts) -> _Attempt:
-    periods, record, samples = sizes
-    engine = Engine(scene, setting, samples, balance=True, stop=stop)
-    engine.start(start)
-    strobes = [engine.periods(0)[0]]
+def _attempt(reached: Reached, sizes: tuple[int, int], progress: Callable[[float], None] | None, total: Counts,
+             kept: KeptRun | None) -> _Attempt:
+    (periods, record), engine = sizes, reached.engine
+    samples, from_phase_0 = engine.samples, engine.grid_index == 0
+    strobes = [reached.strobes]
     chunk = min(max(1, periods // 50), REMEMBERED)
-    for done in range(0, periods, chunk):
+    for done in range(reached.done, periods, chunk):
         now = min(chunk, periods - done)
-        if start.phase == 0.0:
+        if from_phase_0:
             passed, _ = engine.periods(now, watch=False)
         else:
             passed = _strobes(engine.record(now * samples), samples)
         strobes = [*strobes[-REMEMBERED // chunk - 1 :], passed[1:]]
+        if kept is not None:
+            strobes = [np.concatenate(strobes)[-REMEMBERED - 1 :]]
+            kept.add(Reached(engine, done + now, strobes[0]))
         if progress is not None:
             progress(min(done + chunk, periods) / (periods + record))
     engine.reset_peaks()

@@ -134,7 +134,8 @@ def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray)
 
 
 def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
-               stop: Stop | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
+               stop: Stop | None = None, workers: int | None = None,
+               known: Sequence[CurvePoint] = ()) -> Iterator[CurvePoint]:
     """Points of a resonance curve as they are finished.
 
     Parameters
@@ -149,11 +150,13 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
         Once it is set the curve ends, and a running point is given up.
     workers : int, optional
         Threads; one for each core if not given.
+    known : sequence of CurvePoint
+        Points of this curve that are there already; `missing_from` says which of them are used.
 
     Yields
     ------
     CurvePoint
-        One for each frequency.
+        One for each frequency that is not known.
 
     Raises
     ------
@@ -167,19 +170,47 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     >>> [point.frequency for point in points]
     [2000.0, 1800.0]
     """
+    scenes = checked_frequencies(scene, frequencies)
+    used, missing = missing_from(known, [one.f for one in scenes], start)
+    left = [scenes[i] for i in missing]
+    if not left:
+        return
+    if start == "rest":
+        yield from _from_rest(left, stop, workers)
+    else:
+        yield from _carried(left, used[-1] if used else None, stop)
+
+
+def missing_from(known: Sequence[CurvePoint], frequencies: Sequence[float],
+                 start: str) -> tuple[list[CurvePoint], list[int]]:
+    """Which known points a curve can use, and the places of the missing frequencies, both in the order of computing.
+
+    From rest every known point is used. Where the state is carried along, only those up to the first that is missing.
+    Raises `BadInput` for an unknown start.
+    """
     if start not in STARTS:
         raise unknown_name("start", start, STARTS)
-    scenes = checked_frequencies(scene, frequencies)
-    if start == "rest":
-        yield from _from_rest([scenes[i] for i in coarse_first(len(scenes))], stop, workers)
-    else:
-        yield from _carried(sorted(scenes, key=lambda s: s.f, reverse=start == "down"), stop)
+    count = range(len(frequencies))
+    order = (coarse_first(len(frequencies)) if start == "rest"
+             else sorted(count, key=lambda i: frequencies[i], reverse=start == "down"))
+    there: dict[float, list[CurvePoint]] = {}
+    for point in known:
+        there.setdefault(point.frequency, []).append(point)
+    used: list[CurvePoint] = []
+    missing: list[int] = []
+    for i in order:
+        found = there.get(frequencies[i])
+        if found and (start == "rest" or not missing):
+            used.append(found.pop())
+        else:
+            missing.append(i)
+    return used, missing
 
 
-def _carried(scenes: list[Scene], stop: Stop | None) -> Iterator[CurvePoint]:
+def _carried(scenes: list[Scene], before: CurvePoint | None, stop: Stop | None) -> Iterator[CurvePoint]:
     """Points one after another, each from the state of the one before; from rest after one that failed."""
     stop = Stop() if stop is None else stop
-    state: State | None = None
+    state = None if before is None or before.failure else before.state
     for one in scenes:
         if stop:
             return
@@ -225,7 +256,7 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: S
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
                     stop: Stop | None = None, on_point: Callable[[CurvePoint], None] | None = None,
-                    workers: int | None = None) -> Curve:
+                    workers: int | None = None, known: Sequence[CurvePoint] = ()) -> Curve:
     """The resonance curve: largest forces of the steady state over the drive frequency.
 
     Parameters
@@ -243,6 +274,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
         Called with each `CurvePoint` as it is finished.
     workers : int, optional
         Threads; one for each core if not given.
+    known : sequence of CurvePoint
+        Points of this curve that are there already, as `on_point` gave them.
 
     Returns
     -------
@@ -264,8 +297,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     1800.0
     """
     began = time.perf_counter()
-    curve = Curve(scene, start)
-    for point in iter_curve(scene, frequencies, start, stop, workers):
+    curve = Curve(scene, start, missing_from(known, [float(f) for f in frequencies], start)[0])
+    for point in iter_curve(scene, frequencies, start, stop, workers, known):
         curve.points.append(point)
         if on_point is not None:
             on_point(point)

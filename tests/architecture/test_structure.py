@@ -37,9 +37,9 @@ def lines_of_docstrings(tree: ast.Module) -> int:
 
 
 def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:
-    from granchain_core.kernels import jit
+    from granchain_core.kernels.cache import CACHE_FOLDER, sources_hash
 
-    assert jit._sources_hash() in jit.CACHE_FOLDER.name
+    assert CACHE_FOLDER is not None and sources_hash() in CACHE_FOLDER.name
 
 
 def test_code_inlined_by_numba_is_called_at_one_place() -> None:

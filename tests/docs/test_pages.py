@@ -14,6 +14,7 @@ import pytest
 from documents import PAGES, ROOT, blocks, commands
 
 from app import cli
+from app.cli.commands import parser_for
 from granchain_core import BadInput, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 
@@ -66,7 +67,7 @@ def test_the_glossary_names_a_place_for_every_term():
 def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
     """The parser takes them, and the scene takes their knobs."""
     words = shlex.split(command)[1:]
-    parsed = cli._parser(words).parse_args(words)
+    parsed = parser_for(words).parse_args(words)
     # docs/add-an-effect.md makes the one, docs/add-a-damping-law.md the other, and their tests run them
     if "scene" in parsed and parsed.scene != "drag" and "dissipation=three-quarters" not in parsed.set:
         changes = dict(setting.split("=") for setting in parsed.set)
@@ -127,4 +128,4 @@ def test_dockerfile_copies_what_the_ignore_file_lets_through():
     copied = {word for line in re.findall(r"^COPY (?!--from)(.+) \S+$", docker, re.MULTILINE) for word in line.split()}
     assert copied == allowed and all((ROOT / name).exists() for name in copied)
     arguments = json.loads(re.sub(r"\\\n\s*", "", docker.split("ENTRYPOINT ")[1]))
-    assert cli._parser(arguments[1:]).parse_args(arguments[1:]).address == "0.0.0.0"
+    assert parser_for(arguments[1:]).parse_args(arguments[1:]).address == "0.0.0.0"

@@ -6,6 +6,7 @@ import json
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -155,8 +156,10 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
     class Served:
         """A server that ends at once."""
 
-        def run_until_shutdown(self) -> None:
-            """Nothing to wait for."""
+        io_loop = SimpleNamespace(start=lambda: None)
+
+        def start(self) -> None:
+            """Nothing to serve."""
 
     monkeypatch.setattr(server.pn, "serve", lambda pages, **options: given.update(options) or Served())
     monkeypatch.setattr(server.COMPILER, "prepare", lambda scene: None)

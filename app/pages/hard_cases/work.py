@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import os
-import signal
-import threading
 from collections.abc import Iterator
-from multiprocessing import get_context, parent_process
+from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 
 from granchain_core import Cancelled
+from granchain_core.children import end_with_parent, starting
 from granchain_core.hard import CASES, Case, Check, Picture, run_case
 
 from ...serve.delays import STOP_POLL
@@ -29,18 +28,9 @@ def case_of(name: object) -> Case | None:
     return next((case for case in CASES if case.name == name), None)
 
 
-def _follow_parent() -> None:
-    """End this process when the dashboard ends, in whatever way."""
-    parent = parent_process()
-    if parent is not None:
-        parent.join()
-    os._exit(1)
-
-
 def serve_cases(asked: Connection) -> None:
     """Run in the process: answer each name with the rows of the quick form, then with the picture or None."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the dashboard's, not ours
-    threading.Thread(target=_follow_parent, daemon=True).start()
+    end_with_parent(os.getppid())
     if hasattr(os, "nice"):
         os.nice(_NICE)
     while True:
@@ -88,6 +78,7 @@ class CaseProcess:
         context = get_context("spawn")
         self._asked, theirs = context.Pipe()
         self._process = context.Process(target=serve_cases, args=(theirs,), name="hard cases", daemon=True)
-        self._process.start()
+        with starting():
+            self._process.start()
         theirs.close()  # with only their end in the process, its death ends recv() here
         return self._asked

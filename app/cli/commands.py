@@ -1,0 +1,81 @@
+"""Finding the command that the words ask for, doing it, and turning its failures into a sentence and an exit status.
+
+With --json exactly one object goes to stdout: the result or, if the computation failed or was over budget, its outcome,
+a sentence and what is known. Progress goes to stderr.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import NoReturn
+
+from app.cli.common import say, show_json
+from granchain_core import BadInput, Cancelled, NumbersFailed
+from granchain_core.errors import OverBudget, outcome_of, unknown_name
+
+from . import ending
+
+DONE, BAD_INPUT, FAILED = 0, 2, 3
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are `BadInput`: one sentence, no usage text."""
+
+    def error(self, message: str) -> NoReturn:
+        raise BadInput(f"{self.prog}: {message}; see '{self.prog} --help'.")
+
+
+#: What each command is for, in the order of `granchain --help`. The module of its name has its options, `add_options`,
+#: and does it, `do`; only the one that is asked for is imported, because some need what takes a second to load.
+_COMMANDS = {
+    "serve": "open the dashboard",
+    "scenes": "list the scenes and what to look at",
+    "warm": "compile the kernels of all presets, ahead of time",
+    "run": "run a scene and record it",
+    "orbit": "periodic orbit and Floquet multipliers",
+    "branch": "branch of periodic orbits and its special points",
+    "accuracy": "what accuracy costs: error against time for every method",
+    "observe": "push a scene's chain by a measured force",
+    "check": "the hard cases: figure, bar and verdict; status 3 if one fails",
+    "curve": "resonance curve: largest forces over frequency",
+    "map": "regime and largest forces over two knobs",
+    "figure": "a figure of the paper with our numbers",
+}
+
+
+def parser_for(words: Sequence[str]) -> _Parser:
+    """The parser, with the options of the command in `words`."""
+    asked_for = next((word for word in words if not word.startswith("-")), None)
+    parser = _Parser(prog="granchain", description="Driven granular chains: simulate, sweep, show.",
+                     allow_abbrev=False)
+    known = parser.add_subparsers(dest="command", parser_class=_Parser, metavar="COMMAND", required=True)
+    for name, about in _COMMANDS.items():
+        command = known.add_parser(name, help=about, description=about, allow_abbrev=False)
+        if name == asked_for:
+            module = import_module(f"app.cli.{name}")
+            module.add_options(command)
+            command.set_defaults(do=module.do)
+    return parser
+
+
+def do(words: list[str]) -> int:
+    """Run one command; returns the exit status."""
+    try:
+        if words and not words[0].startswith("-") and words[0] not in _COMMANDS:
+            raise unknown_name("command", words[0], _COMMANDS)
+        parsed = parser_for(words).parse_args(words)
+        return parsed.do(parsed) or DONE
+    except (BadInput, NumbersFailed) as problem:
+        say(problem)
+        if "--json" in words and isinstance(problem, (NumbersFailed, OverBudget)):
+            show_json(outcome_of(problem))
+        return BAD_INPUT if isinstance(problem, BadInput) else FAILED
+    except (KeyboardInterrupt, Cancelled) as end:
+        say(f"{ending.word()}{f': {end}' if str(end) else ''}.")
+        return ending.status()
+    except BrokenPipeError:
+        sys.stderr.close()
+        return DONE

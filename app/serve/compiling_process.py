@@ -1,0 +1,21 @@
+"""A process that compiles for the server and ends with it: PARENT PIECE, and the scene as JSON on standard input."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+from granchain_core.children import end_with_parent
+
+
+def main(parent: str, piece: str) -> None:
+    """Compile; what that needs is loaded when the parent is watched already."""
+    end_with_parent(int(parent))
+    from granchain_core import Scene
+    from granchain_core.warm import compile_piece
+
+    compile_piece(Scene.from_json(json.load(sys.stdin)), piece)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

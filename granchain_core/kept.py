@@ -1,0 +1,184 @@
+"""What is finished of a long computation, on disk: killed, it loses only what was not written yet.
+
+A folder beside the result, FILE.blocks, holds a head, which says what is computed, and blocks of finished pieces. Every
+file is written under a temporary name, synced and renamed, and carries the SHA-256 of its content: a block that is not
+whole is computed again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+from .errors import BadInput
+
+#: Pieces in one block at most.
+BLOCK = 128
+#: Time after which a smaller block is written [s].
+SECONDS = 0.5
+#: Writing takes at most one part in so many of the time.
+_SHARE = 20.0
+#: Ending of a block's file name.
+_SUFFIX = ".block"
+#: Version of the format.
+_VERSION = 1
+
+Piece = TypeVar("Piece")
+
+
+def folder_of(out: str | Path) -> Path:
+    """The folder of blocks that belongs to a result."""
+    return Path(f"{out}.blocks")
+
+
+def digest_of(described: dict[str, Any]) -> str:
+    """Hash of a computation: of everything that changes its result."""
+    return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:16]
+
+
+class Kept(Generic[Piece]):
+    """The folder of one computation, which grows while it is computed; any thread may add to it.
+
+    `kind` is what is computed, in a word; `digest` identifies it and `words` describe it to a person. `pack` turns
+    pieces into the content of a block. The folder is made for the first block. With `newest_only` a block replaces
+    those before it.
+    """
+
+    def __init__(self, out: str | Path, kind: str, digest: str, words: str,
+                 pack: Callable[[list[Piece]], bytes], newest_only: bool = False) -> None:
+        self.folder = folder_of(out)
+        self._kind, self._words, self._pack, self._newest_only = kind, words, pack, newest_only
+        self._head = {"version": _VERSION, "digest": digest, "words": words}
+        self._pieces: list[Piece] = []
+        self._lock = threading.Lock()
+        self._number, self._due = 0, time.monotonic() + SECONDS
+        self._later: threading.Timer | None = None
+        self._problem: BadInput | None = None
+
+    def open(self, resume: bool) -> None:
+        """Look what is there: an unfinished computation must be this one and be resumed. Raises `BadInput`."""
+        try:
+            if not self._head_file.exists():
+                self._clear()  # what has no head cannot be told apart from what belongs to another computation
+                return
+            if not resume:
+                raise BadInput(f"{self.folder} holds an unfinished {self._kind}; go on with --resume, or delete it.")
+            found = json.loads(self._read(self._head_file.name) or b"{}")
+        except OSError as problem:
+            raise self._denied(problem) from None
+        if (found.get("version"), found.get("digest")) != (_VERSION, self._head["digest"]):
+            raise BadInput(f"{self.folder} holds another {self._kind}, {found.get('words', 'of another version')}, not "
+                           f"{self._words} with these knobs; give that one's words, another --out, or delete the "
+                           "folder.")
+
+    def blocks(self) -> Iterator[bytes]:
+        """The contents of the blocks that are whole, in the order in which they were written."""
+        for path in sorted(self.folder.glob(f"*{_SUFFIX}")):
+            content = self._read(path.name)
+            if content is not None:
+                yield content
+
+    def add(self, piece: Piece) -> None:
+        """Add a finished piece; it is written when a block is full, at the latest after `SECONDS`.
+
+        Raises `BadInput` where that was impossible.
+        """
+        with self._lock:
+            if self._problem is not None:
+                raise self._problem
+            if self._newest_only:
+                self._pieces.clear()
+            self._pieces.append(piece)
+            left = self._due - time.monotonic()
+            if self._later is None and left > 0.0:
+                self._later = threading.Timer(left, self._write_later)
+                self._later.daemon = True
+                self._later.start()
+        if left <= 0.0 or len(self._pieces) >= BLOCK:
+            self.write()
+
+    def _write_later(self) -> None:
+        try:
+            self.write()
+        except BadInput as problem:  # for the thread that adds the next piece
+            self._problem = problem
+
+    def write(self) -> None:
+        """Write the pieces added since the last block. Raises `BadInput` where that is impossible."""
+        with self._lock:
+            self._later = None
+            if not self._pieces:
+                return
+            began, content = time.monotonic(), self._pack(self._pieces)
+            self._pieces.clear()
+            self._number += 1
+            name = f"{time.time_ns():x}-{os.getpid()}-{self._number}{_SUFFIX}"
+            try:
+                if self._number == 1:
+                    self._begin()
+                self._write(name, content)
+                if self._newest_only:
+                    self._clear(name)
+            except OSError as problem:
+                raise self._denied(problem) from None
+            now = time.monotonic()
+            self._due = now + max(SECONDS, _SHARE * (now - began))
+
+    def remove(self) -> None:
+        """Remove the folder once the result is written: the head last, so that what is left belongs to it."""
+        try:
+            with self._lock:
+                self._pieces.clear()
+                self._clear()
+            self._head_file.unlink(missing_ok=True)
+            if self.folder.exists():
+                self.folder.rmdir()
+        except OSError as problem:
+            raise BadInput(f"Cannot remove {self.folder}: {problem.strerror or problem}.") from None
+
+    @property
+    def _head_file(self) -> Path:
+        return self.folder / f"{self._kind}.json"
+
+    def _begin(self) -> None:
+        self.folder.mkdir(exist_ok=True)
+        if not self._head_file.exists():
+            self._write(self._head_file.name, json.dumps(self._head).encode())
+
+    def _clear(self, but: str = "") -> None:
+        """Remove all blocks but one, and files that a killed process was writing."""
+        for path in [*self.folder.glob(f"*{_SUFFIX}"), *self.folder.glob(".*.tmp")]:
+            if path.name != but:
+                path.unlink(missing_ok=True)
+
+    def _write(self, name: str, content: bytes) -> None:
+        temporary = self.folder / f".{name}.{os.getpid()}.tmp"
+        try:
+            with temporary.open("wb") as file:
+                file.write(hashlib.sha256(content).digest() + content)
+                file.flush()
+                os.fsync(file.fileno())
+            os.replace(temporary, self.folder / name)
+        except OSError:
+            with suppress(OSError):
+                temporary.unlink()
+            raise
+        folder = os.open(self.folder, os.O_RDONLY)
+        os.fsync(folder)  # the new name is stored in the folder, which is synced separately
+        os.close(folder)
+
+    def _read(self, name: str) -> bytes | None:
+        """The content of a file, None where its checksum does not fit."""
+        stored = (self.folder / name).read_bytes()
+        digest, content = stored[:32], stored[32:]
+        return content if hashlib.sha256(content).digest() == digest else None
+
+    def _denied(self, problem: OSError) -> BadInput:
+        return BadInput(f"Cannot write {self.folder}: {problem.strerror or problem}.")

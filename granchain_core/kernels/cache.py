@@ -1,0 +1,248 @@
+"""The folder of compiled kernels, and what happens where it is damaged, full or not ours.
+
+Numba reads its files with `pickle` and runs the machine code in them, whatever a disk or a crash has made of them. So
+every file here begins with the SHA-256 of the rest, which is compared before anything is read: a file that is not
+whole is dropped and its kernel compiled again. A kernel that cannot be written is compiled for this process only.
+
+Numba names no interface for this: `KernelCache` replaces the classes by which it finds, reads and writes its files.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import hashlib
+import logging
+import os
+import pickle
+import re
+import shutil
+import stat
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import llvmlite.binding
+import numba
+from numba.core import caching
+
+from .width import BATCH_LANES
+
+#: Where what a person should know is said: on stderr, unless the program keeps a log.
+_LOG = logging.getLogger("granchain")
+#: Bytes of a checksum.
+_DIGEST = 32
+#: Folders of other versions are removed when they have not been used for this long [s].
+_MONTH = 30 * 86400.0
+#: Names of the folders of all versions.
+_VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
+
+
+def sources_hash() -> str:
+    """Hash of all that makes compiled code what it is: the sources of the kernels, Numba, the kind of processor.
+
+    This file is left out: it decides where code is kept, not what it is.
+    """
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()} {BATCH_LANES}".encode())
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        if path != Path(__file__):
+            digest.update(path.name.encode())
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:12]
+
+
+# --- the folder ---------------------------------------------------------------------------------------------
+
+
+def cache_folder() -> Path | None:
+    """The folder of the compiled kernels; None where nothing can be kept, which is said once.
+
+    It is in $GRANCHAIN_CACHE, else in the user's cache. Where that cannot be written, kernels that are there already
+    are used; where there are none, a folder in the temporary directory is, if nobody else can write to it.
+    """
+    name = f"kernels-{sources_hash()}"
+    base, problem = _chosen_base(), "there is no home folder"
+    if base is not None:
+        try:
+            (base / name).mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=base / name):
+                pass
+            _remove_old(base, base / name)
+            return base / name
+        except OSError as denied:
+            problem = f"{base}: {denied.strerror or denied}"
+            if _holds_kernels(base / name):
+                return base / name
+    return _temporary_folder(name, problem)
+
+
+def _chosen_base() -> Path | None:
+    chosen = os.environ.get("GRANCHAIN_CACHE")
+    if chosen:
+        return Path(chosen)
+    try:
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "granchain"
+    except RuntimeError:  # a user whom the system does not know
+        return None
+
+
+def _holds_kernels(folder: Path) -> bool:
+    try:
+        return any(folder.iterdir())
+    except OSError:
+        return False
+
+
+def _temporary_folder(name: str, problem: str) -> Path | None:
+    """A folder in the temporary directory, which others write to as well: only one that is ours alone is used."""
+    if hasattr(os, "getuid"):
+        base = Path(tempfile.gettempdir()) / f"granchain-{os.getuid()}"
+        try:
+            for folder in (base, base / name):
+                if not _is_ours(folder):
+                    problem = f"{problem}, and {folder} is not a folder of ours with mode 700"
+                    break
+            else:
+                _remove_old(base, base / name)
+                return base / name
+        except OSError as denied:
+            problem = f"{problem}, and {base}: {denied.strerror or denied}"
+    say_once(f"Compiled kernels cannot be kept ({problem}); they are compiled for this process only.")
+    return None
+
+
+def _is_ours(folder: Path) -> bool:
+    """Make the folder, or find it there: no link, with this user as owner and no rights for anybody else."""
+    with contextlib.suppress(FileExistsError):
+        folder.mkdir(mode=0o700)
+    found = folder.lstat()
+    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and stat.S_IMODE(found.st_mode) == 0o700
+
+
+def _remove_old(base: Path, used: Path) -> None:
+    """Note that a folder is used, and remove those of other versions that have not been for a month."""
+    os.utime(used)
+    for folder in base.iterdir():
+        if _VERSIONS.fullmatch(folder.name) and folder != used:
+            try:
+                found = folder.lstat()
+            except OSError:  # another process removes it as well
+                continue
+            if stat.S_ISDIR(found.st_mode) and time.time() - found.st_mtime > _MONTH:
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+@functools.cache
+def say_once(sentence: str) -> None:
+    """Tell a person something once in the life of this process."""
+    _LOG.warning(sentence)
+
+
+CACHE_FOLDER = cache_folder()
+
+
+# --- its files ----------------------------------------------------------------------------------------------
+
+
+class _Files(caching.IndexDataCacheFile):
+    """The index of one function and its compiled versions, each in a file with its checksum.
+
+    Several processes may write the same function at once, so that an index may name a file that holds another version:
+    each file therefore also says which version it is.
+    """
+
+    _cache_path: str
+    _index_path: str
+    _version: str
+    _source_stamp: Any
+    _data_path: Callable[[str], str]
+    _dump: Callable[[Any], bytes]
+
+    def save(self, key: Any, data: Any) -> None:
+        """Add one compiled version."""
+        super().save(key, (key, data))
+
+    def load(self, key: Any) -> Any:
+        """One compiled version, None where there is none that is whole."""
+        found = super().load(key)
+        return found[1] if found is not None and found[0] == key else None
+
+    def _load_index(self) -> dict[Any, str]:
+        try:
+            version, stamp, names = pickle.loads(self._whole(self._index_path))
+        except FileNotFoundError:
+            return {}
+        return names if (version, stamp) == (self._version, self._source_stamp) else {}
+
+    def _save_index(self, overloads: dict[Any, str]) -> None:
+        self._keep(self._index_path, self._dump((self._version, self._source_stamp, overloads)))
+
+    def _load_data(self, name: str) -> Any:
+        return pickle.loads(self._whole(self._data_path(name)))
+
+    def _save_data(self, name: str, data: Any) -> None:
+        self._keep(self._data_path(name), self._dump(data))
+
+    def _keep(self, path: str, content: bytes) -> None:
+        with self._open_for_write(path) as file:
+            file.write(hashlib.sha256(content).digest() + content)
+
+    def _whole(self, path: str) -> bytes:
+        """The content of a file; one whose checksum does not fit is dropped, and `FileNotFoundError` raised."""
+        stored = Path(path).read_bytes()
+        digest, content = stored[:_DIGEST], stored[_DIGEST:]
+        if hashlib.sha256(content).digest() == digest:
+            return content
+        say_once(f"Damaged kernels in {Path(self._cache_path).parent} are dropped and compiled again.")
+        with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
+            os.unlink(path)
+        raise FileNotFoundError(path)
+
+
+class _Locator(caching.UserProvidedCacheLocator):
+    """Places in the folder of kernels, whether or not it can be written: Numba would look for another one."""
+
+    @classmethod
+    def from_function(cls, py_func: Any, py_file: str) -> _Locator:
+        """The place of a function's files."""
+        return cls(py_func, py_file)
+
+
+class _Placed(caching.CompileResultCacheImpl):
+    _locator_classes = [_Locator]  # noqa: RUF012 – the attribute that Numba reads
+
+
+class KernelCache(caching.FunctionCache):
+    """The compiled versions of one function on disk."""
+
+    _impl_class = _Placed
+
+    def __init__(self, function: Any) -> None:
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(CACHE_FOLDER)
+        try:
+            super().__init__(function)
+        finally:
+            numba.config.CACHE_DIR = before
+        self._cache_file = _Files(self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """A compiled version from disk, None where it has to be compiled."""
+        try:
+            return super().load_overload(sig, target_context)
+        except OSError as problem:
+            self._go_on_without(problem)
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Write a compiled version; where that is impossible, go on without."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as problem:
+            self._go_on_without(problem)
+
+    def _go_on_without(self, problem: OSError) -> None:
+        say_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that are "
+                 "not there are compiled for this process only.")

@@ -1,0 +1,113 @@
+"""Finished orbits of a branch on disk (kept.py), as JSON: their numbers come back bit by bit.
+
+A piece is what one arm has grown by: the number of its first new orbit and special point, these, and how it goes on.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...kept import Kept, digest_of
+from .axis import KnobAxis
+from .branch import Branch
+from .point import BranchPoint
+from .special import SpecialPoint
+from .walk import Arm
+
+#: Entries of a point that are arrays.
+_ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "turns")
+
+
+def asked_digest(axis: KnobAxis, both: bool) -> str:
+    """Hash of everything that changes a branch but for its period, which may be left to the settled motion."""
+    return digest_of({"scene": axis.scene.digest, "knob": axis.knob, "from": axis.start, "to": axis.end, "both": both})
+
+
+class KeptOrbits:
+    """The folder of one branch, which grows while the branch is followed; each arm may have a thread of its own."""
+
+    def __init__(self, axis: KnobAxis, both: bool, out: str | Path) -> None:
+        self._axis, self._arms = axis, 1 + both
+        words = f"{axis.scene.name} over {axis.knob} = {axis.start:g} … {axis.end:g}{', both ways' if both else ''}"
+        self.kept: Kept[dict[str, Any]] = Kept(out, "branch", asked_digest(axis, both), words, _packed)
+        self._written: dict[int, tuple[int, int]] = {}
+
+    def asks_for(self, branch: Branch) -> bool:
+        """Whether a branch is the one of this folder; where it has closed on itself, one arm is all there is of two."""
+        both = self._arms > 1 if branch.arms[0].ended == "closed" else len(branch.arms) > 1
+        return asked_digest(branch.axis, both) == asked_digest(self._axis, self._arms > 1)
+
+    def add(self, period: int, arm: Arm) -> None:
+        """Add what an arm has grown by since the last call."""
+        points, special = self._written.get(arm.direction, (0, 0))
+        self._written[arm.direction] = len(arm.points), len(arm.special)
+        self.kept.add({"period": period, "direction": arm.direction, "first": [points, special],
+                       "points": [_told(point) for point in arm.points[points:]],
+                       "special": [_special_told(one) for one in arm.special[special:]],
+                       "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason})
+
+    def begin(self, branch: Branch) -> None:
+        """Add what there is of a branch before it is followed."""
+        for arm in branch.arms:
+            if self._written.get(arm.direction) != (len(arm.points), len(arm.special)):
+                self.add(branch.period, arm)
+
+    def branch(self) -> Branch | None:
+        """The branch as far as it is in the blocks, each arm up to the first orbit that is missing.
+
+        None where not even the seed is there.
+        """
+        arms: dict[int, Arm] = {}
+        period = 0
+        for content in self.kept.blocks():
+            for told in json.loads(content):
+                arm = arms.setdefault(told["direction"], Arm(told["direction"], []))
+                if told["first"] == [len(arm.points), len(arm.special)]:
+                    arm.points += [_point(one) for one in told["points"]]
+                    arm.special += [_special(one) for one in told["special"]]
+                    arm.step, arm.ended, arm.reason = float.fromhex(told["step"]), told["ended"], told["reason"]
+                    period = told["period"]
+        arms = {direction: arm for direction, arm in arms.items() if arm.points}
+        if len(arms) < self._arms:
+            return None
+        self._written = {direction: (len(arm.points), len(arm.special)) for direction, arm in arms.items()}
+        return Branch(self._axis, period, tuple(arms[direction] for direction in sorted(arms, reverse=True)))
+
+
+def _packed(pieces: list[dict[str, Any]]) -> bytes:
+    return json.dumps(pieces, default=np.generic.item).encode()
+
+
+def _told(point: BranchPoint) -> dict[str, Any]:
+    told = {one.name: getattr(point, one.name) for one in fields(BranchPoint)}
+    for name in _ARRAYS:
+        told[name] = np.asarray(told[name])
+    told["multipliers"] = np.stack([told["multipliers"].real, told["multipliers"].imag])
+    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in told.items()}
+
+
+def _point(told: dict[str, Any]) -> BranchPoint:
+    arrays: dict[str, Any] = {name: np.array(told[name], dtype=int if name == "closings" else float)
+                              for name in _ARRAYS if name != "multipliers"}
+    real, imaginary = np.array(told["multipliers"])
+    multipliers = np.empty(len(real), dtype=complex)
+    multipliers.real, multipliers.imag = real, imaginary
+    arrays["turns"] = arrays["turns"].reshape(-1, 4)
+    return BranchPoint(**{**told, **arrays, "multipliers": multipliers, "residuals": tuple(told["residuals"])})
+
+
+def _special_told(one: SpecialPoint) -> dict[str, Any]:
+    multiplier = None if one.multiplier is None else [complex(one.multiplier).real, complex(one.multiplier).imag]
+    return {"kind": one.kind, "knob": one.knob, "interval": list(one.interval), "before": _told(one.before),
+            "after": _told(one.after), "multiplier": multiplier, "contact": one.contact, "event": one.event}
+
+
+def _special(told: dict[str, Any]) -> SpecialPoint:
+    multiplier = None if told["multiplier"] is None else complex(*told["multiplier"])
+    return SpecialPoint(**{**told, "interval": tuple(told["interval"]), "before": _point(told["before"]),
+                           "after": _point(told["after"]), "multiplier": multiplier})

@@ -1,0 +1,93 @@
+"""Checkpoints of a run on disk (kept.py): killed, it goes on with the discarded periods that it has finished.
+
+A run computes its motion several times, each time finer. For each computation the newest checkpoint among its discarded
+periods is kept; the recorded periods are computed again, since writing them would take longer.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..integrate import Engine
+from ..integrate.checkpoint import Checkpoint, checkpoint, resumed
+from ..kept import Kept, digest_of
+from ..scene import Scene
+from ..stop import Stop
+
+
+@dataclass(eq=False)
+class Reached:
+    """Where one computation has come: its engine, the discarded periods done, and its latest strobes (P + 1, 2, N)."""
+
+    engine: Engine
+    done: int
+    strobes: np.ndarray
+
+
+class KeptRun:
+    """The folder of one run: P discarded and R recorded periods of S samples, by a method or the chosen one (None)."""
+
+    def __init__(self, scene: Scene, periods: int, record: int, samples: int, method: str | None,
+                 out: str | Path) -> None:
+        self._scene = scene
+        asked = {"scene": scene.digest, "periods": periods, "record": record, "samples": samples, "method": method}
+        words = f"{scene.name} with {periods} + {record} periods of {samples} samples"
+        self.kept: Kept[dict[str, Any]] = Kept(out, "run", digest_of(asked), words, _packed, newest_only=True)
+        self._there: dict[str, Any] = {}
+        #: Number of the present computation, and how many of its discarded periods are done.
+        self.computation, self.done = 0, 0
+
+    def open(self, resume: bool) -> None:
+        """Look what is there, to go on with it. Raises `BadInput`."""
+        self.kept.open(resume)
+        for content in self.kept.blocks():
+            with np.load(io.BytesIO(content), allow_pickle=False) as there:
+                self._there = dict(there)
+
+    def begin(self, computation: int, engine: Engine) -> Reached | None:
+        """Where a computation by such an engine had come; None where it has to be begun."""
+        self.computation, self.done = computation, 0
+        name = f"{computation} checkpoint"
+        if name not in self._there:
+            return None
+        there = self._there[name]
+        if not isinstance(there, Checkpoint):
+            there = Checkpoint.from_bytes(there.tobytes())
+        setting = engine.setting
+        if (there.method, there.refine, there.tolerance) != (setting.method, setting.refine, setting.tolerance):
+            return None
+        found = _with_log(self._scene, there, engine.stop, self._there[f"{computation} log"])
+        found.counts.array[:] = self._there[f"{computation} counts"]
+        self.done = int(self._there[f"{computation} done"])
+        return Reached(found, self.done, self._there[f"{computation} strobes"])
+
+    def add(self, reached: Reached) -> None:
+        """Keep where the present computation has come."""
+        self.done, engine = reached.done, reached.engine
+        log = np.concatenate([engine.log.peaks, engine.log.last.ravel()])
+        values = {"checkpoint": checkpoint(engine), "log": log, "counts": engine.counts.array.copy(),
+                  "done": np.array(reached.done), "strobes": reached.strobes}
+        self._there = {**self._there, **{f"{self.computation} {name}": value for name, value in values.items()}}
+        self.kept.add(self._there)
+
+
+def _with_log(scene: Scene, there: Checkpoint, stop: Stop, log: np.ndarray) -> Engine:
+    """The engine of a checkpoint, with the forces that it had followed."""
+    engine = resumed(scene, there, stop)
+    peaks = engine.log.peaks.size
+    engine.log.peaks[:], engine.log.last[:] = log[:peaks], log[peaks:].reshape(engine.log.last.shape)
+    return engine
+
+
+def _packed(pieces: list[dict[str, Any]]) -> bytes:
+    """The newest piece, which has everything."""
+    out = io.BytesIO()
+    arrays: dict[str, Any] = {name: np.frombuffer(value.to_bytes(), np.uint8) if isinstance(value, Checkpoint)
+                              else value for name, value in pieces[-1].items()}
+    np.savez(out, **arrays)
+    return out.getvalue()

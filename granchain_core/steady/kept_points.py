@@ -1,0 +1,57 @@
+"""Finished points of a resonance curve on disk (kept.py), as JSON: its numbers come back bit by bit."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..integrate import State
+from ..kept import Kept, digest_of
+from ..result import ForceErrors
+from ..scene import Scene
+from .curve import CurvePoint
+from .regime import Regime
+
+_NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_input_force")
+
+
+def curve_digest(scene: Scene, frequencies: np.ndarray, start: str) -> str:
+    """Hash of everything that changes a curve; the scene's own frequency does not."""
+    same = float(frequencies[0])
+    return digest_of({"scene": scene.evolve(f=same).digest, "frequencies": [float(f) for f in frequencies],
+                      "start": start})
+
+
+def kept_points(scene: Scene, frequencies: np.ndarray, start: str, out: str | Path) -> Kept[CurvePoint]:
+    """The folder for the points of the curve that is to be written to `out`."""
+    words = f"{scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, {start})"
+    return Kept(out, "curve", curve_digest(scene, frequencies, start), words, _packed)
+
+
+def points_in(kept: Kept[CurvePoint]) -> list[CurvePoint]:
+    """The points in the blocks that are whole, in the order in which they were finished."""
+    return [_point(told) for content in kept.blocks() for told in json.loads(content)]
+
+
+def _packed(points: list[CurvePoint]) -> bytes:
+    return json.dumps([_told(point) for point in points], default=np.generic.item).encode()
+
+
+def _told(point: CurvePoint) -> dict[str, Any]:
+    state = point.state
+    return {**{name: float(getattr(point, name)) for name in _NUMBERS}, "regime": asdict(point.regime),
+            "force_errors": asdict(point.force_errors), "failure": point.failure, "status": point.status,
+            "state": [state.displacement.tolist(), state.velocity.tolist(), state.phase]}
+
+
+def _point(told: dict[str, Any]) -> CurvePoint:
+    regime = dict(told["regime"])
+    regime["lyapunov"] = tuple(regime["lyapunov"]) if regime["lyapunov"] else None
+    displacement, velocity, phase = told["state"]
+    return CurvePoint(**{name: told[name] for name in _NUMBERS}, regime=Regime(**regime),
+                      force_errors=ForceErrors(**told["force_errors"]), failure=told["failure"],
+                      status=told["status"], state=State(np.array(displacement), np.array(velocity), phase))

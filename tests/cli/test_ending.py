@@ -1,0 +1,161 @@
+"""Ctrl-C and SIGTERM at any instant: the status, one sentence, no traceback, and no process left; nor after a kill."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tools.kills.processes import ROOT, Command
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="descendants are found in /proc")
+
+SENTENCE = {signal.SIGINT: (130, "Cancelled"), signal.SIGTERM: (143, "Terminated")}
+#: Each computes for minutes.
+LONG = {
+    "run": ("run", "rig", "--periods", "1000000", "--record", "1"),
+    "curve": ("curve", "sec2", "--from", "100", "--to", "3000", "--points", "50000"),
+    "branch": ("branch", "sec2", "--knob", "f", "--from", "340", "--to", "60"),
+    "map": ("map", "sec2", "--x", "f=200:3000:500", "--y", "A0=2e-7:1e-5:500:log", "--out", "map.h5"),
+    "accuracy": ("accuracy", "rig"),
+    "check": ("check", "--quick"),
+    "warm": ("warm",),
+    "serve": ("serve", "--port", "0"),
+}
+#: `granchain` as pip writes it, and `python -m app.cli`.
+ENTRIES = {"granchain": ("-c", "import sys; from app.cli import entry; sys.argv[0] = 'granchain'; sys.exit(entry())"),
+           "python -m": ("-m", "app.cli")}
+
+
+@pytest.fixture
+def started(tmp_path: Path) -> Iterator[Callable[..., Command]]:
+    commands: list[Command] = []
+
+    def start(*words: str, **options: object) -> Command:
+        commands.append(Command(*words, folder=tmp_path, **options))
+        return commands[-1]
+
+    yield start
+    for one in commands:
+        one.kill()
+
+
+def ends_well(command: Command, number: signal.Signals) -> None:
+    status, word = SENTENCE[number]
+    assert command.end() == status
+    said = command.err.splitlines()
+    assert said[-1].startswith(word) and said[-1].endswith("."), command.err
+    assert [line for line in said if word in line] == [said[-1]]
+    assert "Traceback" not in command.err and "Error" not in command.err and "Warning" not in command.err
+    assert command.left() == []
+
+
+@pytest.mark.parametrize("number", SENTENCE)
+@pytest.mark.parametrize("name", LONG)
+def test_a_command_ends_while_it_computes_or_compiles(name: str, number: signal.Signals,
+                                                      started: Callable[..., Command]) -> None:
+    """After three seconds it has loaded everything and computes, or compiles where the machine has no kernels yet."""
+    command = started(*LONG[name])
+    time.sleep(3.0)
+    command.send(number, to_all=number is signal.SIGINT)
+    ends_well(command, number)
+
+
+@pytest.mark.parametrize("number", SENTENCE)
+@pytest.mark.parametrize("name", ["run", "check", "warm", "serve"])
+def test_a_command_ends_while_kernels_compile(name: str, number: signal.Signals, started: Callable[..., Command],
+                                              tmp_path: Path) -> None:
+    command = started(*LONG[name], GRANCHAIN_CACHE=str(tmp_path / "empty"))
+    while not list((tmp_path / "empty").rglob("*.nb?")):  # the first kernel is compiled, and another one being compiled
+        assert command.process.poll() is None
+        time.sleep(0.05)
+    command.send(number, to_all=number is signal.SIGINT)
+    ends_well(command, number)
+
+
+@pytest.mark.parametrize("entry", ENTRIES)
+@pytest.mark.parametrize("after", [0.0, 0.03, 0.1, 0.2, 0.4, 0.8])
+def test_an_interrupt_in_the_first_second(after: float, entry: str, started: Callable[..., Command]) -> None:
+    """While it loads what it needs, from the instant on at which the entry has told the system of its handlers."""
+    command = started(*LONG["run"], program=ENTRIES[entry])
+    while not command.listening():
+        assert command.process.poll() is None
+    time.sleep(after)
+    command.send(signal.SIGINT)
+    ends_well(command, signal.SIGINT)
+
+
+def test_the_entry_imports_next_to_nothing_before_it_listens() -> None:
+    """What is imported outside its guard ends in Python's own traceback when Ctrl-C comes then."""
+    program = ("import sys\nbefore = set(sys.modules)\nimport app.cli\nprint(sorted(set(sys.modules) - before))\n"
+               "from app.cli import ending\nprint(any(name.split('.')[0] in {'numpy', 'numba', 'granchain_core', 'argparse'}"
+               " for name in sys.modules))\n")
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == ["['__future__', 'app', 'app.cli']", "False"]
+
+
+@pytest.mark.parametrize("name", ["check", "warm", "serve", "map", "branch"])
+def test_nothing_is_left_of_a_command_that_is_killed(name: str, started: Callable[..., Command], tmp_path: Path) -> None:
+    command = started(*LONG[name], GRANCHAIN_CACHE=str(tmp_path / "empty"))
+    time.sleep(1.0)
+    while name in ("check", "warm", "serve") and len(command.descendants()) < 2:
+        assert command.process.poll() is None
+        time.sleep(0.05)
+    command.send(signal.SIGKILL)
+    assert command.end() == -signal.SIGKILL
+    assert command.left() == []
+    assert "Traceback" not in command.err
+
+
+def test_the_page_of_hard_cases_leaves_no_process_either(started: Callable[..., Command]) -> None:
+    program = ("from granchain_core.hard import CASES\nfrom granchain_core.stop import Stop\n"
+               "from app.pages.hard_cases.work import CaseProcess\n"
+               "for case in CASES:\n    print(case.name, flush=True)\n    list(CaseProcess().measure(case, Stop()))\n")
+    command = started(program=("-c", program))
+    while not command.descendants():
+        assert command.process.poll() is None
+        time.sleep(0.05)
+    command.send(signal.SIGKILL)
+    command.end()
+    assert command.left() == []
+
+
+def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[..., Command]) -> None:
+    program = ("import time\nfrom app.cli import ending\nending.begin()\nwith ending.told():\n"
+               "    print('inside', flush=True)\n    time.sleep(1000)\n")
+    command = started(program=("-c", program))
+    assert command.process.stdout is not None and command.process.stdout.readline() == "inside\n"
+    command.send(signal.SIGTERM)
+    time.sleep(0.2)
+    assert command.process.poll() is None  # it has some time to end
+    command.send(signal.SIGINT)
+    assert command.end() == 143  # that of the first
+
+
+@pytest.mark.parametrize("number", SENTENCE)
+def test_a_signal_after_the_command_is_done_changes_nothing(number: signal.Signals, started: Callable[..., Command]) -> None:
+    """Python takes some time to leave, in which its default would end the process with another status."""
+    program = ("import atexit, time\nfrom app.cli import ending\nending.begin()\n"
+               "atexit.register(lambda: (print('leaving', flush=True), time.sleep(1.0)))\n"
+               "class Late:\n    def __del__(self):\n        time.sleep(1.0)\nlate = Late()\n"
+               "raise SystemExit(ending.leave(0))\n")
+    command = started(program=("-c", program))
+    assert command.process.stdout is not None and command.process.stdout.readline() == "leaving\n"
+    command.send(number)
+    time.sleep(1.2)
+    if command.process.poll() is None:
+        command.send(number)
+    assert command.end() == 0 and command.err == ""
+
+
+def test_an_ignored_interrupt_stays_ignored(started: Callable[..., Command]) -> None:
+    """As in a shell's background jobs."""
+    program = ("import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)\nfrom app.cli import ending\nending.begin()\n"
+               "print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)\n")
+    command = started(program=("-c", program))
+    assert command.end() == 0 and command.out == "True\n"

@@ -1,0 +1,202 @@
+"""run, curve, branch and map that are interrupted or killed go on with what they had finished, and compute none of it again."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import signal
+import sys
+import time
+from importlib import import_module
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.cli import main
+from granchain_core import BadInput, resonance_curve, scene
+from granchain_core.kept import Kept, folder_of
+from granchain_core.steady import curve as curves
+from granchain_core.steady.kept_points import kept_points, points_in
+from tools.kills.finished import differing, finished_in
+from tools.kills.processes import Command
+from tools.kills.trial import COMMANDS
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="descendants are found in /proc")
+
+
+@linux
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("name", COMMANDS)
+def test_a_command_goes_on_after_a_signal(name: str, number: signal.Signals, tmp_path: Path) -> None:
+    out = tmp_path / "out.h5"
+    command = Command(*COMMANDS[name], "--out", str(out))
+    try:
+        while not finished_in(name, out) and command.process.poll() is None:
+            time.sleep(0.05)
+        if command.process.poll() is None:
+            command.send(number)
+        command.end()
+    finally:
+        command.kill()
+    there = finished_in(name, out)
+    assert there
+    if command.process.returncode != 0 and number is not signal.SIGKILL:
+        assert command.err.splitlines()[-1].endswith("; go on with --resume.") and "Traceback" not in command.err
+    again = Command(*COMMANDS[name], "--out", str(out), "--resume")
+    assert again.end(timeout=600.0) == 0, again.err
+    assert there <= finished_in(name, out) and not folder_of(out).exists()
+    whole = Command(*COMMANDS[name], "--out", str(tmp_path / "whole.h5"))
+    assert whole.end(timeout=600.0) == 0, whole.err
+    if name != "map":  # which cells share a batch depends on the cut, and decides a doubtful cell (docs/reliability.md)
+        assert differing(name, tmp_path / "whole.h5", out) == ""
+
+
+SHORT = {
+    "run": ["run", "sec2", "--periods", "20", "--record", "2", "--samples", "8"],
+    "curve": ["curve", "sec2", "--from", "300", "--to", "400", "--points", "3"],
+    "branch": ["branch", "sec2", "--knob", "f", "--from", "1500", "--to", "1520", "--period", "1"],
+    "map": ["map", "sec2", "--x", "f=300:400:2", "--y", "A0=5e-7:6e-7:2"],
+}
+#: What changes the question, by command.
+OTHER = {name: ["--set", "D=90"] for name in SHORT}
+
+
+def head(out: Path, kind: str, capsys: pytest.CaptureFixture[str], words: list[str]) -> bytes:
+    """The head of the command's folder of blocks, as an interrupted one leaves it."""
+    kept: list[bytes] = []
+
+    remove = Kept.remove
+
+    def read_and_remove(self: Kept[object]) -> None:
+        self._begin()
+        kept.append(self._head_file.read_bytes())
+        remove(self)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Kept, "remove", read_and_remove)
+        assert main([*words, "--out", str(out)]) == 0
+    capsys.readouterr()
+    return kept[0]
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_a_finished_result_is_looked_at_before_its_blocks(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                                          capsys: pytest.CaptureFixture[str]) -> None:
+    """Killed after the result was written, while its blocks still stand, whole or not: nothing is computed again."""
+    out = tmp_path / "a.h5"
+    content = head(out, name, capsys, SHORT[name])
+    folder_of(out).mkdir()
+    (folder_of(out) / f"{name}.json").write_bytes(content)
+    before, computed = out.read_bytes(), []
+    for module in ("app.cli.branch", "app.cli.map", "granchain_core.run.run"):
+        import_module(module)
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "_refined", lambda *_, **__: computed.append(1))
+    monkeypatch.setattr(curves, "_carried", lambda *_: computed.append(1))
+    monkeypatch.setattr(curves, "_from_rest", lambda *_: computed.append(1))
+    monkeypatch.setattr(sys.modules["app.cli.branch"], "begin_branch", lambda *_, **__: computed.append(1))
+    monkeypatch.setattr(sys.modules["app.cli.map"], "iter_diagram", lambda *_: computed.append(1))
+    assert main([*SHORT[name], "--out", str(out)]) == 2  # not without being asked to
+    assert "go on with --resume" in capsys.readouterr().err
+    assert main([*SHORT[name], "--out", str(out), "--resume", "--json"]) == 0
+    told, err = capsys.readouterr()
+    assert json.loads(told) and computed == [] and not folder_of(out).exists()
+    assert "finished already; nothing was computed" in err or name == "branch"
+    if name != "branch":  # its file is the place where it goes on, so that it is written once more
+        assert out.read_bytes() == before
+
+
+@pytest.mark.parametrize("name", SHORT)
+def test_another_question_is_refused(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "a.h5"
+    content = head(out, name, capsys, SHORT[name])
+    assert main([*SHORT[name], *OTHER[name], "--out", str(out), "--resume"]) == 2
+    assert "give another --out" in capsys.readouterr().err
+    folder_of(out).mkdir()
+    (folder_of(out) / f"{name}.json").write_bytes(content)
+    out.unlink()
+    assert main([*SHORT[name], *OTHER[name], "--out", str(out), "--resume"]) == 2
+    assert f"holds another {name}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["run", "curve", "branch"])
+def test_resume_needs_a_file(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*SHORT[name], "--resume"]) == 2
+    err = capsys.readouterr().err
+    assert "--resume needs" in err and len(err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("start", ["rest", "up", "down"])
+def test_known_points_are_not_computed_again_and_the_others_are_the_same(start: str, tmp_path: Path,
+                                                                         monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the state is carried along they go on from the last known point; a gap ends what is known."""
+    chosen, frequencies = scene("sec2").evolve(N=3), np.linspace(900.0, 1100.0, 7)
+    whole = resonance_curve(chosen, frequencies, start, workers=1)
+    kept = kept_points(chosen, frequencies, start, tmp_path / "c.h5")
+    order = sorted(whole.points, key=lambda p: p.frequency, reverse=start == "down")
+    for point in (*order[:3], order[4]):
+        kept.add(point)
+    kept.write()
+    again = kept_points(chosen, frequencies, start, tmp_path / "c.h5")
+    again.open(resume=True)
+    known, new = points_in(again), []
+    assert [p.frequency for p in known] == [p.frequency for p in (*order[:3], order[4])]
+    for mine, its in zip(known, (*order[:3], order[4]), strict=True):
+        assert (mine.regime, mine.force_errors, mine.max_output_force) == (its.regime, its.force_errors, its.max_output_force)
+        assert mine.state.displacement.tobytes() == its.state.displacement.tobytes()
+    found = resonance_curve(chosen, frequencies, start, on_point=new.append, known=known, workers=1)
+    assert len(new) == (3 if start == "rest" else 4)
+    assert [p.frequency for p in found.points] == sorted(frequencies)
+    for mine, its in zip(found.points, whole.points, strict=True):
+        if start != "rest":
+            assert mine.max_output_force == its.max_output_force
+        assert mine.max_output_force == pytest.approx(its.max_output_force, rel=1e-7)  # rounding of the lanes
+
+
+def pieces(out: Path, resume: bool = False) -> Kept[int]:
+    kept: Kept[int] = Kept(out, "count", "digest", "numbers", lambda found: json.dumps(found).encode())
+    kept.open(resume)
+    return kept
+
+
+def numbers(kept: Kept[int]) -> list[int]:
+    return [number for content in kept.blocks() for number in json.loads(content)]
+
+
+def test_a_piece_is_written_soon_although_none_follows(tmp_path: Path) -> None:
+    kept = pieces(tmp_path / "a")
+    kept.add(1)
+    assert kept._later is not None
+    kept._later.join(60.0)
+    assert numbers(kept) == [1]
+
+
+def test_blocks_without_a_head_are_not_believed(tmp_path: Path) -> None:
+    """They may be another computation's, whose removal was interrupted."""
+    kept = pieces(tmp_path / "a")
+    kept.add(1)
+    kept.write()
+    (kept.folder / "count.json").unlink()
+    assert numbers(pieces(tmp_path / "a", resume=True)) == []
+    kept.remove()
+    assert not kept.folder.exists()
+
+
+def test_the_head_goes_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = pieces(tmp_path / "a")
+    kept.add(1)
+    kept.write()
+    removed: list[str] = []
+    unlink = Path.unlink
+    monkeypatch.setattr(Path, "unlink", lambda path, missing_ok=False: (removed.append(path.suffix), unlink(path, missing_ok)))
+    kept.remove()
+    assert removed == [".block", ".json"]
+
+
+def test_a_folder_that_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
+    kept = pieces(tmp_path / "a")
+    folder_of(tmp_path / "a").write_text("a file")
+    kept.add(1)
+    with pytest.raises(BadInput, match=r"Cannot write .*a\.blocks"):
+        kept.write()
+    shutil.rmtree(folder_of(tmp_path / "a"), ignore_errors=True)

@@ -1,0 +1,155 @@
+"""A cache of kernels that is damaged, full, not writable, or somebody else's costs time and one line, nothing else."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from granchain_core.kernels import cache
+
+ROOT = Path(__file__).resolve().parents[2]
+#: Runs one small kernel, and prints where it is kept, whether its result is right, and how often Numba loaded it.
+PROGRAM = """
+import json
+import numpy as np
+from granchain_core.kernels.cache import CACHE_FOLDER
+from granchain_core.kernels.forces.peaks import PEAKS, forget
+peaks = np.ones(PEAKS)
+forget(peaks)
+right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
+print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(forget.stats.cache_hits.values())}))
+"""
+#: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as well.
+_FULL = "import resource, signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
+
+
+def used(folder: Path, program: str = PROGRAM) -> tuple[dict, list[str]]:
+    """What a new process says of its kernel, and its lines on stderr."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "GRANCHAIN_CACHE": str(folder)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, text=True, capture_output=True, timeout=300,
+                          check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout.splitlines()[-1]), done.stderr.splitlines()
+
+
+def halved(content: bytes) -> bytes:
+    return content[: len(content) // 2]
+
+
+def flipped(content: bytes) -> bytes:
+    changed = bytearray(content)
+    changed[2 * len(changed) // 3] ^= 4
+    return bytes(changed)
+
+
+@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+@pytest.mark.parametrize("damage", [lambda _: b"", halved, flipped, lambda _: b"x"], ids=["empty", "halved", "flipped", "short"])
+def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, kind: str, tmp_path: Path) -> None:
+    told, said = used(tmp_path)
+    assert told["right"] and told["loaded"] == 0 and said == []
+    files = list(tmp_path.rglob(f"*.{kind}"))
+    assert len(files) == 1
+    files[0].write_bytes(damage(files[0].read_bytes()))
+    told, said = used(tmp_path)
+    assert told["right"] and told["loaded"] == 0
+    assert len(said) == 1 and "Damaged kernels" in said[0] and "compiled again" in said[0]
+    told, said = used(tmp_path)
+    assert told["right"] and told["loaded"] == 1 and said == []
+
+
+def test_every_flipped_bit_is_seen(tmp_path: Path) -> None:
+    """The checksum is compared before anything is unpickled."""
+    used(tmp_path)
+    for path in [*tmp_path.rglob("*.nbi"), *tmp_path.rglob("*.nbc")]:
+        whole = path.read_bytes()
+        files = cache._Files(str(path.parent), path.stem, None)
+        assert files._whole(str(path)) == whole[32:]
+        for bit in range(0, 8 * len(whole), max(1, len(whole) // 50)):
+            changed = bytearray(whole)
+            changed[bit // 8] ^= 1 << bit % 8
+            path.write_bytes(changed)
+            with pytest.raises(FileNotFoundError):
+                files._whole(str(path))
+            assert not path.exists()
+
+
+def test_an_index_that_names_another_version_is_not_believed(tmp_path: Path) -> None:
+    """Two processes that write at once may leave an index whose file belongs to another signature."""
+    files = cache._Files(str(tmp_path), "f", "stamp")
+    files.save("one", "code of one")
+    files.save("two", "code of two")
+    assert files.load("one") == "code of one" and files.load("two") == "code of two"
+    (tmp_path / "f.1.nbc").write_bytes((tmp_path / "f.2.nbc").read_bytes())
+    assert files.load("one") is None and files.load("two") == "code of two"
+
+
+def test_a_full_disk_is_said_once_and_the_kernel_runs(tmp_path: Path) -> None:
+    used(tmp_path / "other")  # the folder is made before the disk is full
+    told, said = used(tmp_path / "other", _FULL + PROGRAM)
+    assert told["right"] and told["loaded"] == 1 and said == []  # what is there is used
+    (tmp_path / "new" / f"kernels-{cache.sources_hash()}").mkdir(parents=True)
+    told, said = used(tmp_path / "new", _FULL + PROGRAM)
+    assert told["right"]
+    assert len(said) == 1 and "cannot be kept" in said[0] and "File too large" in said[0]
+
+
+@pytest.fixture
+def denied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A chosen folder that cannot be made, for root as well: its parent is a file."""
+    (tmp_path / "file").write_text("")
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
+    return tmp_path / "file" / "cache"
+
+
+def test_where_nothing_can_be_written_the_temporary_folder_is_ours_alone(denied: Path, tmp_path: Path) -> None:
+    told, said = used(denied)
+    ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
+    assert told["right"] and Path(told["folder"]).parent == ours and said == []
+    assert [folder.stat().st_mode & 0o777 for folder in (ours, Path(told["folder"]))] == [0o700, 0o700]
+    assert used(denied)[0]["loaded"] == 1
+
+
+@pytest.mark.parametrize("planted", ["open to all", "readable by all", "a link", "a file", "open inside"])
+def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denied: Path, tmp_path: Path) -> None:
+    ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
+    if planted == "a link":
+        (tmp_path / "elsewhere").mkdir(mode=0o700)
+        ours.symlink_to(tmp_path / "elsewhere")
+    elif planted == "a file":
+        ours.write_text("")
+    else:
+        ours.mkdir(mode=0o700)
+        inside = ours / f"kernels-{cache.sources_hash()}"
+        inside.mkdir(mode=0o700)
+        {"open to all": ours, "readable by all": ours, "open inside": inside}[planted].chmod(
+            0o755 if planted == "readable by all" else 0o777)
+    told, said = used(denied)
+    assert told["right"] and told["folder"] == "None" and told["loaded"] == 0
+    assert len(said) == 1 and "not a folder of ours with mode 700" in said[0]
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")
+def test_a_temporary_folder_of_another_owner_is_not_used(denied: Path, tmp_path: Path) -> None:
+    ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
+    ours.mkdir(mode=0o700)
+    os.chown(ours, 12345, 12345)
+    assert used(denied)[0]["folder"] == "None"
+
+
+def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path: Path) -> None:
+    own, old, young = (tmp_path / f"kernels-{name}" for name in (cache.sources_hash(), "0" * 12, "1" * 12))
+    foreign = tmp_path / "kernels-of-mine"
+    for folder, days in ((own, 40), (old, 31), (young, 29), (foreign, 400)):
+        folder.mkdir()
+        (folder / "a.nbi").write_text("")
+        os.utime(folder, (time.time() - 86400 * days,) * 2)
+    used(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {own.name, young.name, foreign.name}
+    assert time.time() - own.stat().st_mtime < 3600.0  # the use is noted

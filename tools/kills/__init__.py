@@ -1,0 +1,1 @@
+"""Commands killed at random instants: tracebacks, hangs, children left, finished points lost."""

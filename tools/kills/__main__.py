@@ -1,0 +1,36 @@
+"""Program: kill commands at random instants, let them go on with --resume, and count what goes wrong.
+
+    python -m tools.kills [--count 100] [--seed 1] [--minutes 10] [run] [curve] [branch] [map]
+
+Each command is started, ended after a random time by SIGINT, SIGTERM or SIGKILL, looked at, and started again with
+--resume until it is done; its result is then compared with that of a command that nobody disturbed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import random
+import tempfile
+from pathlib import Path
+
+from .trial import COMMANDS, Counts, trial
+
+
+def main() -> None:
+    """Print a row for each command, and every fault on the way."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("commands", nargs="*", default=list(COMMANDS), metavar="COMMAND")
+    parser.add_argument("--count", type=int, default=100, help="kills of each command")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--minutes", type=float, default=600.0, help="time for each command")
+    words = parser.parse_args()
+    print(f"{datetime.date.today()}, seed {words.seed}\n\n{Counts.header()}", flush=True)
+    for name in words.commands:
+        with tempfile.TemporaryDirectory() as folder:
+            rng = random.Random(f"{words.seed} {name}")
+            print(trial(name, words.count, rng, Path(folder), words.minutes).row(name), flush=True)
+
+
+if __name__ == "__main__":
+    main()
