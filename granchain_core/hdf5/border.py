@@ -172,6 +172,9 @@ def entries(what: str, value: object, kinds: Mapping[str, str]) -> dict[str, Any
     return {name: _entry(f"{what}.{name}", value.get(name), kind) for name, kind in kinds.items()}
 
 
+_CALLED = {"number": "a number", "whole": "a whole number from 0", "text": "a text", "flag": "true or false"}
+
+
 def _entry(what: str, value: object, kind: str) -> Any:
     if value is None and kind.endswith("?"):
         return None
@@ -179,7 +182,7 @@ def _entry(what: str, value: object, kind: str) -> Any:
     fits = {"number": number, "whole": number and isinstance(value, int) and value >= 0,
             "text": isinstance(value, str), "flag": isinstance(value, bool)}[kind.rstrip("?")]
     if not fits:
-        raise Refused(f"{what} is {str(value)[:40]!r}, not a {kind.rstrip('?')}")
+        raise Refused(f"{what} is {str(value)[:40]!r}, not {_CALLED[kind.rstrip('?')]}")
     return value
 
 

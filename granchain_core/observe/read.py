@@ -25,6 +25,8 @@ FORCE_UNITS = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
 MOST_BYTES = 50_000_000
 #: Most rows accepted.
 MOST_ROWS = 1_000_000
+#: Endings of the names of HDF5 files, whose beginning may be damaged.
+_HDF5 = (".h5", ".hdf5")
 _FORCES = {"force": ("force", "input_force", "f_in"), "output": ("output", "output_force", "f_out")}
 
 
@@ -52,7 +54,7 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
             content = file.read(MOST_BYTES + 1)
     except OSError as problem:
         raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
-    if content.startswith(b"\x89HDF"):
+    if content.startswith(b"\x89HDF") or path.suffix in _HDF5:
         if time_unit is not None or force_unit is not None:
             raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")
         return checked(_from_hdf5(path))
