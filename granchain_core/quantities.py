@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from .errors import BadInput
 from .laws import LAWS
+from .text import number_in
 
 
 @dataclass(frozen=True)
@@ -73,16 +74,11 @@ class Quantity:
         return number
 
     def _number(self, value: object) -> float:
-        if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-            try:
-                value = float(value)  # type: ignore[arg-type]  # numpy scalars
-            except (TypeError, ValueError):
-                raise self._not_a_number(value) from None
         try:
-            number = float(value)
-        except (ValueError, OverflowError):
+            number = number_in(value) if isinstance(value, str) else float(value)  # type: ignore[arg-type]
+        except (TypeError, ValueError, OverflowError):
             raise self._not_a_number(value) from None
-        if not math.isfinite(number):
+        if number is None or not math.isfinite(number):
             raise self._not_a_number(value)
         return number
 

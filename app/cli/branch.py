@@ -15,7 +15,7 @@ from granchain_core.orbits.branch.kept_orbits import KeptOrbits
 
 from .common import check_points, chosen_scene, in_background, say, say_if, show_json, unbroken
 from .foundation import kept_along
-from .options import add_result
+from .options import add_result, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
@@ -29,11 +29,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--knob", metavar="NAME", help="knob that is moved: f, A0, D, k, kappa or F0")
     parser.add_argument("--from", dest="start", metavar="a", help="its value where the branch begins")
     parser.add_argument("--to", dest="end", metavar="b", help="its value where it ends")
-    parser.add_argument("--period", type=int, metavar="n",
+    parser.add_argument("--period", type=whole, metavar="n",
                         help="drive periods of the orbits; by default those of the settled motion")
     parser.add_argument("--both", action="store_true",
                         help="begin at the scene's own value of the knob and go both ways, to a and to b")
-    parser.add_argument("--points", type=int, default=MOST_POINTS, metavar="m", help="most orbits each way")
+    parser.add_argument("--points", type=whole, default=MOST_POINTS, metavar="m", help="most orbits each way")
     parser.add_argument("--resume", nargs="?", const="", metavar="FILE",
                         help="go on with the branch of --out that was interrupted, or with the one in FILE")
     add_picture(parser)

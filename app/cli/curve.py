@@ -11,7 +11,7 @@ from granchain_core import BadInput, Scene
 
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
 from .keeping import add_resume, finished, keeping
-from .options import add_result
+from .options import add_result, number, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `curve`."""
     add_result(parser)
-    parser.add_argument("--from", dest="low", type=float, required=True, metavar="F", help="lowest frequency [Hz]")
-    parser.add_argument("--to", dest="high", type=float, required=True, metavar="F", help="highest frequency [Hz]")
-    parser.add_argument("--points", type=int, required=True, metavar="n")
+    parser.add_argument("--from", dest="low", type=number, required=True, metavar="F", help="lowest frequency [Hz]")
+    parser.add_argument("--to", dest="high", type=number, required=True, metavar="F", help="highest frequency [Hz]")
+    parser.add_argument("--points", type=whole, required=True, metavar="n")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
     add_resume(parser, "curve")
     add_picture(parser)

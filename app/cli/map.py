@@ -24,6 +24,7 @@ from granchain_core.diagram.cells import ERRORS, REGIMES, cell_of
 from granchain_core.diagram.grid import MOST_CELLS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
+from granchain_core.text import number_in, whole_in
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -49,11 +50,10 @@ def axis_from(option: str, text: str) -> Axis:
         raise BadInput(f"{option} {text[:60]!r} must have the form KNOB=a:b:n or KNOB=a:b:n:log, for example "
                        "f=30:3000:100.")
     ends = Axis.of(knob, sorted({_number(option, part) for part in parts[:2]})).values
-    try:
-        count = int(parts[2])
-    except ValueError:
+    count = whole_in(parts[2])
+    if count is None:
         raise BadInput(f"{option}: the number of points {parts[2][:40]!r} must be a whole number from 1 to "
-                       f"{MOST_CELLS}.") from None
+                       f"{MOST_CELLS}.")
     if not 1 <= count <= MOST_CELLS:
         raise BadInput(f"{option}: {count} points are outside 1 to {MOST_CELLS}; the nearest valid value is "
                        f"{min(max(count, 1), MOST_CELLS)}.")
@@ -67,10 +67,10 @@ def axis_from(option: str, text: str) -> Axis:
 
 
 def _number(option: str, text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise BadInput(f"{option}: {text[:40]!r} is not a number.") from None
+    found = number_in(text)
+    if found is None:
+        raise BadInput(f"{option}: {text[:40]!r} is not a number.")
+    return found
 
 
 def do(arguments: argparse.Namespace) -> None:

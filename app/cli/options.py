@@ -4,6 +4,24 @@ from __future__ import annotations
 
 import argparse
 
+from granchain_core.text import number_in, whole_in
+
+
+def number(text: str) -> float:
+    """The number of an option, read as that of a knob."""
+    found = number_in(text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"{text[:40]!r} is not a number")
+    return found
+
+
+def whole(text: str) -> int:
+    """The whole number of an option."""
+    found = whole_in(text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"{text[:40]!r} is not a whole number")
+    return found
+
 
 def add_scene(parser: argparse.ArgumentParser) -> None:
     """Add SCENE and the changes of its knobs."""

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from app.cli.common import chosen_scene, in_background, show_json
-from app.cli.options import add_json, add_scene
+from app.cli.options import add_json, add_scene, whole
 from app.cli.picture import add_option as add_picture
 from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput, Scene
@@ -18,11 +18,11 @@ STARTS = ("settled", "rest", "random")
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `orbit`."""
     add_scene(parser)
-    parser.add_argument("--period", type=int, metavar="n",
+    parser.add_argument("--period", type=whole, metavar="n",
                         help="drive periods of the orbit; by default those of the settled motion")
     parser.add_argument("--start", default="settled", metavar="settled|rest|random|FILE",
                         help="where Newton's method starts; FILE is a recorded run, whose last sample counts")
-    parser.add_argument("--seed", type=int, default=0, help="seed of the random start")
+    parser.add_argument("--seed", type=whole, default=0, help="seed of the random start")
     parser.add_argument("--observer", action="store_true",
                         help="also compute the multipliers of the observer of model (4)")
     add_json(parser)

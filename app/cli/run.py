@@ -13,17 +13,18 @@ from granchain_core.run.budget import BUDGET
 
 from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
 from .keeping import add_resume, finished, keeping
-from .options import add_result
+from .options import add_result, number, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `run`."""
     add_result(parser)
-    parser.add_argument("--periods", type=int, default=100, metavar="P", help="periods run and discarded")
-    parser.add_argument("--record", type=int, default=20, metavar="R", help="periods recorded")
-    parser.add_argument("--samples", type=int, default=96, metavar="S", help="samples a period")
+    parser.add_argument("--periods", type=whole, default=100, metavar="P", help="periods run and discarded")
+    parser.add_argument("--record", type=whole, default=20, metavar="R", help="periods recorded")
+    parser.add_argument("--samples", type=whole, default=96, metavar="S", help="samples a period")
     parser.add_argument("--method", metavar="M", help="integration method instead of the one accuracy chooses")
-    parser.add_argument("--budget", type=float, default=BUDGET, metavar="SECONDS", help="refuse what would take longer")
+    parser.add_argument("--budget", type=number, default=BUDGET, metavar="SECONDS",
+                        help="refuse what would take longer")
     parser.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
     add_resume(parser, "run")
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 
+from app.cli.options import whole
 from granchain_core import BadInput
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `serve`."""
-    parser.add_argument("--port", type=int, default=5006)
+    parser.add_argument("--port", type=whole, default=5006)
     parser.add_argument("--address", default="127.0.0.1")
     parser.add_argument("--allow-websocket-origin", action="append", metavar="HOST",
                         help="host name under which browsers may reach a dashboard behind a proxy")

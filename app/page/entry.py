@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from urllib.parse import urlsplit
+
 import panel as pn
+from bokeh.document import Document
 
 from ..serve.compiler import COMPILER
 from .controller import Controller
@@ -16,7 +19,7 @@ def page() -> pn.Template:
     document = pn.state.curdoc
     if document is None:
         raise RuntimeError("the page is made inside a request; serve it, do not call it")
-    session, sentences = session_from_address(pn.state.location.search if pn.state.location else "")
+    session, sentences = session_from_address(_query(document))
     COMPILER.prepare(session.scene)
     controller = Controller(document, session)
     pn.config.exception_handler = controller.failed
@@ -24,6 +27,16 @@ def page() -> pn.Template:
         controller.say(" ".join(sentences))
     pn.state.on_session_destroyed(controller.close)
     return controller.views.template()
+
+
+def _query(document: Document) -> str:
+    """What the address says after its question mark.
+
+    Panel's own `Location` reads it, too, with Python's `int`: digits that `int` does not take end in an error of the
+    server. So the page is served without it, and the link is read from the request.
+    """
+    context = document.session_context
+    return urlsplit(context.request.uri or "").query if context is not None and context.request is not None else ""
 
 
 def session_from_address(query: str) -> tuple[Session, list[str]]:

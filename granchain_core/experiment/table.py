@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import csv
 import dataclasses
-import math
 import re
 from dataclasses import dataclass
 
 from ..errors import BadInput
+from ..text import number_in
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\Z", re.ASCII)
 _LIKE_A_NUMBER = re.compile(r"[+-]?[.,]*\d[\d.,]*([eE][+-]?\d+)?\Z", re.ASCII)
 #: What may be a number with its thousands marked.
 _GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}\Z", re.ASCII)
@@ -133,16 +132,12 @@ def _decimal_comma(data: list[tuple[int, list[str]]], meanings: list[str], names
 
 def _with_point(field: str) -> float | None:
     """What a number means where the point marks decimals and the comma thousands."""
-    return _value(field.replace(",", ""))
+    return number_in(field.replace(",", ""))
 
 
 def _with_comma(field: str) -> float | None:
     """What a number means where the comma marks decimals and the point thousands."""
-    return _value(field.replace(".", "").replace(",", "."))
-
-
-def _value(plain: str) -> float | None:
-    return float(plain) if _NUMBER.match(plain) else None
+    return number_in(field.replace(".", "").replace(",", "."))
 
 
 def _unit_of(place: int, meanings: list[str], names: list[str], expected: Expected) -> str:
@@ -176,8 +171,8 @@ def _header(names: list[str], expected: Expected) -> list[str]:
 def _row(number: int, fields: list[str], comma_decimals: bool) -> tuple[int, list[float]]:
     values = []
     for field in fields:
-        value = _value(field.replace(",", ".") if comma_decimals else field)
-        if value is None or not math.isfinite(value):
+        value = number_in(field.replace(",", ".") if comma_decimals else field)
+        if value is None:
             raise BadInput(f"Line {number}: {field[:30]!r} is not a number.")
         values.append(value)
     return number, values

@@ -9,11 +9,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from ..errors import BadInput, unknown_name
 from ..experiment.table import Expected, Table, read_table
+from ..hdf5 import File, opened
+from ..hdf5.plain import Refused
 from ..integrate import State
 from .record import ForceRecord, checked
 
@@ -24,6 +25,8 @@ FORCE_UNITS = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
 MOST_BYTES = 50_000_000
 #: Most rows accepted.
 MOST_ROWS = 1_000_000
+#: Endings of the names of HDF5 files, whose beginning may be damaged.
+_HDF5 = (".h5", ".hdf5")
 _FORCES = {"force": ("force", "input_force", "f_in"), "output": ("output", "output_force", "f_out")}
 
 
@@ -51,7 +54,7 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
             content = file.read(MOST_BYTES + 1)
     except OSError as problem:
         raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
-    if content.startswith(b"\x89HDF"):
+    if content.startswith(b"\x89HDF") or path.suffix in _HDF5:
         if time_unit is not None or force_unit is not None:
             raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")
         return checked(_from_hdf5(path))
@@ -97,49 +100,34 @@ def _told(record: ForceRecord, units: str) -> ForceRecord:
 
 def _from_hdf5(path: Path) -> ForceRecord:
     """Time, input force and output force of /run or /observation."""
-    try:
-        with h5py.File(path, "r") as file:
-            group = _group(file, path)
-            arrays = {name: _plain(group, name, path) for name in ("time", "input_force", "output_force")}
-    except (OSError, RuntimeError) as problem:
-        raise BadInput(f"{path} cannot be read as HDF5: {problem}.") from None
-    time, force, output = arrays["time"], arrays["input_force"], arrays["output_force"]
-    if time is None or force is None:
-        raise BadInput(f"{path} has no time and input_force in /run; write it with 'granchain run SCENE --out FILE'.")
-    if len({len(a) for a in (time, force, output) if a is not None}) != 1:
-        raise BadInput(f"{path}: time, input_force and output_force are not equally long.")
+    with opened(path, "is not a run or an observation written by granchain") as file:
+        group = _group(file)
+        rows = file.shape(f"{group}/time")
+        if len(rows) != 1 or rows[0] > MOST_ROWS:
+            raise Refused(f"/{group}/time has shape {rows}, expected one row of at most {MOST_ROWS} numbers")
+        time, force, output = (
+            file.numbers(f"{group}/{name}", rows, "any", unit) if name != "output_force" or file.has(f"{group}/{name}")
+            else None for name, unit in (("time", "s"), ("input_force", "N"), ("output_force", "N")))
+        assert time is not None and force is not None
     return _told(checked(ForceRecord(time, force, output)), "HDF5 in s and N")
 
 
-def _group(file: h5py.File, path: Path) -> h5py.Group:
+def _group(file: File) -> str:
+    """The group that holds a force."""
     for name in ("run", "observation"):
-        if isinstance(file.get(name, getlink=True), h5py.HardLink) and isinstance(file[name], h5py.Group):
-            return file[name]
-    raise BadInput(f"{path} has neither a group /run nor /observation; write it with 'granchain run SCENE --out FILE'.")
-
-
-def _plain(group: h5py.Group, name: str, path: Path) -> np.ndarray | None:
-    """One row of numbers stored in this very file: links and external storage could lead to any file."""
-    if name not in group:
-        return None
-    if not isinstance(group.get(name, getlink=True), h5py.HardLink) or not isinstance(group[name], h5py.Dataset):
-        raise BadInput(f"{path}: {name} is not data of this file.")
-    data = group[name]
-    if data.external or data.is_virtual or data.ndim != 1 or data.dtype.kind not in "fiu" or len(data) > MOST_ROWS:
-        raise BadInput(f"{path}: {name} is not one row of at most {MOST_ROWS} numbers stored in the file itself.")
-    return np.asarray(data[()], dtype=float)
+        if file.has(f"{name}/time") and file.has(f"{name}/input_force"):
+            return name
+    raise Refused("neither /run nor /observation has time and input_force; write it with 'granchain run SCENE --out "
+                  "FILE'")
 
 
 def first_state(path: str | Path, beads: int) -> State:
     """The first displacements and velocities in an HDF5 file of granchain, where an observer may start."""
-    path = Path(path)
-    try:
-        with h5py.File(path, "r") as file:
-            group = _group(file, path)
-            rows = [group[name] for name in ("displacement", "velocity")]
-            if any(row.external or row.is_virtual or row.ndim != 2 or row.shape[1] != beads for row in rows):
-                raise BadInput(f"{path} does not hold displacements and velocities of {beads} beads.")
-            u, v = (np.asarray(row[0], dtype=float) for row in rows)
-    except (OSError, KeyError, RuntimeError, AttributeError) as problem:
-        raise BadInput(f"{path} has no state to start from ({problem}); start from rest.") from None
+    with opened(path, "has no state to start from") as file:
+        group = _group(file)
+        shape = (*file.shape(f"{group}/time"), beads)
+        if shape[0] < 1:
+            raise Refused("it has no samples")
+        u, v = (file.numbers(f"{group}/{name}", shape, "any", unit, rows=1)[0]
+                for name, unit in (("displacement", "m"), ("velocity", "m/s")))
     return State(u, v)

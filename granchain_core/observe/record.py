@@ -17,6 +17,7 @@ import numpy as np
 from ..errors import BadInput
 from ..scene import Scene
 from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE
+from ..text import number_in
 
 #: A spacing of more than this factor times the median one is a gap.
 GAP = 1.5
@@ -131,10 +132,10 @@ def _offset(record: ForceRecord, offset: float | str) -> float:
     if offset == "median":
         return float(np.median(record.force))
     try:
-        value = float(offset)
-    except (TypeError, ValueError):
-        value = np.nan
-    if not np.isfinite(value):
+        value = number_in(offset) if isinstance(offset, str) else float(offset)
+    except (TypeError, ValueError, OverflowError):
+        value = None
+    if value is None or not np.isfinite(value):
         raise BadInput(f"offset {str(offset)[:30]!r} is neither a force in newtons nor 'median'.")
     return value
 

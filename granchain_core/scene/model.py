@@ -10,7 +10,8 @@ from typing import Any
 
 from ..errors import BadInput, unknown_name
 from ..quantities import QUANTITIES
-from .description import Bead, Description
+from .checked import checked_fields
+from .description import Description
 from .effects import effects_of, latex
 from .validity import warnings
 
@@ -91,11 +92,8 @@ class Scene(Description):
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> Scene:
-        """The scene that `to_json` described."""
-        pairs = ("ranges", "start_velocity", "preset")
-        return cls(**{**data, "pattern": tuple(Bead(**b) for b in data["pattern"]),
-                      "impurities": tuple((int(i), Bead(**b)) for i, b in data["impurities"]),
-                      **{p: tuple(tuple(x) for x in data[p]) for p in pairs}})
+        """The scene that `to_json` described; `BadInput` where a value could not be that of a scene."""
+        return cls(**checked_fields(data))
 
     @property
     def digest(self) -> str:
@@ -104,7 +102,7 @@ class Scene(Description):
                    if k not in ("name", "title", "look_at", "paper", "ranges", "preset")}
         return hashlib.sha256(json.dumps(physics, sort_keys=True).encode()).hexdigest()[:16]
 
-    def evolve(self, **changes: Any) -> Scene:
+    def evolve(self, /, **changes: Any) -> Scene:
         """This scene with other knobs; `kappa` sets k = κ·K·√A0 with the resulting scene's own A0.
 
         Raises `BadInput` for unknown knobs, values outside their range, and k together with kappa.

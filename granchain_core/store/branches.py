@@ -18,15 +18,23 @@ from typing import Any
 import h5py
 import numpy as np
 
-from ..errors import BadInput
+from ..hdf5 import File, opened
+from ..hdf5.border import entries, finite, one_of, within
+from ..hdf5.plain import Refused
 from ..integrate.methods import CERTIFIED
+from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
 from ..quantities import QUANTITIES
-from ..scene import Scene
-from .files import SCHEMA, _provenance, _scale, _variable, _write
+from .files import _provenance, _scale, _variable, _write
 
 _FORCES = ("max_input_force", "max_output_force", "max_output_force_elastic")
 _NONE = -1
+#: How an arm can have ended, kinds of special points, and what grazes.
+_ENDS = ("", "reached", "returned", "closed", "merged", "lost")
+_KINDS = ("fold", "period_doubling", "neimark_sacker", "grazing")
+_EVENTS = ("", "touch", "separation")
+#: Numbers of one turning point.
+_TURN = 4
 
 
 def save_branch(branch: Branch, path: str | Path) -> Path:
@@ -54,15 +62,9 @@ def save_branch(branch: Branch, path: str | Path) -> Path:
 
 def load_branch(path: str | Path) -> Branch:
     """The branch that `save_branch` wrote, ready to be continued. Raises `BadInput` for a file that is not one."""
-    try:
-        with h5py.File(path, "r") as file:
-            if int(file.attrs["granchain_schema"]) != SCHEMA:
-                raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
-            return _read(file)
-    except BadInput:
-        raise
-    except (OSError, KeyError, TypeError, ValueError, AttributeError, IndexError) as problem:
-        raise BadInput(f"{path} is not a branch written by granchain: {problem}.") from None
+    with opened(path, "is not a branch written by granchain") as file:
+        file.schema()
+        return _read(file)
 
 
 # --- writing ------------------------------------------------------------------------------------------------
@@ -133,45 +135,78 @@ def _special(group: h5py.Group, branch: Branch, special: list[tuple[int, Special
 # --- reading ------------------------------------------------------------------------------------------------
 
 
-def _read(file: h5py.File) -> Branch:
-    told = json.loads(file.attrs["branch"])
-    scene = Scene.from_json(json.loads(file.attrs["scene"]))
+def _read(file: File) -> Branch:
+    told, scene = _told(file.json("branch")), file.scene()
     axis = KnobAxis.of(scene, told["knob"], told["start"], told["end"])
-    points, place = _read_orbits(file["branch"]), file["branch/arm"][()]
-    special, special_place = _read_special(file), file["special/arm"][()]
+    points = _read_orbits(file, "branch", scene.N)
+    place = _places(file, "branch/arm", len(points), len(told["arms"]))
+    special = _read_special(file, scene.N)
+    special_place = _places(file, "special/arm", len(special), len(told["arms"]))
     arms = []
     for number, arm in enumerate(told["arms"]):
         mine = [p for p, where in zip(points, place, strict=True) if where == number]
-        object.__setattr__(mine[-1], "turns", file[f"turns/{number}"][()])
-        arms.append(Arm(int(arm["direction"]), mine,
+        if not mine:
+            raise Refused(f"arm {number} has no orbits")
+        turns = file.numbers(f"turns/{number}", (*file.shape(f"turns/{number}")[:1], _TURN))
+        object.__setattr__(mine[-1], "turns", turns)
+        arms.append(Arm(arm["direction"], mine,
                         [s for s, where in zip(special, special_place, strict=True) if where == number],
-                        float.fromhex(arm["step"]), str(arm["ended"]), str(arm["reason"])))
-    return Branch(axis, int(told["period"]), tuple(arms))
+                        arm["step"], arm["ended"], arm["reason"]))
+    return Branch(axis, told["period"], tuple(arms))
 
 
-def _read_orbits(group: h5py.Group) -> list[BranchPoint]:
-    read = {name: group[name][()] for name in (
-        "knob", "state", "tangent", "slope", "arclength", "multiplier_real", "multiplier_imag", *_FORCES, "closings",
-        "residual", "liouville")}
+def _told(found: Any) -> dict[str, Any]:
+    """The attribute `branch`, each entry of its kind; one or two arms."""
+    arms = found.pop("arms", None) if isinstance(found, dict) else None
+    told = entries("branch", found, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
+    if not isinstance(arms, list) or not 1 <= len(arms) <= 2:
+        raise Refused("its attribute branch does not have one arm or two")
+    if not 1 <= told["period"] <= LONGEST_PERIOD:
+        raise Refused(f"its period {told['period']} is outside 1 to {LONGEST_PERIOD}")
+    told["arms"] = [entries("arm", arm, {"direction": "number", "step": "text", "ended": "text", "reason": "text"})
+                    for arm in arms]
+    for arm in told["arms"]:
+        arm["step"] = finite("step", float.fromhex(arm["step"]))
+        if arm["direction"] not in (-1, 1):
+            raise Refused(f"direction {arm['direction']} is neither 1 nor -1")
+        one_of("ended", arm["ended"], _ENDS)
+    return told
+
+
+def _places(file: File, path: str, count: int, arms: int) -> np.ndarray:
+    """The arm of each row."""
+    return within(f"/{path}", file.numbers(path, (count,), "i"), 0, arms - 1)
+
+
+def _read_orbits(file: File, group: str, n: int) -> list[BranchPoint]:
+    count, longest = file.shape(f"{group}/residual")
+    read = {name: file.numbers(f"{group}/{name}", (count, *width)) for name, width in (
+        ("knob", ()), ("state", (2 * n,)), ("tangent", (2 * n + 1,)), ("slope", (2 * n,)), ("arclength", ()),
+        ("multiplier_real", (2 * n,)), ("multiplier_imag", (2 * n,)), *((force, ()) for force in _FORCES),
+        ("residual", (longest,)), ("liouville", ()))}
+    closings = file.numbers(f"{group}/closings", (count, n + 1), "i")
+    if count and np.isnan(read["residual"][:, :1]).any():
+        raise Refused(f"/{group}/residual has orbits without a residual")
     return [BranchPoint(
         knob=float(read["knob"][i]), x=read["state"][i], tangent=read["tangent"][i], slope=read["slope"][i],
         arclength=float(read["arclength"][i]),
         multipliers=read["multiplier_real"][i] + 1j * read["multiplier_imag"][i],
-        **{force: float(read[force][i]) for force in _FORCES}, closings=read["closings"][i],
+        **{force: float(read[force][i]) for force in _FORCES}, closings=closings[i],
         residuals=tuple(float(r) for r in read["residual"][i] if not np.isnan(r)),
-        liouville=float(read["liouville"][i]), turns=np.zeros((0, 4)),
-    ) for i in range(len(read["knob"]))]
+        liouville=float(read["liouville"][i]), turns=np.zeros((0, _TURN)),
+    ) for i in range(count)]
 
 
-def _read_special(file: h5py.File) -> list[SpecialPoint]:
-    group = file["special"]
-    before, after = _read_orbits(file["special_before"]), _read_orbits(file["special_after"])
-    found = []
-    for i in range(len(before)):
-        real, contact = float(group["multiplier_real"][i]), int(group["contact"][i])
-        found.append(SpecialPoint(
-            kind=group["kind"].asstr()[i], knob=float(group["knob"][i]),
-            interval=(float(group["knob_low"][i]), float(group["knob_high"][i])), before=before[i], after=after[i],
-            multiplier=None if np.isnan(real) else complex(real, float(group["multiplier_imag"][i])),
-            contact=None if contact == _NONE else contact, event=group["event"].asstr()[i] or None))
-    return found
+def _read_special(file: File, n: int) -> list[SpecialPoint]:
+    before, after = (_read_orbits(file, f"special_{side}", n) for side in ("before", "after"))
+    count = len(before)
+    read = {name: file.numbers(f"special/{name}", (count,)) for name in (
+        "knob", "knob_low", "knob_high", "multiplier_real", "multiplier_imag")}
+    contacts = within("/special/contact", file.numbers("special/contact", (count,), "i"), _NONE, n)
+    kinds, events = file.words("special/kind", count, _KINDS), file.words("special/event", count, _EVENTS)
+    return [SpecialPoint(
+        kind=kinds[i], knob=float(read["knob"][i]), interval=(float(read["knob_low"][i]), float(read["knob_high"][i])),
+        before=before[i], after=after[i],
+        multiplier=(None if np.isnan(read["multiplier_real"][i])
+                    else complex(read["multiplier_real"][i], read["multiplier_imag"][i])),
+        contact=None if contacts[i] == _NONE else int(contacts[i]), event=events[i] or None) for i in range(count)]

@@ -15,10 +15,12 @@ import numpy as np
 
 from ..diagram import Axis, Diagram, Grid
 from ..diagram.cells import CELL, REGIMES, empty_cells
-from ..errors import BadInput
+from ..diagram.grid import KNOBS, MOST_CELLS
+from ..hdf5 import File, opened
+from ..hdf5.border import one_of, within
+from ..hdf5.plain import Refused
 from ..quantities import QUANTITIES
-from ..scene import Scene
-from .files import SCHEMA, _provenance, _scale, _variable, _write
+from .files import _provenance, _scale, _variable, _write
 
 _COLUMNS = {  # name: (unit, meaning)
     "max_input_force": ("N", "largest force of the driver on bead 1 in the steady state"),
@@ -62,21 +64,35 @@ def save_diagram(diagram: Diagram, path: str | Path) -> Path:
 
 def load_diagram(path: str | Path) -> Diagram:
     """The diagram that `save_diagram` wrote. Raises `BadInput` for a file that is not one."""
-    try:
-        with h5py.File(path, "r") as file:
-            if int(file.attrs["granchain_schema"]) != SCHEMA:
-                raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
-            y, x = json.loads(file.attrs["map_axes"])
-            grid = Grid(Scene.from_json(json.loads(file.attrs["scene"])), Axis.of(x, file["map"][x][()]),
-                        Axis.of(y, file["map"][y][()]))
-            cells = empty_cells(grid)
-            for name in CELL.names or ():
-                if name != "number" and name in file["map"]:  # earlier versions kept fewer columns
-                    cells[name] = file["map"][name][()].reshape(-1)
-            if "decay" not in file["map"]:  # files written before the two were told apart
-                cells["decay"], cells["multiplier"] = cells["multiplier"].copy(), np.nan
-            return Diagram(grid, cells, float(file.attrs["wall_s"]))
-    except BadInput:
-        raise
-    except (OSError, KeyError, TypeError, ValueError, AttributeError) as problem:
-        raise BadInput(f"{path} is not a map written by granchain: {problem}.") from None
+    with opened(path, "is not a map written by granchain") as file:
+        file.schema()
+        return _read(file)
+
+
+def _read(file: File) -> Diagram:
+    names = file.json("map_axes")
+    if not isinstance(names, list) or len(names) != 2:
+        raise Refused(f"attribute map_axes is {str(names)[:40]!r}, not two knobs")
+    y, x = (one_of("map_axes", name, KNOBS) for name in names)
+    scene, shape = file.scene(), (*file.shape(f"map/{y}"), *file.shape(f"map/{x}"))
+    if len(shape) != 2 or shape[0] * shape[1] > MOST_CELLS:
+        raise Refused(f"its axes have shape {shape}; expected two with at most {MOST_CELLS} cells")
+    axes = (Axis.of(knob, file.numbers(f"map/{knob}", (count,), unit=QUANTITIES[knob].unit))
+            for knob, count in zip((y, x), shape, strict=True))
+    down, across = axes
+    grid = Grid(scene, across, down)
+    cells, kept = empty_cells(grid), [name for name in CELL.names or () if file.has(f"map/{name}")]
+    for name in kept:  # earlier versions kept fewer columns
+        cells[name] = _column(file, name, shape)
+    if "decay" not in kept:  # files written before the two were told apart
+        cells["decay"], cells["multiplier"] = cells["multiplier"].copy(), np.nan
+    return Diagram(grid, cells, file.number("wall_s"))
+
+
+def _column(file: File, name: str, shape: tuple[int, ...]) -> np.ndarray:
+    """One column of all cells; a number that does not fit into its place in the table is refused."""
+    kind, path = CELL[name], f"map/{name}"
+    if kind.kind == "f":
+        return file.numbers(path, shape, unit=_COLUMNS[name][0]).reshape(-1)
+    low, high = (-1, len(REGIMES) - 1) if name == "regime" else (0, np.iinfo(kind).max)
+    return within(f"/{path}", file.numbers(path, shape, "i"), low, high).reshape(-1)

@@ -7,7 +7,8 @@
         error_estimate (of the output force), error_estimate_elastic, error_estimate_input (frequency);
         regime, status, period (frequency)
 The root carries schema version, scene, method, accuracy asked and reached, cost, versions and time of writing. A file
-is written under a temporary name, synced and renamed: there is never half a file under its own name.
+is written under a temporary name, sealed with its checksum (hdf5/seal.py), synced and renamed: there is never half a
+file under its own name.
 """
 
 from __future__ import annotations
@@ -26,6 +27,9 @@ import numba
 import numpy as np
 
 from ..errors import BadInput
+from ..hdf5 import VERSIONS, File, opened, seal
+from ..hdf5.border import SCHEMA, entries, finite, one_of, within
+from ..hdf5.plain import Refused
 from ..integrate.batch import can_share_batch
 from ..integrate.methods import CERTIFIED, LIVE
 from ..kernels.width import machine
@@ -37,7 +41,10 @@ from ..scene.validity import overlap_warnings
 from ..steady.curve import Curve
 from ..version import __version__
 
-SCHEMA = 1
+#: What a run's `status` and `start` can be, and the name of its regime.
+STATUSES = ("done", "accuracy-not-reached", "over-budget")
+STARTS = ("rest", "initial velocity", "given state")
+REGIMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 _RUN = {  # name: (dimensions, unit, meaning)
     "displacement": (("time", "bead"), "m", "bead displacement from its rest position"),
     "velocity": (("time", "bead"), "m/s", "bead velocity"),
@@ -177,49 +184,68 @@ def load(path: str | Path) -> Run:
     ...
     granchain_core.errors.BadInput: nothing-there.h5 is not a run written by granchain: ...
     """
-    try:
-        return _read(path)
-    except BadInput:
-        raise
-    except (OSError, KeyError, TypeError, ValueError, AttributeError) as problem:
-        raise BadInput(f"{path} is not a run written by granchain: {problem}.") from None
+    with opened(path, "is not a run written by granchain") as file:
+        file.schema()
+        return _read(file)
 
 
-def _read(path: str | Path) -> Run:
-    """The run in a file; errors of h5py, json and the scene pass through."""
-    with h5py.File(path, "r") as file:
-        if int(file.attrs["granchain_schema"]) != SCHEMA:
-            raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
-        group = file["run"]
-        arrays = {n: group[n][()] for n in ("time", "displacement", "velocity", "force", "drive_displacement")}
-        attrs, jumps = dict(file.attrs), _read_jumps(group)
-    regime = json.loads(attrs["regime"])
-    regime["lyapunov"] = tuple(regime["lyapunov"]) if regime["lyapunov"] else None
-    if "decay" not in regime:  # files written before decay and |μ| were told apart
-        regime["decay"] = regime.pop("multiplier")
-    scene = Scene.from_json(json.loads(attrs["scene"]))
-    rows = len(arrays["time"])
-    for name, width in (("displacement", (scene.N,)), ("velocity", (scene.N,)), ("force", (scene.N + 1,)),
-                        ("drive_displacement", ())):
-        if arrays[name].shape != (rows, *width):
-            raise BadInput(f"{path}: {name} has shape {arrays[name].shape}, expected {(rows, *width)}.")
+def _read(file: File) -> Run:
+    """The run in a file."""
+    scene, rows = file.scene(), _rows(file)
+    arrays = {name: file.numbers(f"run/{name}", (rows, *width), unit=unit) for name, width, unit in (
+        ("time", (), "s"), ("displacement", (scene.N,), "m"), ("velocity", (scene.N,), "m/s"),
+        ("force", (scene.N + 1,), "N"), ("drive_displacement", (), "m"))}
+    largest = {name: finite(name, file.number(name)) for name in _MAXIMA}
     return Run(
-        scene=scene, samples=int(attrs["samples_per_period"]),
-        status=str(attrs["status"]), start=str(attrs.get("start", "rest")),
-        regime=Regime(**regime), cost=Cost(**json.loads(attrs["cost"])),
-        error_estimate=_or_none(attrs["accuracy_reached"]), energy_residual=_or_none(attrs["energy_residual"]),
-        max_input_force=float(attrs["max_input_force"]), max_output_force=float(attrs["max_output_force"]),
-        max_output_force_elastic=float(attrs["max_output_force_elastic"]), jumps=jumps,
-        force_errors=ForceErrors(*(_or_none(attrs.get(name, np.nan)) for name in _ERRORS)), **arrays,
+        scene=scene, samples=file.whole("samples_per_period", 1),
+        status=one_of("status", file.text("status"), STATUSES),
+        start=one_of("start", file.text("start") if file.stated("start") else STARTS[0], STARTS),
+        regime=_regime(file), cost=_cost(file), jumps=_read_jumps(file, scene.N),
+        error_estimate=_or_none(file.number("accuracy_reached")),
+        energy_residual=_or_none(file.number("energy_residual")),
+        force_errors=ForceErrors(*(_or_none(file.number(name, absent=np.nan)) for name in _ERRORS)),
+        **arrays, **largest,  # type: ignore[arg-type]  # names of its fields
     )
 
 
-def _read_jumps(group: h5py.Group) -> Jumps:
+def _rows(file: File) -> int:
+    """How many samples a run has, at least one."""
+    shape = file.shape("run/time")
+    if len(shape) != 1 or shape[0] < 1:
+        raise Refused(f"/run/time has shape {shape}, expected one row of samples")
+    return shape[0]
+
+
+def _cost(file: File) -> Cost:
+    return Cost(**entries("cost", file.json("cost"), {"wall_s": "number", "steps": "whole", "rhs": "whole",
+                                                      "events": "whole", "method": "text"}))
+
+
+def _regime(file: File) -> Regime:
+    found = file.json("regime")
+    if isinstance(found, dict) and "decay" not in found:  # files written before decay and |μ| were told apart
+        found["decay"] = found.pop("multiplier", None)
+    lyapunov = found.pop("lyapunov", None) if isinstance(found, dict) else None
+    told = entries("regime", found, {
+        "name": "text", "period": "whole?", "decay": "number?", "distance": "number?", "periods_run": "whole",
+        "multiplier": "number?", "followed": "flag?", "approaches": "whole?"})
+    one_of("regime", told["name"], REGIMES)
+    if lyapunov is not None:
+        mean, error = lyapunov
+        told["lyapunov"] = tuple(entries("regime.lyapunov", {"mean": mean, "error": error},
+                                         {"mean": "number", "error": "number"}).values())
+    return Regime(**{**told, "followed": bool(told["followed"])})
+
+
+def _read_jumps(file: File, beads: int) -> Jumps:
     """The jumps of a run; files written before they were kept have none."""
-    if "jump_time" not in group:
+    if not file.has("run/jump_time"):
         return Jumps()
-    return Jumps(group["jump_time"][()], group["jump_contact"][()], group["jump_force"][()],
-                 *(int(group["jump_time"].attrs[name]) for name in ("missing", "unresolved")))
+    count = file.shape("run/jump_time")[:1]
+    contact = file.numbers("run/jump_contact", count, "i")
+    return Jumps(file.numbers("run/jump_time", count, unit="s"), within("/run/jump_contact", contact, 0, beads),
+                 file.numbers("run/jump_force", count, unit="N"),
+                 *(file.whole(name, 0, "run/jump_time") for name in ("missing", "unresolved")))
 
 
 def _or_nan(value: float | None) -> float:
@@ -281,10 +307,9 @@ def _write(path: str | Path, write: Callable[[h5py.File], None]) -> Path:
     path = Path(path)
     temporary = _temporary(path)
     try:
-        with h5py.File(temporary, "w") as file:
+        with h5py.File(temporary, "w", libver=VERSIONS) as file:
             write(file)
-        with open(temporary, "rb") as done:
-            os.fsync(done.fileno())
+        seal(temporary)
         os.replace(temporary, path)
     except OSError as problem:
         temporary.unlink(missing_ok=True)

@@ -18,6 +18,7 @@ from app.cli import main
 from app.page.share import decode
 from granchain_core import BadInput, NumbersFailed, run, scene
 from granchain_core.experiment import read_measured_csv
+from granchain_core.hdf5 import seal
 from granchain_core.kernels.width import machine
 from granchain_core.store import load, save
 
@@ -181,9 +182,11 @@ def stored(tmp_path_factory):
     return save(run(scene("sec2").evolve(N=2, f=3000.0), periods=0, record=1, samples=4), path)
 
 
-@pytest.mark.parametrize("harm", ["no scene", "scene no json", "scene other", "no regime", "cost no json", "schema word",
-                                  "time group", "displacement short"])
-def test_a_harmed_file_is_bad_input(harm, stored, tmp_path):
+@pytest.mark.parametrize(("harm", "about"), [
+    ("no scene", "no attribute scene"), ("scene no json", "scene is not JSON"), ("scene other", "no field"),
+    ("no regime", "no attribute regime"), ("cost no json", "cost is .* not an object"), ("schema word", "granchain_schema"),
+    ("time group", "/run/time is not a dataset"), ("displacement short", r"shape \(3,\), expected \(5, 2\)")])
+def test_a_harmed_file_is_bad_input(harm, about, stored, tmp_path):
     """Whatever is missing or wrong in it, `load` says that it is not a run written by granchain."""
     path = tmp_path / "b.h5"
     path.write_bytes(stored.read_bytes())
@@ -206,5 +209,6 @@ def test_a_harmed_file_is_bad_input(harm, stored, tmp_path):
         else:
             del file["run/displacement"]
             file["run/displacement"] = np.zeros(3)
-    with pytest.raises(BadInput):
+    seal(path)  # h5py removed it
+    with pytest.raises(BadInput, match=f"b.h5 is not a run written by granchain: .*{about}"):
         load(path)

@@ -94,7 +94,7 @@ def test_orbit_prints_the_contracts_keys(capsys: pytest.CaptureFixture[str]) -> 
     (["run", "sec2", "--method", "euler"], "Unknown method 'euler'"),
     (["run", "sec2", "--periods", "-1"], "nearest valid value is 0"),
     (["run", "sec2", "--record", "0"], "nearest valid value is 1"),
-    (["run", "sec2", "--samples", "x"], "invalid int value"),
+    (["run", "sec2", "--samples", "x"], "'x' is not a whole number"),
     (["run", "sec2", *SHORT, "--out", "/no/such/folder/a.h5"], "Cannot write /no/such/folder/a.h5"),
     (["run"], "SCENE"),
     (["run", "sec2", "--colour"], "unrecognized arguments"),

@@ -1,0 +1,100 @@
+"""A file read in a process of its own, with limits: what a damaged file does to HDF5 ends there."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import plain
+from .plain import Refused, Stored
+
+#: Time that opening and reading may take, and one second more for so many bytes of the file.
+_SECONDS, _BYTES_A_SECOND = 10, 20_000_000
+#: Longest answer that is not numbers [bytes].
+_LONGEST = 64_000_000
+
+
+class Child:
+    """The same as `Plain`, by a child that is ended with this object, after too long, or when this process ends."""
+
+    def __init__(self, path: str) -> None:
+        seconds = _SECONDS + Path(path).stat().st_size // _BYTES_A_SECOND
+        self._seconds, self._late = seconds, False
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", plain.__file__, os.path.abspath(path), str(seconds)], stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        self._clock = threading.Timer(seconds, self._end_late)
+        self._clock.daemon = True
+        self._clock.start()
+        try:
+            self._answer()
+        except BaseException:
+            self.close()
+            raise
+
+    def close(self) -> None:
+        """End the child."""
+        self._clock.cancel()
+        self._process.kill()
+        for pipe in (self._process.stdin, self._process.stdout):
+            with contextlib.suppress(OSError):
+                pipe.close()  # type: ignore[union-attr]  # both are pipes
+        self._process.wait()
+
+    def attribute(self, path: str, name: str) -> float | int | str | None:
+        """As `Plain.attribute`."""
+        return self._ask("attribute", path, name)
+
+    def stored(self, path: str) -> Stored | None:
+        """As `Plain.stored`."""
+        found = self._ask("stored", path)
+        return found and Stored(str(found["type"]), tuple(found["shape"]), found["units"])
+
+    def words(self, path: str) -> list[str]:
+        """As `Plain.words`."""
+        return [str(word) for word in self._ask("words", path)]
+
+    def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
+        """As `Plain.numbers`."""
+        found = self._ask("numbers", path, rows)
+        kind, shape = np.dtype(found["type"]), tuple(found["shape"])
+        size = math.prod(shape) * kind.itemsize
+        content = self._process.stdout.read(size)  # type: ignore[union-attr]
+        if len(content) != size:
+            raise self._ended()
+        return np.frombuffer(bytearray(content), kind).reshape(shape)
+
+    def _ask(self, *words: Any) -> Any:
+        with contextlib.suppress(OSError):  # a child that has ended is told below
+            self._process.stdin.write(json.dumps(words).encode() + b"\n")  # type: ignore[union-attr]
+            self._process.stdin.flush()  # type: ignore[union-attr]
+        return self._answer()
+
+    def _answer(self) -> Any:
+        line = self._process.stdout.readline(_LONGEST)  # type: ignore[union-attr]
+        if not line.endswith(b"\n"):
+            raise self._ended()
+        answer = json.loads(line)
+        if "refused" in answer:
+            raise Refused(answer["refused"])
+        return answer["found"]
+
+    def _end_late(self) -> None:
+        self._late = True
+        self._process.kill()
+
+    def _ended(self) -> Refused:
+        """Why the child says nothing more."""
+        self._process.kill()
+        if self._late:
+            return Refused(f"reading it took more than {self._seconds} s, as only a damaged file does")
+        return Refused(f"HDF5 could not bear it (the process that read it ended with status {self._process.wait()})")

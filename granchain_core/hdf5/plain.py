@@ -1,0 +1,242 @@
+"""What is read of an HDF5 file: numbers and words that stand in this very file, each as one contiguous block.
+
+HDF5 can lead a reader elsewhere: links to other objects and files, numbers in external files, virtual datasets, filters
+that are loaded as plug-ins, shapes of terabytes that were never written. None of it is followed. Every part of a path
+is looked at before it is opened, and a size is bounded by that of the file before memory is allocated.
+
+The module imports nothing of granchain, because it is also a program: child.py runs it in a process of its own, which
+answers requests, one JSON object a line, on its standard output.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import sys
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from typing import Any, BinaryIO
+
+import h5py
+import numpy as np
+from h5py import h5a, h5d, h5g, h5l, h5o, h5s, h5t
+
+#: Largest attribute [bytes]: a scene of ten thousand different beads has about one million.
+_MOST_ATTRIBUTE = 16_000_000
+#: Most words in one dataset, and dimensions.
+_MOST_WORDS, _MOST_DIMENSIONS = 100_000, 3
+#: What stands in the file for a word of variable length [bytes].
+_REFERENCE = 16
+_NUMBERS = (h5t.FLOAT, h5t.INTEGER)
+#: Memory that a child may take beside what it starts with and the file's own size, three times [bytes].
+_BESIDE = 256_000_000
+
+
+class Refused(ValueError):
+    """Something in a file that is not followed or not read; the message says which and why."""
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A dataset: its NumPy type ("text" for words), its shape, and its attribute `units`, if it has one."""
+
+    type: str
+    shape: tuple[int, ...]
+    units: str | None = None
+
+
+class Plain:
+    """An open file, read by `attribute`, `stored`, `numbers` and `words`."""
+
+    def __init__(self, path: str) -> None:
+        self._size = os.path.getsize(path)
+        self._file = h5py.File(path, "r")
+        self._stored: dict[str, Stored | None] = {}
+
+    def close(self) -> None:
+        """Close the file; what is damaged may not close, and is left to the end of the process."""
+        with contextlib.suppress(Exception):
+            self._file.close()
+
+    def attribute(self, path: str, name: str) -> float | int | str | None:
+        """An attribute of the root or of a dataset, which must be one number or one text; None where it is absent."""
+        found = self._find(path)
+        if found is None or not h5a.exists(found, name.encode()):
+            return None
+        attribute, called = h5a.open(found, name.encode()), f"attribute {name} of /{path}"
+        if attribute.get_space().get_simple_extent_type() != h5s.SCALAR:
+            raise Refused(f"{called} is not one value")
+        if attribute.get_type().get_class() not in (*_NUMBERS, h5t.STRING):
+            raise Refused(f"{called} is neither a number nor a text")
+        if attribute.get_storage_size() > min(_MOST_ATTRIBUTE, self._size):
+            raise Refused(f"{called} has {attribute.get_storage_size()} bytes, more than are read")
+        return _value(h5py.AttributeManager(h5py.Group(found) if isinstance(found, h5g.GroupID) else
+                                            h5py.Dataset(found))[name], called)
+
+    def stored(self, path: str) -> Stored | None:
+        """What a dataset is, without reading it; None where there is none. Raises `Refused` where it is not plain."""
+        if path not in self._stored:
+            self._stored[path] = self._look(path)
+        return self._stored[path]
+
+    def _look(self, path: str) -> Stored | None:
+        found = self._find(path)
+        if found is None:
+            return None
+        if not isinstance(found, h5d.DatasetID):
+            raise Refused(f"/{path} is not a dataset")
+        kind = found.get_type().get_class()
+        if kind == h5t.STRING:
+            name = "text"
+        elif kind in _NUMBERS and found.dtype.kind in "fiu" and found.dtype.itemsize <= 8:
+            name = found.dtype.str
+        else:
+            raise Refused(f"/{path} holds neither numbers nor words")
+        shape = self._shape(found, path)
+        units = self.attribute(path, "units")
+        return Stored(name, shape, None if units is None else str(units))
+
+    def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
+        """The numbers of a dataset or only its first `rows`, as they are stored."""
+        stored = self._described(path)
+        if stored.type == "text":
+            raise Refused(f"/{path} holds words where numbers are expected")
+        data = h5py.Dataset(self._find(path))
+        return np.ascontiguousarray(data[()] if rows is None else data[:rows])
+
+    def words(self, path: str) -> list[str]:
+        """The words of a one-dimensional dataset. They are read one by one, because many may point to the same text."""
+        stored, total, found = self._described(path), 0, []
+        if stored.type != "text" or len(stored.shape) != 1 or stored.shape[0] > _MOST_WORDS:
+            raise Refused(f"/{path} is not one row of at most {_MOST_WORDS} words")
+        data = h5py.Dataset(self._find(path))
+        for place in range(stored.shape[0]):
+            found.append(str(_value(data[place], f"/{path}")))
+            total += len(found[-1])
+            if total > self._size:
+                raise Refused(f"/{path} holds more text than the file has bytes")
+        return found
+
+    def _described(self, path: str) -> Stored:
+        stored = self.stored(path)
+        if stored is None:
+            raise Refused(f"there is no /{path}")
+        return stored
+
+    def _find(self, path: str) -> Any:
+        """The identifier of an object, reached by hard links only; None where a part of the path is absent."""
+        here, walked = h5g.open(self._file.id, b"/"), ""
+        for part in filter(None, path.split("/")):
+            if not isinstance(here, h5g.GroupID):
+                raise Refused(f"{walked} is not a group")
+            walked += f"/{part}"
+            if not here.links.exists(part.encode()):
+                return None
+            if here.links.get_info(part.encode()).type != h5l.TYPE_HARD:
+                raise Refused(f"{walked} is a link, and only what is stored in the file itself is read")
+            here = h5o.open(here, part.encode())
+        return here
+
+    def _shape(self, found: h5d.DatasetID, path: str) -> tuple[int, ...]:
+        """The shape of a dataset that is one block within this file."""
+        properties, type_ = found.get_create_plist(), found.get_type()
+        variable = type_.get_class() == h5t.STRING and type_.is_variable_str()
+        size = _REFERENCE if variable else type_.get_size()
+        if properties.get_external_count():
+            raise Refused(f"/{path} stands in another file, and only what is stored in the file itself is read")
+        if properties.get_layout() not in (h5d.CONTIGUOUS, h5d.COMPACT):
+            raise Refused(f"/{path} is virtual, compressed or in pieces, and only what is stored in the file itself as "
+                          "one block is read")
+        if found.get_space().get_simple_extent_type() != h5s.SIMPLE or len(found.shape) > _MOST_DIMENSIONS:
+            raise Refused(f"/{path} is not a row or a table")
+        needed = math.prod(found.shape) * size  # of Python's integers, which do not overflow
+        if needed > self._size:
+            raise Refused(f"/{path} has shape {found.shape}, {needed} bytes in a file of {self._size}")
+        if needed and found.get_storage_size() != needed:
+            raise Refused(f"/{path} has shape {found.shape}, of which not everything is stored")
+        offset = found.get_offset() if properties.get_layout() == h5d.CONTIGUOUS else 0
+        if needed and (offset is None or offset + needed > self._size):
+            raise Refused(f"/{path} ends beyond the file")
+        return tuple(int(n) for n in found.shape)
+
+
+def _value(value: Any, called: str) -> float | int | str:
+    """One number or text as Python's own."""
+    if isinstance(value, bytes):
+        value = value.decode("utf-8")
+    if isinstance(value, str):
+        value.encode("utf-8")  # HDF5 does not check that a text is one
+        return value
+    if isinstance(value, np.integer):
+        return int(value)
+    if isinstance(value, np.floating):
+        return float(value)
+    raise Refused(f"{called} is neither a number nor a text")
+
+
+# --- the same as a program --------------------------------------------------------------------------------
+
+
+def serve(file: Plain, requests: Iterable[bytes], out: BinaryIO) -> None:
+    """Answer requests: one line of JSON each and, for numbers, their bytes after it."""
+    for line in requests:
+        name, *words = json.loads(line)
+        content: bytes | memoryview = b""
+        try:
+            found = getattr(file, name)(*words)
+            if isinstance(found, np.ndarray):
+                content = found.data.cast("B") if found.size else b""
+                found = {"type": found.dtype.str, "shape": found.shape}
+            elif isinstance(found, Stored):
+                found = asdict(found)
+            answer = {"found": found}
+        except Exception as problem:  # whatever HDF5 raises for damaged bytes: the parent says it
+            answer = {"refused": str(problem) if isinstance(problem, Refused) else described(problem)}
+        out.write(json.dumps(answer).encode() + b"\n")
+        out.write(content)
+        out.flush()
+
+
+def described(problem: BaseException) -> str:
+    """An error of a library in a few words."""
+    if isinstance(problem, MemoryError):
+        return "it asks for more memory than there is"
+    if isinstance(problem, RecursionError):
+        return "it is nested too deeply"
+    return " ".join(str(problem).split())[:200].rstrip(".") or type(problem).__name__
+
+
+def limit(seconds: int, size: int) -> None:
+    """Let the system end this process after so much computing, and refuse it memory beyond what a file of `size` needs.
+
+    Systems other than Linux do not say how much memory a process has; there only the time is limited.
+    """
+    try:
+        import resource
+    except ImportError:
+        return
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    with contextlib.suppress(OSError), open("/proc/self/statm", encoding="ascii") as told:
+        most = int(told.read().split()[0]) * resource.getpagesize() + _BESIDE + 3 * size
+        resource.setrlimit(resource.RLIMIT_AS, (most, most))
+
+
+def main() -> None:
+    """Open the file that is named, under limits, and answer until the parent closes the pipe."""
+    path = sys.argv[1]
+    limit(int(sys.argv[2]), os.path.getsize(path))
+    try:
+        file = Plain(path)
+    except Exception as problem:  # as above
+        sys.stdout.buffer.write(json.dumps({"refused": described(problem)}).encode() + b"\n")
+        return
+    sys.stdout.buffer.write(b'{"found": null}\n')
+    sys.stdout.buffer.flush()
+    serve(file, sys.stdin.buffer, sys.stdout.buffer)
+    os._exit(0)  # a damaged file may not close
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""The seal of a file: SHA-256 of all its bytes in a last line after them, compared before HDF5 sees the file.
+
+HDF5 keeps its own length and ignores what follows, so h5py, xarray, h5dump and everybody else open a sealed file as
+any other. h5py removes the line when it opens a file for writing. Files with a seal have HDF5's superblock of version
+2, those of earlier versions of granchain version 0 and no seal: a sealed file cannot lose its seal and pass for an old
+one.
+
+The seal finds damage and careless changes. It is no signature: who forges a file can seal it, too.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from pathlib import Path
+from typing import BinaryIO
+
+from .plain import Refused
+
+#: Bounds of the HDF5 version whose superblock (version 2) tells sealed files from older ones; since HDF5 1.8 (2008).
+VERSIONS = ("v108", "v108")
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+_LINE = "\ngranchain: SHA-256 of the {:020d} bytes before this line is {}\n"
+_PATTERN = re.compile(rb"\ngranchain: SHA-256 of the (\d{20}) bytes before this line is ([0-9a-f]{64})\n")
+_LENGTH = len(_LINE.format(0, "0" * 64))
+_BLOCK = 1 << 20
+
+
+def seal(path: Path) -> None:
+    """Append the seal to a complete file and wait until the disk has it."""
+    with path.open("r+b") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.write(_LINE.format(size, _digest(file, size)).encode())
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def is_sealed(path: Path) -> bool:
+    """Whether a file has its seal, which fits; False for a file of an earlier version. Raises `Refused` for damage."""
+    if not path.is_file():
+        path.stat()  # says why, if it is not there
+        raise Refused("it is not a file")
+    with path.open("rb") as file:
+        head = file.read(len(_SIGNATURE) + 1)
+        if head[:-1] != _SIGNATURE:
+            raise Refused("it is not an HDF5 file, or its beginning is damaged")
+        size = file.seek(0, os.SEEK_END) - _LENGTH
+        file.seek(max(size, 0))
+        found = _PATTERN.fullmatch(file.read(_LENGTH))
+        if found is None:
+            if head[-1] == 0:
+                return False
+            raise Refused("the line with its checksum is missing: the file is damaged, cut short, or was changed by "
+                          "another program")
+        if int(found[1]) != size or found[2].decode() != _digest(file, size):
+            raise Refused("its checksum does not fit: the file is damaged or was changed by another program")
+    return True
+
+
+def _digest(file: BinaryIO, size: int) -> str:
+    """SHA-256 of the first `size` bytes."""
+    digest = hashlib.sha256()
+    file.seek(0)
+    while size > 0 and (block := file.read(min(_BLOCK, size))):
+        digest.update(block)
+        size -= len(block)
+    return digest.hexdigest()

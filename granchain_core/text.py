@@ -1,0 +1,30 @@
+"""The one way from a text to a number: command line, links, fields of the page and CSV files all read numbers here.
+
+Python's own `float` and `int` take more than a person means (`1_000`, `١٠`, `１`, `nan`), and `int` raises an error of
+its own for 5,000 digits.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_WHOLE = re.compile(r"[+-]?[0-9]+")
+#: Longest text that is read as a number [characters]: a double written out has at most some 770 digits, 25 are usual.
+_LONGEST = 400
+
+
+def number_in(text: str) -> float | None:
+    """The finite number that a text is, written with ASCII digits, a point and an exponent; None for anything else."""
+    plain = text.strip(" \t")
+    if len(plain) > _LONGEST or not _NUMBER.fullmatch(plain):
+        return None
+    value = float(plain)
+    return value if math.isfinite(value) else None
+
+
+def whole_in(text: str) -> int | None:
+    """The whole number that a text is, written with ASCII digits alone; None for anything else."""
+    plain = text.strip(" \t")
+    return int(plain) if len(plain) <= _LONGEST and _WHOLE.fullmatch(plain) else None

@@ -1,0 +1,125 @@
+"""Numbers from text: one reading of them at the command line, in links and in files, and a sentence for what is none."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from pathlib import Path
+
+import h5py
+import pytest
+from tornado.httpclient import AsyncHTTPClient
+
+from app.cli import main
+from app.page import entry
+from app.page.share import decode
+from app.serve.server import server_at
+from granchain_core import BadInput, Scene, run, scene
+from granchain_core.experiment import read_measured_csv
+from granchain_core.store import load, save
+from granchain_core.text import number_in, whole_in
+
+#: What Python's float or int takes or stumbles over, and a person does not mean: digits joined by underscores,
+#: full-width, Arabic and superscript digits, words, and more digits than any number has.
+ODD = ["1_000", "１０００", "٣٤٠", "²", "nan", "inf", "0x10", "1e5_0", "1" * 5000, "1e999", "", "１e3"]
+WHOLE = ["１", "1_0", "٣", "²", "1.0", "1e1", "", "1" * 5000]
+
+
+@pytest.mark.parametrize(("text", "value"), [("340", 340.0), (" +3.4e2 ", 340.0), (".5", 0.5), ("5.", 5.0), ("-1E-3", -1e-3),
+                                             ("0" * 300 + "7", 7.0)])
+def test_a_number_is_what_a_person_writes(text: str, value: float) -> None:
+    assert number_in(text) == value
+
+
+@pytest.mark.parametrize("text", ODD)
+def test_odd_digits_are_no_number_anywhere(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """The same border for a knob, an option, a link, a CSV file; each says so in one sentence."""
+    assert number_in(text) is None
+    for words in (["run", "sec2", "--set", f"f={text}"], ["curve", "sec2", "--points", "2", "--from", text, "--to", "900"],
+                  ["map", "sec2", "--x", f"f={text}:900:2", "--y", "A0=1e-7:1e-6:2", "--out", "never.h5"],
+                  ["branch", "sec2", "--knob", "f", "--from", "340", "--to", text], ["run", "sec2", "--budget", text]):
+        assert main(words) == 2
+        said = capsys.readouterr().err
+        assert len(said.splitlines()) == 1 and "number" in said and len(said) < 300
+    with pytest.raises(BadInput, match="number"):
+        read_measured_csv(f"frequency_Hz;force_N\n1;2\n{text};3")
+
+
+@pytest.mark.parametrize("text", [text for text in ODD if len(text) < 1000])
+def test_odd_digits_in_a_link_are_refused_and_the_rest_of_it_counts(text: str) -> None:
+    shown, _, refused = decode(f"v=1&scene=sec2&f={text}&D=77")
+    assert shown == scene("sec2").evolve(D=77.0) and len(refused) == 1
+
+
+@pytest.mark.parametrize("text", WHOLE)
+def test_odd_digits_are_no_whole_number(text: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """`serve --port １` listened on 1."""
+    assert whole_in(text) is None
+    for words in (["serve", f"--port={text}"], ["run", "sec2", f"--periods={text}"], ["orbit", "sec2", f"--seed={text}"],
+                  ["map", "sec2", "--x", f"f=300:900:{text}", "--y", "A0=1e-7:1e-6:2", "--out", "never.h5"]):
+        assert main(words) == 2
+        said = capsys.readouterr().err
+        assert len(said.splitlines()) == 1 and "whole number" in said
+
+
+@pytest.mark.parametrize("name", ["self", "changes", "cls", "scene", "f ", "__class__", "F"])
+def test_a_name_that_is_no_knob_is_said(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """`self` is the name of an argument of the method that changes knobs."""
+    assert main(["run", "sec2", "--set", f"{name}=1"]) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1 and "Unknown knob" in said
+    if name != "scene":  # a field of links
+        _, _, refused = decode(f"v=1&scene=sec2&{name}=1")
+        assert len(refused) == 1 and "Unknown knob" in refused[0]
+    with pytest.raises(BadInput, match="Unknown knob"):
+        scene("sec2").evolve(**{name: 1})
+
+
+@pytest.mark.parametrize("value", ["1_000", "１０００", "340", float("nan"), float("inf"), -1, True, None, [340.0], {}, 1e300])
+def test_a_scene_in_a_file_goes_through_the_same_border(value: object, tmp_path: Path) -> None:
+    """Its numbers are JSON's: a text that looks like one is refused as well."""
+    path = save(run(scene("sec2").evolve(N=2, f=3000.0), periods=0, record=1, samples=4), tmp_path / "a.h5")
+    old = tmp_path / "old.h5"
+    with h5py.File(path) as new, h5py.File(old, "w") as file:
+        for name in new:
+            new.copy(name, file)
+        file.attrs.update(new.attrs)
+        told = json.loads(file.attrs["scene"])
+        file.attrs["scene"] = json.dumps({**told, "f": value})
+    with pytest.raises(BadInput, match=r"is not a run written by granchain: (The scene's f must be|drive frequency f)"):
+        load(old)
+
+
+@pytest.mark.parametrize(("field", "value"), [
+    ("wall", "nowall"), ("wall", "1.5"), ("N", 2.5), ("N", 10**400), ("dissipation", "self"), ("tension", 1), ("accuracy", 0),
+    ("reference_overlap", 0.0), ("pattern", []), ("pattern", [{"mass": 1.0}]), ("name", 3), ("self", 1), ("impurities", [[3, {}]]),
+    ("pattern", [{"mass": -1.0, "radius": 1.0, "young": 1e9, "poisson": 0.3}]), ("start_velocity", [[3, 1.0]]),
+    ("pattern", [{"mass": 1.0, "radius": 1.0, "young": 1e9, "poisson": 0.7}]), ("start_velocity", [[1, float("nan")]]),
+    ("ranges", [["self", 0.0, 1.0]]), ("preset", [["f", "x"]]), ("ranges", 3), ("title", "x" * 20_000), ("start_velocity", [[1]])])
+def test_no_other_value_of_a_scene_is_taken_unchecked(field: str, value: object) -> None:
+    plain = scene("sec2").evolve(N=2).to_json()
+    assert Scene.from_json(plain) == scene("sec2").evolve(N=2)
+    with pytest.raises(BadInput):
+        Scene.from_json({**plain, field: value})
+    with pytest.raises(BadInput, match="no field f"):
+        Scene.from_json({name: kept for name, kept in plain.items() if name != "f"})
+
+
+@pytest.mark.parametrize("query", ["self=1", "f=" + "1" * 5000, "f=%C2%B2", "f=1_000", "f=%EF%BC%91", "N=%D9%A3"])
+def test_the_page_opens_whatever_the_address_says(query: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a browser asks for it; Panel's own reading of addresses answered some of these with an error of the server."""
+    seen: list[list[str]] = []
+    monkeypatch.setattr(entry.COMPILER, "prepare", lambda scene: None)
+    monkeypatch.setattr(entry.Controller, "say", lambda self, sentence: seen.append([sentence]))
+
+    async def asked() -> int:
+        server = server_at(0, "127.0.0.1")
+        server.start()
+        try:
+            answer = await AsyncHTTPClient().fetch(f"http://127.0.0.1:{server.port}/?{query}", raise_error=False)
+            return answer.code
+        finally:
+            server.stop(wait=False)
+
+    assert asyncio.run(asked()) == 200
+    assert len(seen) == 1 and seen[0][0].endswith(".")

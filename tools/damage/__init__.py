@@ -1,0 +1,1 @@
+"""Damage: result files harmed at random, and what their readers make of them."""

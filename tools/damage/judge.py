@@ -1,0 +1,103 @@
+"""The verdict on one harmed file, by a reader in a process of its own that is ended when it hangs."""
+
+from __future__ import annotations
+
+import multiprocessing
+import tempfile
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from granchain_core import BadInput
+
+from .harms import DAMAGE, HARMS, LEADING, SWAPPED, harm
+from .kinds import KINDS, made, told
+
+#: Time after which a reader counts as hung [s]: three times the limit of a child that reads an old file.
+HANGS = 30.0
+REFUSED, SAME, WRONG, OTHER, TRACEBACK, HANG = (
+    "refused with a sentence", "read, the same numbers", "wrong numbers", "forged values read", "traceback", "hang")
+OUTCOMES = (REFUSED, SAME, WRONG, OTHER, TRACEBACK, HANG)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What came of one harmed file."""
+
+    kind: str
+    sealed: bool
+    harm: str
+    index: int
+    outcome: str
+    sentence: str
+
+
+def read(kind: str, path: Path, name: str, true: Any) -> tuple[str, str]:
+    """The outcome of reading a file to which harm `name` was done, and what was said."""
+    try:
+        found = told(KINDS[kind].read(path))
+    except BadInput as refusal:
+        sentence = str(refusal)
+        single = "\n" not in sentence and sentence.endswith(".") and len(sentence) < 800
+        return (REFUSED if single else TRACEBACK), sentence
+    except BaseException as problem:  # whatever a reader lets through is what is looked for
+        return TRACEBACK, repr(problem)
+    if found == true:
+        return SAME, ""
+    return (WRONG if name in (*DAMAGE, SWAPPED, *LEADING) else OTHER), ""
+
+
+def _work(pipe: Connection) -> None:
+    """In a process of its own: read files as long as they come."""
+    while True:
+        kind, path, name, true = pipe.recv()
+        pipe.send(read(kind, Path(path), name, true))
+
+
+class Reader:
+    """A process that reads; it is ended and begun again when a file keeps it too long or ends it."""
+
+    def __init__(self) -> None:
+        self._process: Any = None
+
+    def read(self, *question: Any) -> tuple[str, str]:
+        """As `read`."""
+        if self._process is None:
+            context = multiprocessing.get_context("spawn")
+            self._pipe, theirs = context.Pipe()
+            self._process = context.Process(target=_work, args=(theirs,), daemon=True)
+            self._process.start()
+            theirs.close()
+        self._pipe.send(question)
+        try:
+            if self._pipe.poll(HANGS):
+                return self._pipe.recv()
+            outcome = HANG, f"more than {HANGS:g} s"
+        except EOFError:
+            outcome = TRACEBACK, "the process ended"
+        self.close()
+        return outcome
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.join()
+            self._process = None
+
+
+def verdicts(kind: str, sealed: bool, count: int, seed: int) -> Any:
+    """The verdicts on harms 0 to `count` − 1 of a kind of file, with and without its seal."""
+    with tempfile.TemporaryDirectory() as folder:
+        source = made(KINDS[kind], Path(folder))[0 if sealed else 1]
+        true, reader = told(KINDS[kind].read(source)), Reader()
+        for index in range(count):
+            rng, name = np.random.default_rng([seed, index]), HARMS[index % len(HARMS)]
+            target = Path(folder) / "harmed.h5"
+            target.unlink(missing_ok=True)
+            harm(source, target, name, sealed, rng)
+            yield Verdict(kind, sealed, name, index, *reader.read(kind, str(target), name, true))
+        reader.close()
