@@ -73,7 +73,7 @@ def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
     shown = scene("sec2").evolve(N=2, f=3000.0)
     setting = module.method_for(1e-3)
     kept = module._attempt(shown, setting, module.rest(shown), (3000, 1, 4), module.Stop(), None, module.Counts())
-    assert len(kept.strobes) == module._KEPT + 1
+    assert len(kept.strobes) == module.REMEMBERED + 1
 
 
 def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, capsys):
