@@ -13,7 +13,7 @@ Actions = Mapping[str, Callable[[dict[str, Any]], None]]
 
 
 class Page:
-    """One page of one visitor. Hooks are called in the document's turn; by default they do nothing.
+    """One page of one visitor. Hooks are called with the document locked; by default they do nothing.
 
     `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
     """
@@ -25,13 +25,13 @@ class Page:
         """Name, state and detail for the list of what is computed now; None where the page has no line in it."""
         return None
 
-    def moved(self) -> None:
+    def picture_requested(self) -> None:
         """A new picture was requested: what belongs to the old one is out of date."""
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """The knobs have changed, or another scene was opened."""
 
-    def arrived(self, picture: Settled) -> None:
+    def picture_ready(self, picture: Settled) -> None:
         """A settled picture is ready; a better one for these knobs may follow unless `picture.final`."""
 
     def close(self) -> None:

@@ -12,7 +12,7 @@ from .session import Session
 
 
 class Host(Protocol):
-    """One visitor's dashboard, as its pages see it. Only `later` may be called from any thread."""
+    """One visitor's dashboard, as its pages see it. Only `next_tick` may be called from any thread."""
 
     session: Session
 
@@ -31,11 +31,11 @@ class Host(Protocol):
     def activities(self) -> list[Activity]:
         """Everything that is computed for this visitor, or could be."""
 
-    def later(self, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` in the document's turn; this may be called from any thread."""
+    def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` with the document locked, as soon as that is possible; this may be called from any thread."""
 
-    def after(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` in the document's turn, so many seconds from now."""
+    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` with the document locked, so many seconds from now."""
 
     def failed(self, error: Exception) -> None:
         """Tell the visitor about a failure that has no place on its own page."""

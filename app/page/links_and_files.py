@@ -42,7 +42,7 @@ class LinksAndFiles:
         self._reading.cancel()
 
     def _share(self, _: dict[str, Any]) -> None:
-        self._views.header.tell(type="link", query=self._host.session.link)
+        self._views.header.send(type="link", query=self._host.session.link)
 
     def _save(self, _: dict[str, Any]) -> None:
         run = self._pictures.run()
@@ -57,7 +57,7 @@ class LinksAndFiles:
             save(run, path)
             content = path.read_bytes()
         name = f"{run.scene.name}-{run.scene.f:g}Hz.h5"
-        job.later(self._views.header.tell, type="file", name=name, content=content)
+        job.next_tick(self._views.header.send, type="file", name=name, content=content)
 
     def _csv(self, message: dict[str, Any]) -> None:
         text = message.get("text")
@@ -67,11 +67,11 @@ class LinksAndFiles:
 
     def _read(self, name: str, text: str, job: Job) -> None:
         """In a worker thread: read the file. A `BadInput` names the line that cannot be read."""
-        job.later(self._show, name, read_measured_csv(text))
+        job.next_tick(self._show, name, read_measured_csv(text))
 
     def _show(self, name: str, measured: Measured) -> None:
         self._curves.measured(measured)
-        self._views.tabs.display(understood=f"{name}: {measured.understood}")
+        self._views.tabs.update_state(understood=f"{name}: {measured.understood}")
 
     def _too_large(self, _: dict[str, Any]) -> None:
         raise BadInput(f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve of frequency and force needs "
@@ -80,7 +80,7 @@ class LinksAndFiles:
     def _remove(self, _: dict[str, Any]) -> None:
         self._reading.cancel()
         self._curves.measured(None)
-        self._views.tabs.display(understood="")
+        self._views.tabs.update_state(understood="")
 
 
 def _say_nothing(status: str, sentence: str) -> None:

@@ -12,9 +12,9 @@ from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
 from ..frames import samples_for
 from ..serve.compiler import COMPILER, compiling_words
-from ..serve.pacing import Painter
+from ..serve.pacing import FramePacer
 from ..serve.queues import LatestWins, Stop
-from ..serve.websocket import in_one_go
+from ..serve.websocket import batched_messages
 from .energy_residual import with_account
 from .host import Host
 from .layout import Views
@@ -36,8 +36,8 @@ class Pictures:
         self._views = views
         self._note = note
         self._settled_arrived = arrived
-        self._jobs = LatestWins(partial(host.later, self._arrived), partial(host.later, host.failed))
-        self._painter: Painter[Settled | LivePicture] = Painter(self._send, self.idle)
+        self._jobs = LatestWins(partial(host.next_tick, self._arrived), partial(host.next_tick, host.failed))
+        self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
         self.live: LiveRun | None = None
 
     @property
@@ -80,8 +80,8 @@ class Pictures:
     def _settled(self, scene: Scene, start: State | None, stop: Stop) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
         self._await_live_kernels(scene, stop)
-        self._session.began = start or self._session.previous_state()
-        pictures = settling(scene, start=self._session.began, samples=samples_for(scene), stop=stop)
+        self._session.started_from = start or self._session.previous_state()
+        pictures = settling(scene, start=self._session.started_from, samples=samples_for(scene), stop=stop)
         yield next(pictures)
         if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
             for picture in pictures:
@@ -92,7 +92,7 @@ class Pictures:
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
         if not COMPILER.has(scene, LIVE):
-            self._host.later(self._note, f"{compiling_words('picture').capitalize()}; the picture then appears by "
+            self._host.next_tick(self._note, f"{compiling_words('picture').capitalize()}; the picture then appears by "
                                          "itself.")
             for piece in (LIVE, CERTIFIED, CURVE):
                 COMPILER.ask(scene, piece)
@@ -116,10 +116,10 @@ class Pictures:
             self._settled_arrived(picture)
         if self._session.notice:
             self._note("")
-        self._painter.offer(picture)
+        self._pacer.offer(picture)
 
     def _send(self, number: int, picture: Settled | LivePicture) -> None:
-        with in_one_go(self._document):
+        with batched_messages(self._document):
             if isinstance(picture, Settled):
                 show_settled(self._views, number, picture)
             else:
@@ -127,13 +127,13 @@ class Pictures:
 
     def painted(self, number: object) -> None:
         """The browser says that picture `number` is on the screen."""
-        self._painter.painted(number)
+        self._pacer.painted(number)
 
     def restart(self) -> None:
         """The page is visible again: forget outstanding acknowledgements, which will never come."""
-        self._painter.restart()
+        self._pacer.restart()
 
     def idle(self) -> None:
         """The browser has painted everything: in live mode, take the next step."""
-        if self._session.mode == "live" and self._session.playing and not self._painter.waits:
+        if self._session.mode == "live" and self._session.playing and not self._pacer.waits:
             self.advance()

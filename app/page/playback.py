@@ -22,7 +22,7 @@ class Playback:
         self._say = say
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
             "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
-            "reset": self._reset, "step": self._step, "again": self._again,
+            "reset": self._reset, "next-period": self._next_period, "reconnected": self._reconnected,
         }
 
     def _mode(self, message: dict[str, Any]) -> None:
@@ -48,7 +48,7 @@ class Playback:
                 self._pictures.advance(1)
         self._pictures.idle()
 
-    def _again(self, message: dict[str, Any]) -> None:
+    def _reconnected(self, message: dict[str, Any]) -> None:
         """The browser lost its server and has loaded the page again from its share link."""
         self._speed({"value": message.get("speed")})
         if not message.get("playing"):
@@ -64,7 +64,7 @@ class Playback:
         self._session.picture = None
         self._compute()
 
-    def _step(self, _: dict[str, Any]) -> None:
+    def _next_period(self, _: dict[str, Any]) -> None:
         if self._pictures.live is not None:
             self._session.playing = False
             self._pictures.advance(self._pictures.live.samples)

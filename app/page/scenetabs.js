@@ -1,6 +1,6 @@
 // The tabs that no page has: what to look at, what the marks of the curve mean, the visitor's own data.
 
-import { button, paragraph, part } from "../parts/dom.js";
+import { button, element, paragraph } from "../parts/dom.js";
 
 const MARKS = { circle: "●", diamond: "◆", triangle: "▲", square: "■", star: "★", circle_dot: "◉", x: "✕", dash: "–" };
 const LINES =
@@ -12,9 +12,9 @@ export const lookAtTab = ({ state }) => ({
 });
 
 export function regimesTab({ state }) {
-  const legend = part("div", { className: "legend" });
+  const legend = element("div", { className: "legend" });
   for (const { name, marker, colour } of state.regimes ?? [])
-    legend.append(part("span", { innerHTML: `<b style="color:${colour}">${MARKS[marker]}</b> ${name}` }));
+    legend.append(element("span", { innerHTML: `<b style="color:${colour}">${MARKS[marker]}</b> ${name}` }));
   return { content: [legend, paragraph(LINES, "soft")] };
 }
 
@@ -27,12 +27,12 @@ async function sendFile(model, [chosen]) {
 export function dataTab(model) {
   const { understood } = model.state;
   const ariaLabel = "your measured curve as CSV: frequency, force, optional error";
-  const file = part("input", { type: "file", accept: ".csv,.txt,text/csv", ariaLabel });
+  const file = element("input", { type: "file", accept: ".csv,.txt,text/csv", ariaLabel });
   file.addEventListener("change", async () => {
     await sendFile(model, file.files);
     file.value = "";
   });
   const remove = button("remove", () => model.send_msg({ do: "csv-remove" }));
-  const choice = part("div", { className: "row" }, file, ...(understood ? [remove] : []));
+  const choice = element("div", { className: "row" }, file, ...(understood ? [remove] : []));
   return { content: [choice, paragraph(understood || FORM, "soft")] };
 }

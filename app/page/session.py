@@ -30,7 +30,7 @@ class Session:
     speed: float = 1.0
     playing: bool = True
     picture: Settled | None = None
-    began: State | None = None
+    started_from: State | None = None
     sentence: str = ""
     notice: str = ""
     account: bool = False

@@ -1,4 +1,4 @@
-"""The table of pages: layout, controller, the covers of page.html and the tabs are made from it."""
+"""The table of pages: layout, controller, the overlays of page.html and the tabs are made from it."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from .host import Host
 
 @dataclass(frozen=True)
 class Row:
-    """One page: its name in messages, the words on its tab, what is computed and how it is drawn.
+    """One page: its name in messages, the title of its tab, what is computed and how it is drawn.
 
-    `page` is made with the host and the view. `view` covers the pictures; a page without one is drawn in its tab by
-    tabs.js. `words` stand in the tab until the page has something to say. `roomy` gives the tab more height.
+    `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
+    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height.
     """
 
     name: str
-    tab: str
+    title: str
     page: Callable[[Host, Any], Page]
     view: Callable[..., Component] | None
-    words: str = ""
-    roomy: bool = True
+    placeholder: str = ""
+    taller: bool = True
 
 
 #: In the order of the tabs.
@@ -50,10 +50,11 @@ PAGES = (
         "A copy of the chain that feels its input force and nothing else."),
     Row("hard", "hard cases", HardPage, Hard,
         "Cases in which solvers of granular chains go wrong without warning, each compared with a known result.",
-        roomy=False),
+        taller=False),
 )
 
 
 def described_pages() -> list[dict[str, Any]]:
     """What the tabs need of the table."""
-    return [{"name": row.name, "tab": row.tab, "words": row.words, "roomy": row.roomy} for row in PAGES]
+    return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller}
+            for row in PAGES]

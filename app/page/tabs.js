@@ -7,7 +7,7 @@ import { mapMessage } from "../pages/map/cells.js";
 import { mapTab } from "../pages/map/map.js";
 import { observerTab } from "../pages/observer/observertab.js";
 import { stabilityTab } from "../pages/stability/stabilitytab.js";
-import { button, openButton, paragraph, part } from "../parts/dom.js";
+import { button, element, openButton, paragraph } from "../parts/dom.js";
 import { dataTab, lookAtTab, regimesTab } from "./scenetabs.js";
 
 // The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name.
@@ -24,13 +24,13 @@ const TABS = {
 };
 
 // The tab of a page that has no function in TABS: its sentence, or what it is, and a button that opens it.
-function plainTab(_, { name, words }) {
+function plainTab(_, { name, placeholder }) {
   const said = paragraph();
   const show = () => {
-    said.textContent = window.granchain[name]?.sentence || words;
+    said.textContent = window.granchain[name]?.sentence || placeholder;
   };
   show();
-  return { content: [part("div", { className: "row top" }, said, openButton(name))], show };
+  return { content: [element("div", { className: "row top" }, said, openButton(name))], show };
 }
 
 // The button that gives the tabs the place of the curve, and back.
@@ -51,21 +51,21 @@ class Tabs {
   constructor(model) {
     this.model = model;
     const pages = model.state.pages;
-    const rows = [{ name: "look at", tab: "look at" }, { name: "regimes", tab: "regimes" }, ...pages];
-    rows.push({ name: "data", tab: "data" });
+    const rows = [{ name: "look at", title: "look at" }, { name: "regimes", title: "regimes" }, ...pages];
+    rows.push({ name: "data", title: "data" });
     this.rows = new Map(rows.map((row) => [row.name, row]));
     this.chosen = "look at";
     this.redraw = () => {};
     this.tabs = rows.map((row) => this.tab(row));
     // The larger button floats, so it comes first: the second line of tabs has the whole width.
-    this.list = part("div", { className: "tabs", role: "tablist" }, largerButton(), ...this.tabs);
+    this.list = element("div", { className: "tabs", role: "tablist" }, largerButton(), ...this.tabs);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
-    this.body = part("div", { className: "body", role: "tabpanel" });
-    this.root = part("div", { className: "part tabbed" }, this.list, this.body);
+    this.body = element("div", { className: "body", role: "tabpanel" });
+    this.root = element("div", { className: "part tabbed" }, this.list, this.body);
   }
 
-  tab({ name, tab: words }) {
-    const tab = button(words, () => this.choose(name), { role: "tab" });
+  tab({ name, title }) {
+    const tab = button(title, () => this.choose(name), { role: "tab" });
     tab.dataset.tab = name;
     return tab;
   }
@@ -73,7 +73,7 @@ class Tabs {
   choose(name) {
     const before = this.chosen;
     this.chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", Boolean(this.rows.get(name).roomy));
+    document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
     if (before === "effects" || name === "effects") this.tellEffectsVisible();
     if (before === "map" || name === "map") this.model.send_msg({ do: "map-visible", value: name === "map" });
     this.show();
@@ -82,7 +82,7 @@ class Tabs {
 
   // Costs are measured only while somebody looks at them.
   tellEffectsVisible() {
-    const value = this.chosen === "effects" && !window.granchain.covered;
+    const value = this.chosen === "effects" && !window.granchain.overlay;
     this.model.send_msg({ do: "effects-visible", value });
   }
 
@@ -127,7 +127,7 @@ export function render({ model }) {
     window.granchain.on(name, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
-  window.granchain.on("cover", () => {
+  window.granchain.on("overlay", () => {
     if (tabs.chosen === "effects") tabs.tellEffectsVisible();
   });
   tabs.show();

@@ -25,18 +25,18 @@ class Job:
         self._host = host
         self._say = say
 
-    def later(self, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
-        """Call `action` in the document's turn, unless the job is cancelled by then."""
+    def next_tick(self, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
+        """Call `action` with the document locked, unless the job is cancelled by then."""
 
         def act() -> None:
             if not self.stop:
                 action(*arguments, **named)
 
-        self._host.later(act)
+        self._host.next_tick(act)
 
     def say(self, status: str) -> None:
         """Report the state of the work."""
-        self.later(self._say, status, "")
+        self.next_tick(self._say, status, "")
 
     def compile(self, scene: Scene, *pieces: str) -> None:
         """Wait until these kernels are compiled and loaded, and report "compiling" meanwhile. Raises `Cancelled`."""
@@ -57,7 +57,7 @@ class Job:
 class Task:
     """One kind of background work of a page; a new start replaces the last.
 
-    `say` is called in the document's turn: with "done", with "failed" and a sentence, or with a status that the work
+    `say` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the work
     reports. `title` begins the sentence about a fault. `failed` takes errors that the page itself does not show.
     """
 
@@ -97,12 +97,12 @@ class Task:
         except Cancelled:
             return
         except (NumbersFailed, BadInput) as problem:
-            job.later(self._end, "failed", str(problem), problem)
+            job.next_tick(self._end, "failed", str(problem), problem)
         except Exception as error:
-            job.later(self._end, "failed", f"{self._title} failed because of an error in granchain.")
-            self._host.later(self._host.failed, error)
+            job.next_tick(self._end, "failed", f"{self._title} failed because of an error in granchain.")
+            self._host.next_tick(self._host.failed, error)
         else:
-            job.later(self._end, "done")
+            job.next_tick(self._end, "done")
 
     def _end(self, status: str, sentence: str = "", problem: Exception | None = None) -> None:
         self._job = None

@@ -19,7 +19,8 @@ class DisplayChoices:
         self._views = views
         self._curves = curves
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "theme": self.choose, "lock": self._lock, "curve": self._curve, "curve-stop": lambda _: curves.stop(),
+            "theme": self.choose, "lock-scale": self._lock_scale,
+            "curve": self._curve, "curve-stop": lambda _: curves.stop(),
             "curve-visible": lambda m: curves.visible(bool(m.get("value")), session.scene),
         }
 
@@ -29,9 +30,9 @@ class DisplayChoices:
         if theme is not None:
             self._views.curve.ink(theme.ink, theme.line)
             self._views.trains.thicken(theme.line)
-            self._views.dress(theme)
+            self._views.apply_theme(theme)
 
-    def _lock(self, message: dict[str, Any]) -> None:
+    def _lock_scale(self, message: dict[str, Any]) -> None:
         self._views.energy.locked = bool(message.get("value"))
 
     def _curve(self, message: dict[str, Any]) -> None:

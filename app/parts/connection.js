@@ -11,7 +11,7 @@
   const LOST = "Connection lost – trying again … These are the last pictures.";
   const BACK = "Connected again – restoring your settings …";
   const AGAIN = "granchain-again";
-  const PARTS = ["bar", "side", "stage", "curves", "cover", "foot"];
+  const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
   // The last share link from the server, and the requests since then that it has not answered.
   let link = "v=1";
@@ -72,7 +72,7 @@
     ]);
   const photo = () => {
     const film = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
-    if (!page.covered)
+    if (!page.overlay)
       for (const one of ["stage", "curve"].flatMap((id) => canvases(document.getElementById(id)))) {
         const { x, y, width, height } = one.getBoundingClientRect();
         if (width && height && one.width && one.height) film.getContext("2d").drawImage(one, x, y, width, height);

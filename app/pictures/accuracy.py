@@ -25,7 +25,7 @@ _COLUMNS = ("ms", "error", "setting", "tooltip")
 
 
 @dataclass(frozen=True)
-class Asked:
+class Annotations:
     """What belongs to the picture but is no measurement.
 
     accuracy : asked for, a fraction of the largest displacement. agreement : of the two references, or None.
@@ -65,7 +65,7 @@ def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
     return columns
 
 
-def marks(asked: Asked, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+def marks(asked: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     """Properties of the models that show what is asked, the references' agreement, the cheapest and the present row."""
     times = [1e3 * row.wall_s for row in rows if row.wall_s > 0.0] or [1.0]
 
@@ -83,7 +83,7 @@ def marks(asked: Asked, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     }
 
 
-def accuracy(rows: Sequence[Row], asked: Asked, theme: Theme, compact: bool = False) -> figure:
+def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: bool = False) -> figure:
     """Largest error over largest displacement against the computing time of ten drive periods in ms.
 
     The sources have the names of the methods; `points` and `marks` give what changes while a measurement goes on.

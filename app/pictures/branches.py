@@ -35,7 +35,7 @@ _TARGET = 13
 Columns = dict[str, dict[str, list[Any]]]
 
 
-class Growth:
+class BranchRows:
     """Branches as they grow: `add` gives what one more piece of an arm adds to the figure's sources.
 
     The unit of force is that of the first orbit, or of `largest` [N] where that is known. `orbits` holds all drawn
@@ -102,9 +102,9 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     """The largest elastic output force of periodic orbits over the knob of their branches.
 
     `now` is a value of the knob [SI] with a line. Sources have names: "stable" and "unstable" hold lines, "orbits"
-    one row for each orbit, the kinds of special points one for each point; `Growth` says what an orbit more adds.
+    one row for each orbit, the kinds of special points one for each point; `BranchRows` says what an orbit more adds.
     """
-    growth = Growth(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
+    rows = BranchRows(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
     data: Columns = {**{name: {"x": [], "y": []} for name in _LINES}, "orbits": _columns(_ORBIT, []),
                      **{kind: _columns(_MARK, []) for kind in SPECIAL}}
     models: dict[str, Any] = {}
@@ -112,7 +112,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     for one in found:
         for arm in one.arms:
             if arm.points:
-                added = growth.add(number, one, arm.points, arm.special)
+                added = rows.add(number, one, arm.points, arm.special)
                 _put(data, added)
                 models |= added["models"]
             number += 1

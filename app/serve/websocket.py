@@ -30,17 +30,17 @@ def _streams(document: Document) -> list[IOStream]:
     return [stream for stream in streams if isinstance(stream, IOStream) and not stream.closed()]
 
 
-def has_turn(document: Document) -> bool:
-    """Whether this is known to be the document's turn, the only time at which it may be changed.
+def has_document_lock(document: Document) -> bool:
+    """Whether Bokeh is known to hold the document's lock, without which the document may not be changed.
 
-    During a turn Bokeh keeps a list of pending writes. A message can also arrive while answers to an earlier one are
-    still being written; Bokeh then refuses every change.
+    While it holds the lock it keeps a list of pending writes. A message can also arrive while answers to an earlier
+    one are still being written; Bokeh then refuses every change.
     """
     session = _session(document)
     return session is None or getattr(session, "_pending_writes", None) is not None
 
 
-def in_its_turn(document: Document, action: Callable[[], None]) -> None:
+def with_document_lock(document: Document, action: Callable[[], None]) -> None:
     """Run `action` as soon as the document may be changed and the browser will be told of the change.
 
     The browser can send requests before it has reported that all parts are rendered. Until it has, Panel discards
@@ -48,20 +48,20 @@ def in_its_turn(document: Document, action: Callable[[], None]) -> None:
     """
     if not pn.state.loaded:
         pn.state.onload(action)
-    elif has_turn(document):
+    elif has_document_lock(document):
         action()
     else:
         document.add_next_tick_callback(action)
 
 
-def send_at_once(document: Document) -> None:
+def disable_nagle(document: Document) -> None:
     """Turn off Nagle's algorithm, which can delay a message by 40 ms until earlier ones are acknowledged."""
     for stream in _streams(document):
         stream.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
 
 @contextmanager
-def in_one_go(document: Document) -> Iterator[None]:
+def batched_messages(document: Document) -> Iterator[None]:
     """The messages written in this block are handed to the network together when it ends.
 
     A picture is about twenty small messages; sent singly, each costs 0.3 ms here and a wake-up in the browser.
@@ -84,7 +84,7 @@ def _wait() -> None:
     """Replaces a stream's `_handle_write` while a picture is being written."""
 
 
-class PromptEvents:
+class WithoutBusyIndicator:
     """A Panel component whose events skip the busy indicator, which this page does not show: it takes 2 of 5 ms.
 
     Panel calls `_process_bokeh_event`; with a release that calls another method, the indicator comes back.

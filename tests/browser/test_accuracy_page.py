@@ -36,7 +36,7 @@ def naive_line(page: Page) -> dict[str, Any]:
 def opened(page: Page) -> Locator:
     """The Accuracy page, opened from the status line, with its first points."""
     page.get_by_role("button", name="asked").click()
-    sheet = page.locator('[data-cover="accuracy"]')
+    sheet = page.locator('[data-overlay="accuracy"]')
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
     expect(sheet.locator(".work canvas").first).to_be_visible()
     return sheet
@@ -144,10 +144,10 @@ def test_its_tab_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
     expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
     expect(page.locator("#tabs")).to_contain_text("The cheapest way to", timeout=COMPILED)
     page.get_by_role("button", name="open the page").click()
-    expect(page.locator("#cover .work canvas").first).to_be_visible()
+    expect(page.locator("#overlay .work canvas").first).to_be_visible()
     assert page.evaluate(POINTS)
     page.keyboard.press("Escape")
-    expect(page.locator("#cover")).to_be_hidden()
+    expect(page.locator("#overlay")).to_be_hidden()
 
 
 def test_the_page_fits(visit: Visit) -> None:

@@ -17,15 +17,15 @@ COMPILED = 150_000
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
 #: The kinds of special points that were found; the orbits of an arm.
 SPECIAL = ("['fold', 'period_doubling', 'neimark_sacker', 'grazing']"
-           ".filter((kind) => granchain.branches.grown.rows[kind]?.x.length)")
-ORBITS = "granchain.branches.grown.rows.orbits"
+           ".filter((kind) => granchain.branches.data.rows[kind]?.x.length)")
+ORBITS = "granchain.branches.data.rows.orbits"
 
 
 def opened(page: Page) -> Locator:
     """The Branches page, opened from its tab."""
     page.get_by_role("tab", name="branches").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-cover="branches"]')
+    sheet = page.locator('[data-overlay="branches"]')
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
     return sheet
 
@@ -56,7 +56,7 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     sheet.get_by_role("button", name="stop").click()
     # the figure holds what the page has been sent piece by piece, and so does the small one in its tab
     for kind in ("stable", "unstable"):
-        assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.branches.grown.lines.{kind}.x.length") > 0
+        assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.branches.data.lines.{kind}.x.length") > 0
     page.keyboard.press("Escape")
     until(page, lambda: source(page, "branches", "orbits", large=False).get("x") == source(page, "branches", "orbits")["x"])
 
@@ -113,7 +113,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
 
 #: The orbit that is farthest from all special points, so that a click means it and no other.
 LONELY = """(stable) => {
-  const { orbits, ...rows } = granchain.branches.grown.rows;
+  const { orbits, ...rows } = granchain.branches.data.rows;
   const special = Object.values(rows).flatMap(({ x }) => x);
   const far = (f) => Math.min(...special.map((one) => Math.abs(one - f)));
   return orbits.x.map((f, row) => [orbits.stable[row] === stable ? far(f) : -1, row]).sort((a, b) => b[0] - a[0])[0][1];

@@ -69,7 +69,7 @@ def test_the_energy_account_is_told_in_the_status_line(visit: Visit) -> None:
     expect(activity(tab, "energy account")).to_contain_text("switched off")
     page.get_by_role("switch", name="energy account").click()
     expect(effect(tab, "account")).to_contain_text("Balance")
-    expect(page.locator("#foot")).to_contain_text("energy balance ", timeout=COMPILED)
+    expect(page.locator("#foot")).to_contain_text("energy residual ", timeout=COMPILED)
     expect(activity(tab, "energy account")).to_contain_text("closes to")
 
 

@@ -38,7 +38,7 @@ def opened(page: Page) -> Locator:
     page.get_by_label("scene").first.select_option("fig11-free")
     page.get_by_role("tab", name="observer").click()
     page.get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-cover="observer"]')
+    sheet = page.locator('[data-overlay="observer"]')
     page.wait_for_function(drawn("distance", 8), timeout=COMPILED)
     expect(sheet.locator(".trace canvas").first).to_be_visible()
     return sheet

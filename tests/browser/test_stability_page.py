@@ -20,7 +20,7 @@ def opened(page: Page, words: str = "Stable") -> Locator:
     """The Stability page, opened from its tab, with its verdict."""
     page.get_by_role("tab", name="stability").click()
     page.get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-cover="stability"]')
+    sheet = page.locator('[data-overlay="stability"]')
     expect(sheet.locator(".say")).to_contain_text(words, timeout=COMPILED)
     return sheet
 

@@ -29,8 +29,8 @@ def test_the_page_edits_two_files_and_writes_four() -> None:
     assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 2 files, write 4"
 
 
-def test_the_new_page_has_its_cover_its_tab_and_its_hooks(tree: Path) -> None:
-    """A row makes a cover, a tab, a call with every picture, and an answer to the page's own message."""
+def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
+    """A row makes an overlay, a tab, a call with every picture, and an answer to the page's own message."""
     told = follow(tree, "-c", """
 from types import SimpleNamespace
 from bokeh.document import Document
@@ -42,18 +42,18 @@ dashboard = Controller(Document(), Session())
 picture = SimpleNamespace(run=SimpleNamespace(max_output_force=1.0, max_input_force=4.0), final=False)
 dashboard.session.picture = picture
 page = next(one for one in dashboard.pages if type(one).__name__ == "TransmissionPage")
-page.arrived(picture)
-print(dashboard.views.covers["transmission"].state["sentence"])
-dashboard.views.covers["transmission"].display(sentence="")
+page.picture_ready(picture)
+print(dashboard.views.overlays["transmission"].state["sentence"])
+dashboard.views.overlays["transmission"].update_state(sentence="")
 dashboard.received({"do": "transmission-say"})
-print(dashboard.views.covers["transmission"].state["sentence"])
+print(dashboard.views.overlays["transmission"].state["sentence"])
 template = dashboard.views.template()
-print(dict(template._render_variables["covers"])["transmission"], "transmission.js" in FILES)
-print([one["words"] for one in dashboard.views.tabs.state["pages"] if one["tab"] == "transmission"])
+print(dict(template._render_variables["overlays"])["transmission"], "transmission.js" in FILES)
+print([one["placeholder"] for one in dashboard.views.tabs.state["pages"] if one["title"] == "transmission"])
 """)
-    first, second, cover, words = told.splitlines()
+    first, second, overlay, words = told.splitlines()
     assert first == second == "25.0 % of the largest input force arrives at the wall."
-    assert (cover, words) == ("Transmission True", "['How much of the input force arrives.']")
+    assert (overlay, words) == ("Transmission True", "['How much of the input force arrives.']")
 
 
 def test_the_new_page_fits_into_the_house(tree: Path) -> None:

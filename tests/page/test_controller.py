@@ -31,9 +31,9 @@ class Dashboard(Turns, Controller):
         Turns.__init__(self)
         self.told: list[dict[str, Any]] = []
         Controller.__init__(self, Document(), Session())
-        self.views.header.tell = lambda **message: self.told.append(message)  # type: ignore[method-assign]
+        self.views.header.send = lambda **message: self.told.append(message)  # type: ignore[method-assign]
 
-    def later(self, action: Callable[..., None], *arguments: Any) -> None:
+    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """From any thread."""
         self.turns.append(lambda: self._guarded(action, *arguments))
 
@@ -74,7 +74,7 @@ def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence() -> N
     ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (MOST_BYTES + 1), "at most 2000000 are read", "")])
 def test_a_measurement_is_read_in_the_background(text: str, sentence: str, understood: str,
                                                  monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reading 2 MB in the document's turn would hold up every visitor."""
+    """Reading 2 MB with the document locked would hold up every visitor."""
     threads = []
     read = links_and_files.read_measured_csv
     monkeypatch.setattr(links_and_files, "read_measured_csv",

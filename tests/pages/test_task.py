@@ -25,7 +25,7 @@ class Dashboard(Turns):
         self.failures: list[Exception] = []
         self.said: list[tuple[str, str]] = []
 
-    def later(self, action: Callable[..., None], *arguments: Any) -> None:
+    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """From any thread."""
         self.turns.append(lambda: action(*arguments))
 

@@ -27,7 +27,7 @@ from tornado.websocket import WebSocketProtocol
 
 from app.parts.component import Component
 from app.serve import websocket
-from app.serve.websocket import has_turn, in_its_turn, in_one_go, send_at_once
+from app.serve.websocket import batched_messages, disable_nagle, has_document_lock, with_document_lock
 
 #: Every private attribute that is used of a connection, and whose it is.
 PRIVATE: list[tuple[type, str]] = [
@@ -48,7 +48,7 @@ def hide(monkeypatch: pytest.MonkeyPatch, owner: type, name: str) -> None:
 
 
 class Served:
-    """A Bokeh server whose document answers a question, in its turn and in one go."""
+    """A Bokeh server whose document answers a question, with the document locked and in one batch."""
 
     def __init__(self) -> None:
         self.document: Document | None = None
@@ -71,16 +71,16 @@ class Served:
     def _build(self, document: Document) -> None:
         self.document = document
         question, self.answer = Div(name="question"), Div(name="answer")
-        question.on_change("text", lambda _attribute, _old, new: in_its_turn(document, lambda: self.reply(new)))
+        question.on_change("text", lambda _attribute, _old, new: with_document_lock(document, lambda: self.reply(new)))
         document.add_root(question)
         document.add_root(self.answer)
 
     def reply(self, text: str) -> None:
         """The answer, sent as a picture is."""
         assert self.document is not None
-        self.found = {"turn": has_turn(self.document), "streams": websocket._streams(self.document)}
-        send_at_once(self.document)
-        with in_one_go(self.document):
+        self.found = {"locked": has_document_lock(self.document), "streams": websocket._streams(self.document)}
+        disable_nagle(self.document)
+        with batched_messages(self.document):
             self.answer.text = f"{text}, yes"
 
     def stop(self) -> None:
@@ -117,7 +117,7 @@ def test_the_private_attributes_of_these_releases_are_used(served: Served) -> No
     session = pull_session(url=served.address)
     ask(session, "there")
     wait_for(session, "there, yes")
-    assert served.found["turn"], "ServerSession._pending_writes"
+    assert served.found["locked"], "ServerSession._pending_writes"
     (stream,) = served.found["streams"]  # by _subscribed_connections, _socket, ws_connection, stream
     assert hasattr(stream, "_handle_write"), "IOStream._handle_write"
     assert hasattr(JSComponent, "_process_bokeh_event"), "JSComponent._process_bokeh_event"
@@ -137,15 +137,15 @@ def test_a_message_is_served_without_it(owner: type, name: str, served: Served, 
 
 
 @pytest.mark.parametrize("hidden", [False, True])
-def test_a_message_outside_of_the_documents_turn_is_answered(hidden: bool, served: Served,
+def test_a_message_that_comes_while_the_document_is_not_locked_is_answered(hidden: bool, served: Served,
                                                             monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bokeh refuses a change there; whether it is the turn is unknown where the attribute is gone."""
+    """Bokeh refuses a change there; whether it is locked is unknown where the attribute is gone."""
     if hidden:
         hide(monkeypatch, ServerSession, "_pending_writes")
     session = pull_session(url=served.address)
     document = served.document
     assert document is not None
-    served.loop.add_callback(lambda: in_its_turn(document, lambda: served.reply("later")))
+    served.loop.add_callback(lambda: with_document_lock(document, lambda: served.reply("later")))
     wait_for(session, "later, yes")
     session.close()
 

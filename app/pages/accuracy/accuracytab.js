@@ -1,6 +1,6 @@
 // The Accuracy tab: error against time in small, and the way to the page. What fills the figure serves the page as well.
 
-import { openButton, paragraph, part } from "../../parts/dom.js";
+import { element, openButton, paragraph } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
 
 const STALE = "The knobs have moved; open the page to measure again.";
@@ -23,7 +23,7 @@ function sentence({ running, progress, done, asked }) {
 }
 
 export function accuracyTab(model) {
-  const host = part("div", { className: "small" });
+  const host = element("div", { className: "small" });
   const figure = new Embedded(host, (one) => fillAccuracy(one, window.granchain.accuracy));
   const said = paragraph();
   const show = () => {
@@ -34,5 +34,5 @@ export function accuracyTab(model) {
   };
   model.send_msg({ do: "accuracy-open" });
   requestAnimationFrame(show);
-  return { content: [part("div", { className: "row top" }, said, openButton("accuracy")), host], show };
+  return { content: [element("div", { className: "row top" }, said, openButton("accuracy")), host], show };
 }

@@ -1,6 +1,6 @@
 // The certified output force, and over it the one that a naive method with few steps would have drawn.
 
-import { part } from "../../parts/dom.js";
+import { element } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
 // The naive steps in a drive period that are chosen at first.
@@ -21,21 +21,21 @@ export class NaiveForces {
   constructor() {
     this.methods = this.choice("the naive method");
     this.steps = this.choice("its steps in a drive period");
-    this.said = part("p");
-    this.host = part("div", { className: "picture" });
+    this.said = element("p");
+    this.host = element("div", { className: "picture" });
     this.figure = new Embedded(this.host, () => this.show());
-    this.root = part(
+    this.root = element(
       "div",
       { className: "naive" },
-      part("div", { className: "row" }, this.methods, this.steps),
+      element("div", { className: "row" }, this.methods, this.steps),
       this.said,
-      part("div", { className: "draw" }, this.host),
+      element("div", { className: "draw" }, this.host),
     );
     this.show();
   }
 
   choice(label) {
-    const select = part("select", { title: label, ariaLabel: label });
+    const select = element("select", { title: label, ariaLabel: label });
     select.addEventListener("change", () => this.show());
     return select;
   }

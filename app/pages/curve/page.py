@@ -40,7 +40,7 @@ class Curves:
         self._bar = bar
         self._placed = placed
         self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
-        self._drafts = LatestWins(partial(host.later, self._draw_draft), partial(host.later, host.failed))
+        self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed))
         self._asked: Scene | None = None
         self._begun = 0
         self._wanted = {name: name == "rest" for name in _SETTINGS}
@@ -85,7 +85,7 @@ class Curves:
         self._task.cancel()
         self._asked = without_frequency(scene)
         self._due += 1
-        self._host.after(CURVE_QUIET, self._begin_if_last, scene, self._due)
+        self._host.call_later(CURVE_QUIET, self._begin_if_last, scene, self._due)
 
     def _begin_if_last(self, scene: Scene, due: int) -> None:
         if due != self._due:
@@ -93,7 +93,7 @@ class Curves:
         if COMPILER.has(scene, LIVE, CERTIFIED, CURVE):
             self._begin(scene)
         else:
-            self._host.after(CURVE_QUIET, self._begin_if_last, scene, due)
+            self._host.call_later(CURVE_QUIET, self._begin_if_last, scene, due)
 
     def visible(self, visible: bool, scene: Scene) -> None:
         """The figure came on the screen or left it."""
@@ -108,7 +108,7 @@ class Curves:
         if name not in self._wanted:
             return
         self._wanted[name] = wanted
-        self._bar.display(**self._wanted)
+        self._bar.update_state(**self._wanted)
         if name == "features":
             self._show_features(scene)
         else:
@@ -118,7 +118,7 @@ class Curves:
         """Stop computing; the points computed so far stay."""
         self._task.cancel()
         self._done = -1.0
-        self._bar.display(done=-1.0)
+        self._bar.update_state(done=-1.0)
 
     @property
     def computing(self) -> bool:
@@ -163,7 +163,7 @@ class Curves:
         with unlocked():
             self._figure.show_directions(shown)
             self._figure.begin(missing)
-            self._bar.display(**self._wanted, done=0.0 if missing else -1.0)
+            self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
         self._begun += bool(missing)
         self._remaining, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
@@ -172,7 +172,7 @@ class Curves:
             self._task.cancel()
 
     def _show_features(self, scene: Scene) -> None:
-        self._bar.display(**self._wanted)
+        self._bar.update_state(**self._wanted)
         self._figure.features(stated_features() if self._wanted["features"] else [])
 
     def _report(self, progress: Progress) -> None:
@@ -181,7 +181,7 @@ class Curves:
             self._buffer.append(progress)
             first = len(self._buffer) == 1
         if first:
-            self._host.later(self._draw)
+            self._host.next_tick(self._draw)
 
     def _draw(self) -> None:
         with self._lock:
@@ -199,7 +199,7 @@ class Curves:
                     self._figure.finished(progress.direction)
                     self._placed()
             self._done = self._overall(buffer[-1])
-            self._bar.display(done=self._done)
+            self._bar.update_state(done=self._done)
 
     def _overall(self, progress: Progress) -> float:
         """Progress over all directions of this request."""

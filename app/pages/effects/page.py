@@ -33,7 +33,7 @@ class EffectsPanel(Page):
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
         self._open = False
-        self._turn = 0
+        self._round = 0
         self._moved = 0.0
         self._key: tuple[object, ...] = ()
         self._costs: dict[str, dict[str, EffectCost]] = {}
@@ -58,7 +58,7 @@ class EffectsPanel(Page):
         possible = sum(variants(name, self._host.session.scene) is not None for name in EFFECTS)
         return f"{len(self._costs)} of {possible} effects measured"
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """A knob has moved: nothing is measured for a while, and what belongs to another kernel is forgotten."""
         self._moved = time.monotonic()
         scene = self._host.session.scene
@@ -77,9 +77,9 @@ class EffectsPanel(Page):
 
     def _visible(self, message: dict[str, Any]) -> None:
         self._open = bool(message.get("value"))
-        self._turn += 1
+        self._round += 1
         if self._open:
-            self._poll(self._turn)
+            self._poll(self._round)
 
     def _switch(self, message: dict[str, Any]) -> None:
         name, on = message.get("name"), message.get("value")
@@ -92,13 +92,13 @@ class EffectsPanel(Page):
         finally:
             self._show()
 
-    def _poll(self, turn: int) -> None:
+    def _poll(self, number: int) -> None:
         """Repeat while the panel is open: begin what is next, and show everything."""
-        if not self._open or turn != self._turn:
+        if not self._open or number != self._round:
             return
         self._next()
         self._show()
-        self._host.after(ACTIVITIES_EVERY, self._poll, turn)
+        self._host.call_later(ACTIVITIES_EVERY, self._poll, number)
 
     def _next(self) -> None:
         """Begin the next thing to do: compile the kernels of one effect, or measure it."""
@@ -138,7 +138,7 @@ class EffectsPanel(Page):
         """In the measuring thread: measure both costs, waiting while a knob moves."""
         for method in (CODE, MOTION):
             cost = effect_cost(*pair, method, job.stop, job.give_way)
-            job.later(self._measured, name, method, cost)
+            job.next_tick(self._measured, name, method, cost)
 
     def _measured(self, name: str, method: str, cost: EffectCost) -> None:
         self._costs.setdefault(name, {})[method] = cost
@@ -152,7 +152,7 @@ class EffectsPanel(Page):
 
     def _show(self) -> None:
         session = self._host.session
-        self._view.display(panel={
+        self._view.update_state(panel={
             "effects": [self._effect(name, session.scene) for name in EFFECTS],
             "slots": [{"slot": name, "title": title, "type": kind}
                       for name, title, kind in slots_of(session.scene, session.account)],

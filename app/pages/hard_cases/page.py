@@ -91,15 +91,15 @@ class HardPage(Page):
     # In the measuring thread
 
     def _work(self, case: Case, process: CaseProcess, job: Job) -> None:
-        job.later(self._change, case.name, **progress("hard", "computing"))
+        job.next_tick(self._change, case.name, **progress("hard", "computing"))
         try:
             answers = process.measure(case, job.stop)
-            job.later(self._measured, case.name, next(answers))
-            job.later(self._draw, case.name, next(answers))
+            job.next_tick(self._measured, case.name, next(answers))
+            job.next_tick(self._draw, case.name, next(answers))
         except Ended:
             raise NumbersFailed(_FAULT, "worker-failed") from None
 
-    # In the document's turn
+    # With the document locked
 
     def _measured(self, name: str, rows: list[Check]) -> None:
         self.rows[name] = rows
@@ -127,5 +127,5 @@ class HardPage(Page):
         self._show()
 
     def _show(self) -> None:
-        self._view.display(results=self._shown, summary=summary(self.rows), running=bool(self.waiting),
+        self._view.update_state(results=self._shown, summary=summary(self.rows), running=bool(self.waiting),
                            done=1.0 - len(self.waiting) / max(1, self._asked))

@@ -1,23 +1,27 @@
 // All attractors of the present setting, as a table below the map.
 
-import { button, paragraph, part, table } from "../../parts/dom.js";
+import { button, element, paragraph, table } from "../../parts/dom.js";
 import { MAP } from "./cells.js";
 
 const swatch = (colour) => {
-  const square = part("i", { className: "swatch" });
+  const square = element("i", { className: "swatch" });
   square.style.background = colour;
   return square;
 };
 
 const attractorRow = (one, load) =>
-  part(
+  element(
     "tr",
     {},
-    part("td", {}, swatch(one.colour)),
-    part("td", {}, one.words, part("small", { textContent: one.force })),
-    part("td", { className: "number", textContent: one.share_words, title: `${one.starts} of all starts lead here` }),
-    part("td", { className: "soft", textContent: one.from.join(", ") }),
-    part("td", {}, button("show", load)),
+    element("td", {}, swatch(one.colour)),
+    element("td", {}, one.words, element("small", { textContent: one.force })),
+    element("td", {
+      className: "number",
+      textContent: one.share_words,
+      title: `${one.starts} of all starts lead here`,
+    }),
+    element("td", { className: "soft", textContent: one.from.join(", ") }),
+    element("td", {}, button("show", load)),
   );
 
 // The table, or how far the search is; `load` is called with an attractor's number.
@@ -25,5 +29,5 @@ export function attractorList(load) {
   if (MAP.search !== "") return MAP.searched ? [paragraph(MAP.searched, "soft")] : [];
   const rows = MAP.attractors.map((one, number) => attractorRow(one, () => load(number)));
   const titles = ["", "attractor", "share of random states", "also from", ""];
-  return [table(titles, part("tbody", {}, ...rows), { className: "attractors" })];
+  return [table(titles, element("tbody", {}, ...rows), { className: "attractors" })];
 }

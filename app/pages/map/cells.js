@@ -1,10 +1,10 @@
 // What the browser knows of the map: its figure and cells, its state and the attractors.
 
-import { Grown } from "../../parts/embedded.js";
+import { StreamedData } from "../../parts/embedded.js";
 
 export const MAP = {
   head: null,
-  cells: new Grown(),
+  cells: new StreamedData(),
   figure: null, // the one on the screen
   now: { x: [], y: [] },
   done: 0,

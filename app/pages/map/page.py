@@ -62,7 +62,7 @@ class MapTab(Page):
         self._found_at = ""
         self.status = "none"
         self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "map-visible": self._set_visible, "map-theme": self._dress, "map-stop": lambda _: self._stop(),
+            "map-visible": self._set_visible, "map-theme": self._apply_theme, "map-stop": lambda _: self._stop(),
             "map-compute": lambda _: self._begin(), "map-choose": self._choose,
             "map-attractors": lambda _: self._find(), "map-load": self._load,
         }
@@ -73,18 +73,18 @@ class MapTab(Page):
         self._diagram.cancel()
         self._search.cancel()
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """A knob has moved: any but f and A0 changes the diagram, and any at all changes the attractors."""
         if not self._visible:
             return
-        self._tell_now()
+        self._send_now()
         if self._found and self._found_at != self._host.session.scene.digest:
             self._forget_attractors()
         if self._stale():
             self._give_up()
-            self._tell(type="map-stale")
+            self._send(type="map-stale")
             self._due += 1
-            self._host.after(MAP_QUIET, self._begin_if_last, self._due)
+            self._host.call_later(MAP_QUIET, self._begin_if_last, self._due)
 
     def _stale(self) -> bool:
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
@@ -100,10 +100,10 @@ class MapTab(Page):
                 self._begin()
         else:
             self._begin()
-        self._tell_now()
+        self._send_now()
         self._show_attractors("" if self._found else "none")
 
-    def _dress(self, message: dict[str, Any]) -> None:
+    def _apply_theme(self, message: dict[str, Any]) -> None:
         """The theme of the page, which the figure follows."""
         theme = THEMES.get(str(message.get("value")), self._theme)
         if theme != self._theme:
@@ -144,7 +144,7 @@ class MapTab(Page):
         job.compile(grid.scene, LIVE, CERTIFIED, CURVE)
         job.say("computing")
         for rows in _batches(grid, missing, job.stop, partial(job.give_way, self._in_front)):
-            job.later(self._show, rows)
+            job.next_tick(self._show, rows)
 
     def _in_front(self) -> bool:
         """Whether the picture or the curve, which come first, is being computed."""
@@ -152,23 +152,23 @@ class MapTab(Page):
 
     # To the browser
 
-    def _tell(self, **message: Any) -> None:
-        self._view.tell(**message)
+    def _send(self, **message: Any) -> None:
+        self._view.send(**message)
 
-    def _tell_now(self) -> None:
+    def _send_now(self) -> None:
         scene = self._host.session.scene
         if self._grid is not None:
-            self._tell(type="map-now", now=now_row(self._grid, scene.f, scene.A0))
+            self._send(type="map-now", now=now_row(self._grid, scene.f, scene.A0))
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status
-        self._tell(type="map-status", **progress("map", status), sentence=sentence)
+        self._send(type="map-status", **progress("map", status), sentence=sentence)
 
     def _send_all(self) -> None:
         assert self._grid is not None
         self._scale = {}
-        self._tell(**head_message(self._grid, self._theme))
-        self._tell_now()
+        self._send(**head_message(self._grid, self._theme))
+        self._send_now()
         self._show(self._cells[self._cells["regime"] >= 0])
 
     def _show(self, rows: np.ndarray) -> None:
@@ -180,7 +180,7 @@ class MapTab(Page):
         else:
             self._scale = message["models"]
         with unlocked():
-            self._tell(**message)
+            self._send(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
         """A place of the diagram was clicked: set f and A0 to its values."""
@@ -200,7 +200,7 @@ class MapTab(Page):
         job.say("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
         found = attractors(scene, starts, stop=job.stop)
-        job.later(self._arrived, scene, found, [described(one) for one in found])
+        job.next_tick(self._arrived, scene, found, [described(one) for one in found])
 
     def _say_search(self, status: str, sentence: str) -> None:
         self._show_attractors("" if status == "done" else status, sentence)
@@ -210,7 +210,7 @@ class MapTab(Page):
 
     def _show_attractors(self, status: str, sentence: str = "") -> None:
         shown = self._shown if self._found else []
-        self._tell(type="map-attractors", **progress("attractors", status), sentence=sentence, attractors=shown)
+        self._send(type="map-attractors", **progress("attractors", status), sentence=sentence, attractors=shown)
 
     def _forget_attractors(self) -> None:
         self._search.cancel()

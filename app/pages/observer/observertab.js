@@ -1,6 +1,6 @@
 // The Observer tab: the distance in small, and the way to the page. What fills the figure serves the page as well.
 
-import { openButton, paragraph, part } from "../../parts/dom.js";
+import { element, openButton, paragraph } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
 // The distance over time, and what the multipliers predict of it; each point is [drive period, distance].
@@ -20,16 +20,16 @@ export function showDistance(figure, item, known) {
   else fillDistance(figure, known);
 }
 
-export function observerTab(_, { words }) {
+export function observerTab(_, { placeholder }) {
   const page = window.granchain;
-  const host = part("div", { className: "small" });
+  const host = element("div", { className: "small" });
   const figure = new Embedded(host, (one) => fillDistance(one, page.observer));
   const said = paragraph();
   const show = () => {
-    said.textContent = page.observer?.sentence || words;
+    said.textContent = page.observer?.sentence || placeholder;
     if (host.isConnected && page.observer) showDistance(figure, page.observer.small, page.observer);
   };
   page.observerTab = host; // while it is on the screen the observer runs
   requestAnimationFrame(show);
-  return { content: [part("div", { className: "row top" }, said, openButton("observer")), host], show };
+  return { content: [element("div", { className: "row top" }, said, openButton("observer")), host], show };
 }

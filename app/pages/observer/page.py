@@ -44,12 +44,12 @@ class ObserverPage(Page):
             "observer-again": lambda _: self._wish("again"),
         }
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """A knob moved: the page's own control follows, and the next period belongs to the new chain."""
         scene = self._host.session.scene
-        self._view.display(kappa=scene.kappa)
+        self._view.update_state(kappa=scene.kappa)
         if self._run is not None and self._run.scene.digest != scene.digest:
-            self._view.display(sentence="", predicted=None, measured=None)
+            self._view.update_state(sentence="", predicted=None, measured=None)
 
     def close(self) -> None:
         """The visitor left."""
@@ -69,7 +69,7 @@ class ObserverPage(Page):
 
     def _said(self, status: str, _: str) -> None:
         if status == "compiling":
-            self._view.display(**progress("observer", status))
+            self._view.update_state(**progress("observer", status))
         elif self._asked:
             self._more()
 
@@ -91,10 +91,10 @@ class ObserverPage(Page):
                 (run.nudge if wish == "nudge" else run.from_rest)()
         self._run = run
         if not run.in_step or began:
-            job.later(self._show, _Moved(run, run.step(), began))
+            job.next_tick(self._show, _Moved(run, run.step(), began))
 
     def _show(self, moved: _Moved) -> None:
         run = moved.run
-        self._view.display(**progress("observer", "done"), sentence=run.sentence, predicted=run.predicted,
+        self._view.update_state(**progress("observer", "done"), sentence=run.sentence, predicted=run.predicted,
                            measured=run.measured)
         self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

@@ -48,7 +48,7 @@ class Observer(FigurePart):
         if self._anchor is None and step.number >= since + _TRANSIENT:
             self._anchor = float(step.number), float(step.distance[0])
         line = prediction(*self._anchor, factor) if self._anchor else []
-        self.tell(**step_message(step, scene, began), prediction=line)
+        self.send(**step_message(step, scene, began), prediction=line)
 
 
 def first_state() -> dict[str, Any]:

@@ -1,6 +1,6 @@
 // The multipliers in the complex plane; a click on one, or an arrow key, chooses the disturbance that is shown.
 
-import { part } from "../../parts/dom.js";
+import { element } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
 
 const OBSERVER = "the observer: a second chain pushed by this one's input force";
@@ -9,18 +9,18 @@ export class MultiplierPlane {
   constructor(model, send) {
     this.model = model;
     this.choose = (rank) => send({ do: "stability-mode", value: rank });
-    this.watch = part("input", { type: "checkbox" });
+    this.watch = element("input", { type: "checkbox" });
     this.watch.addEventListener("change", () => send({ do: "stability-observer", value: this.watch.checked }));
-    this.host = part("div", { className: "picture", tabIndex: 0, title: "Arrow keys choose another multiplier" });
+    this.host = element("div", { className: "picture", tabIndex: 0, title: "Arrow keys choose another multiplier" });
     this.host.addEventListener("keydown", ({ key }) => this.step({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0));
     this.figure = new Embedded(this.host, (one) => this.fill(one));
-    this.told = part("span", { className: "soft told" });
-    const label = part("label", { className: "watch", title: OBSERVER }, this.watch, "observer");
-    this.root = part(
+    this.told = element("span", { className: "soft told" });
+    const label = element("label", { className: "watch", title: OBSERVER }, this.watch, "observer");
+    this.root = element(
       "section",
       { className: "plane" },
-      part("div", { className: "row" }, part("h3", { textContent: "multipliers" }), label),
-      part("div", { className: "draw" }, this.host),
+      element("div", { className: "row" }, element("h3", { textContent: "multipliers" }), label),
+      element("div", { className: "draw" }, this.host),
       this.told,
     );
   }

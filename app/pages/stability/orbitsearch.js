@@ -1,10 +1,10 @@
 // The row that searches for an unstable orbit nearby, and leads back from one that was found.
 
-import { button, part } from "../../parts/dom.js";
+import { button, element } from "../../parts/dom.js";
 
 export class OrbitSearch {
   constructor(send, longest) {
-    this.period = part("input", {
+    this.period = element("input", {
       type: "number",
       min: 1,
       max: longest,
@@ -16,11 +16,11 @@ export class OrbitSearch {
       title: "Newton's method from the present state, the middle of the section and its close returns",
     });
     this.back = button("", () => send({ do: "stability-back" }), { className: "back" });
-    this.said = part("span", { className: "soft" });
-    this.root = part(
+    this.said = element("span", { className: "soft" });
+    this.root = element(
       "div",
       { className: "search row" },
-      part("label", {}, "search for an unstable orbit nearby, of period ", this.period),
+      element("label", {}, "search for an unstable orbit nearby, of period ", this.period),
       this.find,
       this.back,
       this.said,

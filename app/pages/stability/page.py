@@ -77,25 +77,25 @@ class StabilityPage(Page):
 
     # The picture in front
 
-    def moved(self) -> None:
+    def picture_requested(self) -> None:
         """Another picture is being computed: cancel the analysis, and grey what is shown."""
         self._give_up()
         self._picture = None
         if self._open and self._host.session.mode == "live":
             self._clear(_LIVE)
         elif self._open:
-            self._view.display(stale=True)
+            self._view.update_state(stale=True)
 
-    def arrived(self, picture: Settled) -> None:
+    def picture_ready(self, picture: Settled) -> None:
         """A picture has arrived: if it is the final one for these knobs, analyse it if it stays."""
         if not picture.final:
             return
         again = self._picture is not None and picture.state is self._picture.state  # with its energy account
         self._picture = picture
         if not again:
-            self._start, self._rank = self._host.session.began, 0
+            self._start, self._rank = self._host.session.started_from, 0
             self._due += 1
-            self._host.after(ANALYSIS_QUIET, self._begin, self._due)
+            self._host.call_later(ANALYSIS_QUIET, self._begin, self._due)
 
     def close(self) -> None:
         """The visitor left."""
@@ -125,7 +125,7 @@ class StabilityPage(Page):
             return
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
-        self._view.display(stale=True, beads=picture.run.scene.N)
+        self._view.update_state(stale=True, beads=picture.run.scene.N)
         if picture.regime.name == "periodic" and picture.regime.period is not None:
             self._follow(Target(picture.run.scene, picture.regime.period, picture.state, followed=True))
         else:
@@ -142,15 +142,15 @@ class StabilityPage(Page):
 
     def _analyse(self, target: Target, observer: bool, rank: int, job: Job) -> None:
         self._compile(target.scene, job)
-        job.later(self._arrived, analyse(target, observer, rank, job.stop))
+        job.next_tick(self._arrived, analyse(target, observer, rank, job.stop))
 
     def _make_section(self, picture: Settled, start: State | None, job: Job) -> None:
         for section in section_of(picture, start, job.stop):
-            job.later(self._arrived, section)
+            job.next_tick(self._arrived, section)
 
     def _find(self, picture: Settled, section: Section | None, period: int, job: Job) -> None:
         self._compile(picture.run.scene, job)
-        job.later(self._arrived, search(picture, section, period, job.stop))
+        job.next_tick(self._arrived, search(picture, section, period, job.stop))
 
     @staticmethod
     def _compile(scene: Scene, job: Job) -> None:
@@ -187,12 +187,12 @@ class StabilityPage(Page):
             self._trail.follow(orbit.multipliers, orbit.period, orbit.scene.name)
         before = self._trail.before(orbit.period) if analysis.target.followed else []
         self._view.need_figures()
-        self._view.display(
+        self._view.update_state(
             **progress("stability", "done"), failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
             searched=not analysis.target.followed, rank=self._rank, period=orbit.period,
             count=len(orbit.multipliers), told=multiplier_sentence(orbit, self._rank),
             plane=plane_state(orbit, self._observer, self._rank, before))
-        self._view.tell(**mode_message(analysis.mode, orbit))
+        self._view.send(**mode_message(analysis.mode, orbit))
         self._show_section()
 
     def _show_section(self) -> None:
@@ -207,32 +207,32 @@ class StabilityPage(Page):
 
     def _show_evidence(self) -> None:
         if self._picture is not None:
-            self._view.display(evidence=evidence(self._picture, self._analysis, self._section))
+            self._view.update_state(evidence=evidence(self._picture, self._analysis, self._section))
 
     def _clear(self, sentence: str) -> None:
         """Show no multipliers, and a sentence that says why."""
         self._analysis, self.status = None, "none"
-        self._view.display(**progress("stability", "none"), failure="", stale=False, sentence=sentence,
+        self._view.update_state(**progress("stability", "none"), failure="", stale=False, sentence=sentence,
                            plane=plane_state(None), count=0, told="", searched=False, evidence=[],
                            observer=self._observer)
-        self._view.tell(type="no-mode")
+        self._view.send(type="no-mode")
         if self._host.session.mode == "live":
-            self._view.tell(type="no-section")
+            self._view.send(type="no-section")
         self._show_evidence()
 
     def _say(self, status: str, sentence: str = "") -> None:
         self.status = status
-        self._view.display(**progress("stability", status), failure=sentence)
+        self._view.update_state(**progress("stability", status), failure=sentence)
         if status == "failed" and self._analysis is None and self._target is not None:
-            self._view.display(sentence=sentence, failure="", plane=plane_state(None), count=0, told="",
+            self._view.update_state(sentence=sentence, failure="", plane=plane_state(None), count=0, told="",
                                stale=False)
-            self._view.tell(type="no-mode")
+            self._view.send(type="no-mode")
 
     # What the visitor does
 
     def _choose_observer(self, message: dict[str, Any]) -> None:
         self._observer = bool(message.get("value"))
-        self._view.display(observer=self._observer)
+        self._view.update_state(observer=self._observer)
         self._again()
 
     def _choose_mode(self, message: dict[str, Any]) -> None:

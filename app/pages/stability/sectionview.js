@@ -1,20 +1,20 @@
 // The Poincaré section on the page: its picture, and the choice of bead and drive phase.
 
-import { part } from "../../parts/dom.js";
+import { element } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
 export class SectionView {
   constructor(send, phases) {
     this.phases = phases;
-    this.beads = part("select", { title: "the bead whose section is shown" });
+    this.beads = element("select", { title: "the bead whose section is shown" });
     this.beads.setAttribute("aria-label", "bead of the section");
-    this.phase = part("input", { type: "range", min: 0, max: phases - 1, value: 0, step: 1 });
+    this.phase = element("input", { type: "range", min: 0, max: phases - 1, value: 0, step: 1 });
     this.phase.setAttribute("aria-label", "drive phase of the section");
-    this.said = part("output");
-    this.close = part("input", { type: "checkbox" });
+    this.said = element("output");
+    this.close = element("input", { type: "checkbox" });
     this.close.addEventListener("change", () => this.showRanges());
-    this.told = part("span", { className: "soft" });
-    this.host = part("div", { className: "picture" });
+    this.told = element("span", { className: "soft" });
+    this.host = element("div", { className: "picture" });
     this.figure = new Embedded(this.host, () => this.fill());
     const tell = () => {
       this.say();
@@ -22,18 +22,18 @@ export class SectionView {
     };
     this.beads.addEventListener("change", tell);
     this.phase.addEventListener("input", tell);
-    this.root = part(
+    this.root = element(
       "section",
       { className: "poincare" },
-      part("div", { className: "row" }, part("h3", { textContent: "Poincaré section" }), this.beads),
-      part(
+      element("div", { className: "row" }, element("h3", { textContent: "Poincaré section" }), this.beads),
+      element(
         "div",
         { className: "row" },
-        part("label", {}, "drive phase ", this.phase),
+        element("label", {}, "drive phase ", this.phase),
         this.said,
-        part("label", { title: "the second half of the points only" }, this.close, "close up"),
+        element("label", { title: "the second half of the points only" }, this.close, "close up"),
       ),
-      part("div", { className: "draw" }, this.host),
+      element("div", { className: "draw" }, this.host),
       this.told,
     );
     this.say();

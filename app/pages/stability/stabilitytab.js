@@ -1,11 +1,11 @@
 // The Stability tab: the unit circle and the sentence; it draws what the Stability page holds.
 
-import { openButton, paragraph, part } from "../../parts/dom.js";
+import { element, openButton, paragraph } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
 
 export function stabilityTab() {
   const page = window.granchain;
-  const host = part("div", { className: "circle" });
+  const host = element("div", { className: "circle" });
   const said = paragraph("", "verdict");
   const more = paragraph("", "soft");
   const figure = new Embedded(host, (one) => fillModels(one, page.stability?.state.plane));
@@ -19,6 +19,6 @@ export function stabilityTab() {
     else fillModels(figure, state.plane);
   };
   requestAnimationFrame(show);
-  const words = part("div", {}, said, more, openButton("stability"));
-  return { content: [part("div", { className: "beside" }, host, words)], show };
+  const words = element("div", {}, said, more, openButton("stability"));
+  return { content: [element("div", { className: "beside" }, host, words)], show };
 }

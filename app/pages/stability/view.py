@@ -49,7 +49,7 @@ class Stability(FigurePart):
     def section(self, shown: SectionPoints) -> None:
         """Show a section in place of an earlier one."""
         self.need_figures()
-        self.tell(**section_message(shown))
+        self.send(**section_message(shown))
 
 
 def period_words(orbit: Orbit) -> str:
