@@ -185,7 +185,8 @@ class Controller:
         session = self.session
         self.views.header.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
-            speeds=list(SPEEDS), speed=session.speed, playing=session.playing, query=session.link)
+            speeds=list(SPEEDS), speed=session.speed, playing=session.playing, account=session.account,
+            query=session.link)
 
     def _tell_pages(self) -> None:
         scene = self.session.scene

@@ -8,6 +8,7 @@ from typing import Any
 from .live import LiveRun
 from .pictures import Pictures
 from .session import Session
+from .switches import ACCOUNT
 
 
 class Playback:
@@ -54,6 +55,10 @@ class Playback:
         if not message.get("playing"):
             self._playing({"value": False})
             self._header()
+        if message.get("account"):
+            self._session.switch(ACCOUNT, True)
+            self._header()
+            self._compute()
         gone = " and your uploaded data are gone" if message.get("uploaded") else ""
         self._say("The connection was lost. Your settings are restored, but the chain has started again from rest"
                   f"{gone}.")

@@ -70,7 +70,7 @@ class Header {
       iconButton(icon("share", "share"), "Link to this picture", send("share")),
       iconButton(icon("save", "save"), "Save this picture as HDF5", send("save"), "save"),
       iconButton(icon("help"), "Help", () => this.popovers.toggleHelp(), "icon"),
-      iconButton(icon("theme"), "Light, dark, projector", () => window.granchain.nextTheme(), "icon"),
+      iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon"),
       this.popovers.help,
       this.popovers.link,
     );
@@ -159,13 +159,13 @@ class Header {
     this.start.style.display = mode === "live" ? "none" : "";
   }
 
-  showPlaying({ playing = this.playing, speed }) {
+  showPlaying({ playing = this.playing, speed, account = false }) {
     if (playing !== this.playing) {
       this.playing = playing;
       window.granchain.emit("play", playing);
     }
     this.drawPlay();
-    window.granchain.kept = { ...window.granchain.kept, speed, playing };
+    window.granchain.kept = { ...window.granchain.kept, speed, playing, account };
   }
 
   // After a lost connection: what the share link does not carry.
@@ -173,8 +173,8 @@ class Header {
     const { again } = window.granchain;
     if (!again) return;
     window.granchain.again = null;
-    const { speed = 1, playing = true, uploaded = false } = again;
-    this.send("reconnected", { speed, playing, uploaded });
+    const { speed = 1, playing = true, account = false, uploaded = false } = again;
+    this.send("reconnected", { speed, playing, account, uploaded });
   }
 
   receive(message) {

@@ -99,8 +99,8 @@ def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: boo
         model.update(**state[model.name])
         plot.add_layout(model)
     shown = _lines(plot, points(rows), compact) + _rings(plot, state, compact)
-    for both in (plot.x_range, plot.y_range):
-        both.update(renderers=shown, range_padding=0.06)
+    for data_range in (plot.x_range, plot.y_range):
+        data_range.update(renderers=shown, range_padding=0.06)
     if not compact:
         plot.xaxis.axis_label = "computing time of ten drive periods (ms)"
         plot.yaxis.axis_label = "largest error / largest displacement"

@@ -157,8 +157,8 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
                              line_color="ink", line_width=1.2))
     items += [LegendItem(name=f"legend of {kind}", label=SPECIAL[kind], renderers=[one], visible=False)
               for kind, one in _marks(plot, sources, compact).items()]
-    for both in (plot.x_range, plot.y_range):
-        both.renderers = [targets]
+    for data_range in (plot.x_range, plot.y_range):
+        data_range.renderers = [targets]
     if not compact:
         _tools(plot, targets, items)
         plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, _TITLE

@@ -29,7 +29,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 
 
 def compiling_words(page: str) -> str:
-    """What is being compiled for a page, or for the "picture" in front, and how long one has to wait for it."""
+    """What is being compiled for a page, or for the main "picture", and how long that takes."""
     what, seconds = _COMPILED[page]
     return f"compiling {what}: about {seconds} s, only the first time on this computer"
 

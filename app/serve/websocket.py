@@ -1,7 +1,7 @@
 """The websocket: a picture's messages leave together and at once; requests wait until they can be answered.
 
-The optional private attributes of Tornado, Bokeh and Panel are used in this file only. Each saves some milliseconds or
-keeps a message from being lost; if a release drops one, the public API is used instead.
+Private attributes of Tornado, Bokeh and Panel, and Panel's undocumented `set_curdoc`, are used in this file only. Each
+saves some milliseconds or keeps a message from being lost; if a release drops one, the public API is used instead.
 """
 
 from __future__ import annotations
@@ -14,8 +14,12 @@ from typing import Any
 import panel as pn
 from bokeh.document import Document
 from bokeh.events import Event
-from panel.io.state import set_curdoc
 from tornado.iostream import IOStream
+
+try:
+    from panel.io.state import set_curdoc
+except ImportError:  # it is not in Panel's documentation
+    set_curdoc = None
 
 
 def _session(document: Document) -> Any:
@@ -87,12 +91,13 @@ def _wait() -> None:
 class WithoutBusyIndicator:
     """A Panel component whose events skip the busy indicator, which this page does not show: it takes 2 of 5 ms.
 
-    Panel calls `_process_bokeh_event`; with a release that calls another method, the indicator comes back.
+    Panel calls `_process_bokeh_event`; with a release that calls another method or has no `set_curdoc`, the indicator
+    comes back.
     """
 
     def _process_bokeh_event(self, doc: Document, event: Event) -> None:
         handle = getattr(self, "_process_event", None)
-        if handle is None:
+        if handle is None or set_curdoc is None:
             super()._process_bokeh_event(doc, event)  # type: ignore[misc]
             return
         with set_curdoc(doc):

@@ -45,7 +45,7 @@ def test_an_amplitude_moved_alone_is_said_beside_kappa(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     expect(page.locator("#knobs .kept")).to_be_empty()
     type_into(page, "A0", "6")
-    expect(page.locator("#knobs .kept")).to_have_text("κ was 0.001; A₀ moved, not k")
+    expect(page.locator("#knobs .kept")).to_have_text("κ was 0.001 before A₀ changed at constant k")
     assert knob(page, "kappa") == "0.00108012"
     type_into(page, "A0", "8")
     expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("9.35414e-4")

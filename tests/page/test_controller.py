@@ -142,6 +142,16 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
     assert {one["name"]: one["slot"] for one in panel["effects"]}["dashpot"] == "dissipation"
 
 
+def test_a_reconnected_page_has_its_speed_its_pause_and_its_energy_account_back() -> None:
+    dashboard = Dashboard()
+    dashboard.received({"do": "reconnected", "speed": 5, "playing": False, "account": True, "uploaded": True})
+    session = dashboard.session
+    assert (session.speed, session.playing, session.account) == (5.0, False, True)
+    assert dashboard.views.header.state["account"]
+    assert session.sentence.endswith("has started again from rest and your uploaded data are gone.")
+    dashboard.close(None)
+
+
 def test_an_action_of_two_pages_is_refused_with_both_names() -> None:
     """One of them would never be called."""
     with pytest.raises(TypeError, match="the page 'map' and the page 'branches' both have an action 'stop'"):

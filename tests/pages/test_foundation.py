@@ -26,7 +26,7 @@ def said(*settings: str, capsys: pytest.CaptureFixture[str]) -> str:
 def test_an_amplitude_set_alone_is_said_with_both_kappas(capsys: pytest.CaptureFixture[str]) -> None:
     told = said("A0=6e-6", capsys=capsys)
     # κ = k/(K√A0): 0.001·√(7/6)
-    assert told == "κ was 0.001; A₀ moved, not k. It is 0.00108012 now; --set kappa=0.001 keeps it.\n"
+    assert told == "κ was 0.001 before A₀ changed at constant k. It is 0.00108012 now; --set kappa=0.001 keeps it.\n"
 
 
 @pytest.mark.parametrize("settings", [("A0=6e-6", "kappa=0.001"), ("k=30000", "A0=6e-6"), ("A0=7e-6",), ("D=30",)])
@@ -47,7 +47,7 @@ def test_a_branch_or_map_in_the_amplitude_is_said() -> None:
 
 
 def test_the_page_says_beside_kappa_what_it_was() -> None:
-    assert beside_kappa(RIG.evolve(A0=6e-6)) == "κ was 0.001; A₀ moved, not k"
+    assert beside_kappa(RIG.evolve(A0=6e-6)) == "κ was 0.001 before A₀ changed at constant k"
     assert beside_kappa(RIG) == beside_kappa(RIG.evolve(A0=6e-6, kappa=0.001)) == ""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import importlib.util
 import sys
 import threading
 from collections.abc import Iterator
@@ -165,3 +166,27 @@ def test_an_event_of_a_part_is_handled_with_and_without_panels_private_method(mo
     hide(monkeypatch, Part, "_process_event")
     Part()._process_bokeh_event(document, event)
     assert handled == [("directly", event), ("by Panel", event)]
+
+
+def test_an_event_of_a_part_is_handled_by_panel_where_that_has_no_set_curdoc(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The module is imported without it, and leaves the event to Panel."""
+    monkeypatch.delattr(sys.modules["panel.io.state"], "set_curdoc")
+    spec = importlib.util.spec_from_file_location("without_set_curdoc", websocket.__file__)
+    assert spec is not None and spec.loader is not None
+    without = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(without)
+    assert without.set_curdoc is None
+    handled: list[Event] = []
+
+    class Panel:
+        """What handles events where a release of Panel does it alone."""
+
+        def _process_bokeh_event(self, document: Document, event: Event) -> None:
+            handled.append(event)
+
+        def _process_event(self, event: Event) -> None:
+            pytest.fail("it needs set_curdoc")
+
+    event = Event()
+    type("Part", (without.WithoutBusyIndicator, Panel), {})()._process_bokeh_event(Document(), event)
+    assert handled == [event]

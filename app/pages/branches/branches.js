@@ -4,7 +4,7 @@ import { button, element, pageHead, paragraph } from "../../parts/dom.js";
 import { Embedded, StreamedData } from "../../parts/embedded.js";
 
 const SPECIAL = ["fold", "period_doubling", "neimark_sacker", "grazing"];
-const WORDS = "largest output force of periodic orbits over drive frequency";
+const WORDS = "largest elastic output force of periodic orbits over drive frequency";
 // Below this width in pixels the legend stands in two columns.
 const NARROW = 700;
 const ABOUT =

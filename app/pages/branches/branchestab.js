@@ -11,7 +11,7 @@ export function branchesTab() {
   page.branches.figures[1] = figure;
   const show = () => {
     const { data, words, small } = page.branches;
-    said.textContent = words || "Every periodic orbit of this chain, stable or not, over the frequency.";
+    said.textContent = words || "Periodic orbits followed over the drive frequency, stable and unstable.";
     if (host.isConnected && data.rows.orbits) figure.load(small, "branches of periodic orbits");
   };
   requestAnimationFrame(show);

@@ -130,7 +130,7 @@ class BranchesPage(Page):
         job.next_tick(self._draw)
 
     def _grown(self, job: Job) -> None:
-        """After each orbit, update the page now and then, and wait for the picture in front."""
+        """After each orbit: update the page if `BRANCH_EVERY` has passed, and wait while a picture is computed."""
         if time.monotonic() - self._sent > BRANCH_EVERY:
             self._sent = time.monotonic()
             job.next_tick(self._draw)

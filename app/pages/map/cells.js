@@ -16,7 +16,7 @@ export const MAP = {
   search: "none",
   searched: "",
   shown: "force",
-  // Redraws what is on the screen; set while the tab is open.
+  // Redraws the tab; set when it is first opened, and without effect while it is closed.
   redraw: () => {},
 };
 

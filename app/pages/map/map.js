@@ -12,7 +12,7 @@ const SHOWN = [
 ];
 const ARROWS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
 
-// Sends the theme of the page, whose colours the figure has; set while the tab is open.
+// Tells the server the page's theme, for the colours of the figure; set when the tab is first opened.
 let sendTheme = () => {};
 window.granchain.on("theme", () => sendTheme());
 
