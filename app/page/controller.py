@@ -54,11 +54,12 @@ class Controller:
             "dismiss-sentence": self._dismiss_sentence,
         }
         playback = Playback(session, self.pictures, self._compute, self._header, self.say)
-        self._actions = all_actions({
+        self.owners: dict[str, Actions] = {
             "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
             "display choices": self.choices.actions,
-            **{f"the page {row.name!r}": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
-        })
+            **{f"page `{row.name}`": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
+        }
+        self._actions = all_actions(self.owners)
 
     # Coming in and going out
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from granchain_core.store import save
 
 from ..pages.curve.page import Curves
 from ..serve.queues import FILES
+from .hooks import Actions
 from .host import Host
 from .layout import Views
 from .pictures import Pictures
@@ -31,7 +31,7 @@ class LinksAndFiles:
         self._pictures = pictures
         self._saving = Task(host, FILES, _say_nothing, "Saving the picture", host.failed)
         self._reading = Task(host, FILES, _say_nothing, "Reading the measurement", host.failed)
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "share": self._share, "save": self._save, "csv": self._csv,
             "csv-too-large": self._too_large, "csv-remove": self._remove,
         }

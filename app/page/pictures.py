@@ -92,8 +92,8 @@ class Pictures:
     def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
         if not COMPILER.has(scene, LIVE):
-            self._host.next_tick(self._note, f"{compiling_words('picture').capitalize()}; the picture then appears by "
-                                         "itself.")
+            words = compiling_words("the kernels for this set of effects", 10).capitalize()
+            self._host.next_tick(self._note, f"{words}; the picture then appears by itself.")
             for piece in (LIVE, CERTIFIED, CURVE):
                 COMPILER.ask(scene, piece)
             if not COMPILER.await_piece(scene, LIVE, stop):

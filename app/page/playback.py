@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from .hooks import Actions
 from .live import LiveRun
 from .pictures import Pictures
 from .session import Session
@@ -21,7 +22,7 @@ class Playback:
         self._compute = compute
         self._header = header
         self._say = say
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
             "reset": self._reset, "next-period": self._next_period, "reconnected": self._reconnected,
         }

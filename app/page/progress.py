@@ -2,53 +2,50 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
 
 from ..serve.compiler import compiling_words
 
 #: In the list of what is computed now: nobody asks for it, nothing is left to do, it is under way.
 OFF, READY, COMPUTING = "off", "ready", "computing"
 
+#: How a computation stands.
+Status = Literal["none", "waiting", "compiling", "settling", "computing", "measuring", "following", "searching",
+                 "drawing", "done", "stopped", "failed"]
+
 #: What a page says of a computation that is under way or waits for its turn.
-UNDER_WAY = {
+UNDER_WAY: dict[Status, str] = {
     "waiting": "waiting for its turn …", "compiling": "compiling …", "settling": "looking for the first orbit …",
     "computing": "computing …", "measuring": "measuring …", "following": "following …", "searching": "searching …",
     "drawing": "drawing …",
 }
 
-#: What one page says instead.
-_OWN = {
-    "map": {"waiting": "waiting for the curve …"},
-    "attractors": {"searching": "searching from rest, from both sweeps and from random states …"},
-}
 
-#: What a page keeps when the visitor stops its computation.
-_KEPT = {"accuracy": "the measurements so far", "branches": "the orbits found so far",
-         "map": "the cells computed so far"}
+@dataclass(frozen=True)
+class StatusWords:
+    """The words of one computation of a page.
 
-
-def progress(page: str, status: str) -> dict[str, Any]:
-    """What a page's part in the browser shows of a computation.
-
-    Parameters
-    ----------
-    page : str
-        The page, or "attractors" for the search on the map's tab.
-    status : str
-        A state of `UNDER_WAY`, or "none", "done", "stopped" or "failed".
-
-    Returns
-    -------
-    dict
-        `status` itself, `progress` in words (empty where there is nothing to say), and whether it is `running`.
+    compiles, seconds : what has to be compiled for it, and how long that takes on two cores [s].
+    kept : what stays when the visitor stops it, empty if nothing does. instead : words in place of `UNDER_WAY`.
     """
-    return {"status": status, "progress": progress_words(page, status), "running": status in UNDER_WAY}
 
+    compiles: str = "the kernels"
+    seconds: int = 10
+    kept: str = ""
+    instead: Mapping[Status, str] = field(default_factory=dict)
 
-def progress_words(page: str, status: str) -> str:
-    """The words of `progress` alone."""
-    if status == "compiling":
-        return f"{compiling_words(page)} …"
-    if status == "stopped":
-        return f"stopped; {_KEPT[page]} are kept" if page in _KEPT else "stopped"
-    return _OWN.get(page, {}).get(status, UNDER_WAY.get(status, ""))
+    def of(self, status: Status) -> dict[str, Any]:
+        """What the page's part in the browser shows.
+
+        `status` itself, `progress` in words (empty where there is nothing to say), and whether it is `running`.
+        """
+        return {"status": status, "progress": self._words(status), "running": status in UNDER_WAY}
+
+    def _words(self, status: Status) -> str:
+        if status == "compiling":
+            return f"{compiling_words(self.compiles, self.seconds)} …"
+        if status == "stopped":
+            return f"stopped; {self.kept} are kept" if self.kept else "stopped"
+        return self.instead.get(status, UNDER_WAY.get(status, ""))

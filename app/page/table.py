@@ -28,7 +28,8 @@ class Row:
     """One page: its name in messages, the title of its tab, what is computed and how it is drawn.
 
     `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
-    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height.
+    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height. A
+    page that `reports_visibility` gets the message "NAME-visible" whenever its tab comes on the screen or leaves it.
     """
 
     name: str
@@ -37,14 +38,15 @@ class Row:
     view: Callable[..., Component] | None
     placeholder: str = ""
     taller: bool = True
+    reports_visibility: bool = False
 
 
 #: In the order of the tabs.
 PAGES = (
     Row("stability", "stability", StabilityPage, Stability),
     Row("accuracy", "accuracy", AccuracyPage, Accuracy),
-    Row("map", "map", MapTab, None),
-    Row("effects", "effects", EffectsPanel, None),
+    Row("map", "map", MapTab, None, reports_visibility=True),
+    Row("effects", "effects", EffectsPanel, None, reports_visibility=True),
     Row("branches", "branches", BranchesPage, Branches),
     Row("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else."),
@@ -56,5 +58,5 @@ PAGES = (
 
 def described_pages() -> list[dict[str, Any]]:
     """What the tabs need of the table."""
-    return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller}
-            for row in PAGES]
+    return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller,
+             "reports_visibility": row.reports_visibility} for row in PAGES]

@@ -10,7 +10,8 @@ import { stabilityTab } from "../pages/stability/stabilitytab.js";
 import { button, element, openButton, paragraph } from "../parts/dom.js";
 import { dataTab, lookAtTab, regimesTab } from "./scenetabs.js";
 
-// The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name.
+// The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name. A tab
+// that `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
 const TABS = {
   "look at": lookAtTab,
   regimes: regimesTab,
@@ -55,6 +56,7 @@ class Tabs {
     rows.push({ name: "data", title: "data" });
     this.rows = new Map(rows.map((row) => [row.name, row]));
     this.chosen = "look at";
+    this.seen = this.chosen; // the tab that is on the screen, null while a page lies over the pictures
     this.redraw = () => {};
     this.tabs = rows.map((row) => this.tab(row));
     // The larger button floats, so it comes first: the second line of tabs has the whole width.
@@ -71,19 +73,23 @@ class Tabs {
   }
 
   choose(name) {
-    const before = this.chosen;
     this.chosen = name;
     document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
-    if (before === "effects" || name === "effects") this.tellEffectsVisible();
-    if (before === "map" || name === "map") this.model.send_msg({ do: "map-visible", value: name === "map" });
+    this.reportVisibility();
     this.show();
     window.granchain.emit("tab", name);
   }
 
-  // Costs are measured only while somebody looks at them.
-  tellEffectsVisible() {
-    const value = this.chosen === "effects" && !window.granchain.overlay;
-    this.model.send_msg({ do: "effects-visible", value });
+  // Some pages compute only while somebody looks at their tab; a page over the pictures hides it.
+  reportVisibility() {
+    const seen = window.granchain.overlay ? null : this.chosen;
+    if (seen === this.seen) return;
+    for (const [name, value] of [
+      [this.seen, false],
+      [seen, true],
+    ])
+      if (this.rows.get(name)?.reports_visibility) this.model.send_msg({ do: `${name}-visible`, value });
+    this.seen = seen;
   }
 
   // The Tab key stops once; arrows, Home and End go from tab to tab.
@@ -106,16 +112,15 @@ class Tabs {
       tab.tabIndex = selected ? 0 : -1;
     }
     const make = TABS[this.chosen] ?? plainTab;
-    const { content, show = () => {} } = make(this.model, this.rows.get(this.chosen));
-    this.redraw = show;
+    const { content, show = () => {}, updatesItself = false } = make(this.model, this.rows.get(this.chosen));
+    Object.assign(this, { redraw: show, updatesItself });
     this.body.replaceChildren(...content);
     if (focused) this.body.querySelector(`[data-name="${focused}"]`)?.focus();
   }
 
   stateChanged() {
     window.granchain.kept = { ...window.granchain.kept, uploaded: Boolean(this.model.state.understood) };
-    // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
-    if (this.chosen !== "map") this.show();
+    if (!this.updatesItself) this.show();
   }
 }
 
@@ -127,9 +132,7 @@ export function render({ model }) {
     window.granchain.on(name, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
-  window.granchain.on("overlay", () => {
-    if (tabs.chosen === "effects") tabs.tellEffectsVisible();
-  });
+  window.granchain.on("overlay", () => tabs.reportVisibility());
   tabs.show();
   return tabs.root;
 }

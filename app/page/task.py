@@ -12,9 +12,10 @@ from ..serve.compiler import COMPILER
 from ..serve.delays import PICTURE_POLL
 from ..serve.queues import Queue, Stop
 from .host import Host
+from .progress import Status
 
 #: Called with a status and a sentence, which is empty unless the status is "failed".
-Say = Callable[[str, str], None]
+Say = Callable[[Status, str], None]
 
 
 class Job:
@@ -34,7 +35,7 @@ class Job:
 
         self._host.next_tick(act)
 
-    def say(self, status: str) -> None:
+    def say(self, status: Status) -> None:
         """Report the state of the work."""
         self.next_tick(self._say, status, "")
 
@@ -104,7 +105,7 @@ class Task:
         else:
             job.next_tick(self._end, "done")
 
-    def _end(self, status: str, sentence: str = "", problem: Exception | None = None) -> None:
+    def _end(self, status: Status, sentence: str = "", problem: Exception | None = None) -> None:
         self._job = None
         self._say(status, sentence)
         if problem is not None and self._failed is not None:

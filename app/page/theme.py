@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from ..pages.curve.page import Curves
 from ..pictures.theme import THEMES
+from .hooks import Actions
 from .layout import Views
 from .session import Session
 
@@ -18,7 +18,7 @@ class DisplayChoices:
         self._session = session
         self._views = views
         self._curves = curves
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "theme": self.choose, "lock-scale": self._lock_scale,
             "curve": self._curve, "curve-stop": lambda _: curves.stop(),
             "curve-visible": lambda m: curves.visible(bool(m.get("value")), session.scene),

@@ -19,18 +19,11 @@ from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, 
 from .delays import STOP_POLL
 from .queues import COMPILATIONS, CURVES, Stop
 
-#: What is compiled for a page, and how long that takes on two cores [s].
-_COMPILED = {"picture": ("the kernels for this set of effects", 10), "map": ("the kernels", 10),
-             "attractors": ("the kernels", 10), "observer": ("the observer's kernels", 10),
-             "accuracy": ("the kernels of all methods", 20), "stability": ("the tangent flow", 20),
-             "branches": ("the kernels for branches", 40)}
-
 _ROOT = Path(__file__).resolve().parents[2]
 
 
-def compiling_words(page: str) -> str:
-    """What is being compiled for a page, or for the main "picture", and how long that takes."""
-    what, seconds = _COMPILED[page]
+def compiling_words(what: str, seconds: int) -> str:
+    """What is being compiled, and how long that takes on two cores [s]."""
     return f"compiling {what}: about {seconds} s, only the first time on this computer"
 
 

@@ -19,7 +19,7 @@ from tornado.iostream import IOStream
 try:
     from panel.io.state import set_curdoc
 except ImportError:  # it is not in Panel's documentation
-    set_curdoc = None
+    set_curdoc = None  # type: ignore[assignment]
 
 
 def _session(document: Document) -> Any:

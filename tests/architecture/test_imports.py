@@ -79,7 +79,7 @@ def test_no_import_goes_in_a_circle() -> None:
 
 
 #: What the page computes and remembers, without a view; the rest of `app.page` puts the dashboard together.
-RULES = {"active_setting", "message_checks", "energy_residual", "hooks", "host", "activities", "live", "progress", "session", "share", "switches", "task"}
+RULES = {"active_setting", "message_checks", "debounce", "energy_residual", "hooks", "host", "activities", "live", "progress", "session", "share", "switches", "task"}
 #: Each layer of `app` with those it may import, besides the core. A page's layer is its folder.
 ALLOWED = {
     "cli": {"cli", "pictures", "start"},

@@ -20,6 +20,8 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "tests" / "architecture", copy / "tests" / "architecture",
                     ignore=shutil.ignore_patterns("__pycache__"))
+    (copy / "tests" / "page").mkdir()
+    shutil.copy(ROOT / "tests" / "page" / "test_messages.py", copy / "tests" / "page")
     return edited_copy(PAGE, copy)
 
 
@@ -57,7 +59,7 @@ print([one["placeholder"] for one in dashboard.views.tabs.state["pages"] if one[
 
 
 def test_the_new_page_fits_into_the_house(tree: Path) -> None:
-    """Layers, private attributes, docstrings and the map of docs/design.md."""
-    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")), "-k",
-                  "transmission or table or map or circle")
+    """Layers, private attributes, docstrings, the map and the table of messages of docs/design.md."""
+    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
+                  str(Path("tests", "page")), "-k", "transmission or table or map or circle or message")
     assert " passed" in told and "deselected" in told

@@ -154,8 +154,8 @@ def test_a_reconnected_page_has_its_speed_its_pause_and_its_energy_account_back(
 
 def test_an_action_of_two_pages_is_refused_with_both_names() -> None:
     """One of them would never be called."""
-    with pytest.raises(TypeError, match="the page 'map' and the page 'branches' both have an action 'stop'"):
-        all_actions({"the page 'map'": {"stop": print, "go": print}, "the page 'branches'": {"stop": print}})
+    with pytest.raises(TypeError, match="page `map` and page `branches` both have an action 'stop'"):
+        all_actions({"page `map`": {"stop": print, "go": print}, "page `branches`": {"stop": print}})
     assert set(all_actions({"one": {"a": print}, "other": {"b": print}})) == {"a", "b"}
 
 

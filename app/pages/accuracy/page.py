@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -16,13 +15,15 @@ from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 from ...format import duration, short_error
 from ...page.active_setting import locate, page_setting
 from ...page.activities import Activity
-from ...page.hooks import Page
+from ...page.hooks import Actions, Page
 from ...page.host import Host
-from ...page.progress import COMPUTING, OFF, READY, progress
+from ...page.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...page.task import Job, Task
 from ...pictures.accuracy import Annotations
 from ...serve.queues import MEASUREMENTS
 from .view import Accuracy, described_reference, described_ways
+
+WORDS = StatusWords("the kernels of all methods", 20, kept="the measurements so far")
 
 
 def measured_for(scene: Scene) -> str:
@@ -41,9 +42,9 @@ class AccuracyPage(Page):
         self._naive: Lesson | None = None
         self._agreement: float | None = None
         self.rows: list[Row] = []
-        self.status = "none"
+        self.status: Status = "none"
         self.done = 0.0
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "accuracy-open": lambda _: self.open(), "accuracy-measure": lambda _: self._measure(),
             "accuracy-stop": lambda _: self.stop(),
         }
@@ -128,9 +129,9 @@ class AccuracyPage(Page):
         self.done = done
         self._view.update_state(done=done)
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._view.update_state(**progress("accuracy", status), failure=sentence, done=self.done)
+        self._view.update_state(**WORDS.of(status), failure=sentence, done=self.done)
 
     def _sentence(self, best: Row | None) -> str:
         asked = short_error(self._host.session.scene.accuracy)

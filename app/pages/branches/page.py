@@ -13,16 +13,18 @@ from granchain_core import Scene
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
-from ...page.hooks import Page
+from ...page.hooks import Actions, Page
 from ...page.host import Host
 from ...page.message_checks import listed, whole
-from ...page.progress import progress
+from ...page.progress import Status, StatusWords
 from ...page.session import slider_range, without_frequency
 from ...page.task import Job, Task
 from ...pictures.branches import BranchRows
 from ...serve.delays import BRANCH_EVERY
 from ...serve.queues import LONG, Stop
 from .view import LONGEST_PERIOD, Branches
+
+WORDS = StatusWords("the kernels for branches", 40, kept="the orbits found so far")
 
 
 @dataclass
@@ -47,8 +49,8 @@ class BranchesPage(Page):
         self._special: list[tuple[Branch, Any]] = []
         self._rows = BranchRows()
         self._sent = 0.0
-        self.status = "none"
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.status: Status = "none"
+        self.actions: Actions = {
             "branches-start": self._start, "branches-stop": lambda _: self.stop(),
             "branches-continue": lambda _: self._continue(), "branches-orbit": self._load_orbit,
             "branches-double": self._double,
@@ -159,13 +161,13 @@ class BranchesPage(Page):
                 self._view.send(type="orbits", **self._rows.add(number, drawn.branch, points, special))
             self._say(self.status if self.status in ("stopped", "done") else "following")
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
         arms = [drawn.arm for drawn in self._drawn]
         orbits, special = sum(len(arm.points) for arm in arms), sum(len(arm.special) for arm in arms)
         words = f"{orbits} orbits, {special} special points" if arms else ""
         if status == "following":
             words += "; now at " + " and ".join(f"{arm.points[-1].knob:.1f} Hz" for arm in arms if not arm.ended)
-        self._view.update_state(**progress("branches", status), failure=sentence, words=words,
+        self._view.update_state(**WORDS.of(status), failure=sentence, words=words,
                            ended=[arm.reason for arm in arms if arm.ended],
                            unfinished=any(not arm.ended for arm in arms))

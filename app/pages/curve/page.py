@@ -14,6 +14,7 @@ from granchain_core.steady.curve import draft_curve
 from granchain_core.warm import CERTIFIED, CURVE, LIVE
 
 from ...page.activities import Activity
+from ...page.debounce import Debounce
 from ...page.host import Host
 from ...page.progress import COMPUTING, OFF, READY
 from ...page.session import rig_beads, slider_range, without_frequency
@@ -46,7 +47,7 @@ class Curves:
         self._wanted = {name: name == "rest" for name in _SETTINGS}
         self._visible = True
         self._computed: dict[str, Scene] = {}
-        self._due = 0
+        self._quiet = Debounce(host, CURVE_QUIET)
         self._lock = threading.Lock()
         self._buffer: list[Progress] = []
         self._key: Scene | None = None
@@ -84,16 +85,13 @@ class Curves:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
         self._task.cancel()
         self._asked = without_frequency(scene)
-        self._due += 1
-        self._host.call_later(CURVE_QUIET, self._begin_if_last, scene, self._due)
+        self._quiet.start(self._begin_when_compiled, scene)
 
-    def _begin_if_last(self, scene: Scene, due: int) -> None:
-        if due != self._due:
-            return
+    def _begin_when_compiled(self, scene: Scene) -> None:
         if COMPILER.has(scene, LIVE, CERTIFIED, CURVE):
             self._begin(scene)
         else:
-            self._host.call_later(CURVE_QUIET, self._begin_if_last, scene, due)
+            self._quiet.start(self._begin_when_compiled, scene)
 
     def visible(self, visible: bool, scene: Scene) -> None:
         """The figure came on the screen or left it."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -14,7 +12,8 @@ from granchain_core.scene.effects import ALWAYS
 from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
 
 from ...page.activities import Activity
-from ...page.hooks import Page
+from ...page.debounce import Debounce
+from ...page.hooks import Actions, Page
 from ...page.host import Host
 from ...page.progress import COMPUTING, READY, UNDER_WAY
 from ...page.switches import EFFECTS, present, refusal, variants
@@ -34,13 +33,13 @@ class EffectsPanel(Page):
         self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
         self._open = False
         self._round = 0
-        self._moved = 0.0
+        self._quiet = Debounce(host, COST_QUIET)
         self._key: tuple[object, ...] = ()
         self._costs: dict[str, dict[str, EffectCost]] = {}
         self._failed: dict[str, str] = {}
         self._compiling = ""
         self.measuring = ""
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "effects-visible": self._visible, "switch": self._switch,
         }
 
@@ -60,7 +59,7 @@ class EffectsPanel(Page):
 
     def scene_changed(self) -> None:
         """A knob has moved: nothing is measured for a while, and what belongs to another kernel is forgotten."""
-        self._moved = time.monotonic()
+        self._quiet.start(self._next)
         scene = self._host.session.scene
         key = (structure(scene), scene.knobs["N"])
         if key != self._key:
@@ -104,7 +103,7 @@ class EffectsPanel(Page):
         """Begin the next thing to do: compile the kernels of one effect, or measure it."""
         scene = self._host.session.scene
         busy = self.measuring or self._host.awaiting_picture or self._host.curve_computing
-        if busy or time.monotonic() - self._moved < COST_QUIET:
+        if busy or self._quiet.pending or not self._open:
             return
         if not COMPILER.has(scene, LIVE, CERTIFIED, CURVE):  # the picture's own kernels come first
             return

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -10,15 +9,17 @@ from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Picture
 
 from ...page.activities import Activity
-from ...page.hooks import Page
+from ...page.hooks import Actions, Page
 from ...page.host import Host
-from ...page.progress import COMPUTING, OFF, READY, progress
+from ...page.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
 from .view import Hard, described, summary
 from .work import CaseProcess, Ended, case_of
 
 _FAULT = "The process that ran this case ended unexpectedly; run it again, and please report it."
+
+WORDS = StatusWords()
 
 
 class HardPage(Page):
@@ -32,7 +33,7 @@ class HardPage(Page):
         self._asked = 0
         self.rows: dict[str, list[Check]] = {}
         self.waiting: list[str] = []
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "hard-run": self._run_one, "hard-all": lambda _: self._run(CASES),
             "hard-stop": lambda _: self.stop(),
         }
@@ -48,7 +49,7 @@ class HardPage(Page):
         """Stop the case under way and forget those that wait; the results found so far stay."""
         self._give_up()
         for name in self.waiting:
-            self._put(name, **progress("hard", "stopped"))
+            self._put(name, **WORDS.of("stopped"))
         self.waiting = []
         self._show()
 
@@ -77,7 +78,7 @@ class HardPage(Page):
             if case.name not in self.waiting:
                 self.waiting.append(case.name)
                 self._asked += 1
-                self._put(case.name, **progress("hard", "waiting"), failure="")
+                self._put(case.name, **WORDS.of("waiting"), failure="")
         if idle:
             self._begin_next()
         self._show()
@@ -91,7 +92,7 @@ class HardPage(Page):
     # In the measuring thread
 
     def _work(self, case: Case, process: CaseProcess, job: Job) -> None:
-        job.next_tick(self._change, case.name, **progress("hard", "computing"))
+        job.next_tick(self._change, case.name, **WORDS.of("computing"))
         try:
             answers = process.measure(case, job.stop)
             job.next_tick(self._measured, case.name, next(answers))
@@ -103,13 +104,13 @@ class HardPage(Page):
 
     def _measured(self, name: str, rows: list[Check]) -> None:
         self.rows[name] = rows
-        self._change(name, **progress("hard", "drawing"), **described(name, rows))
+        self._change(name, **WORDS.of("drawing"), **described(name, rows))
 
     def _draw(self, name: str, picture: Picture | None) -> None:
         if picture is not None:
             self._view.draw(name, picture)
 
-    def _end(self, status: str, sentence: str) -> None:
+    def _end(self, status: Status, sentence: str) -> None:
         """The first waiting case has ended or failed: begin the next one."""
         name = self.waiting.pop(0)
         if self.waiting:
@@ -117,7 +118,7 @@ class HardPage(Page):
         else:
             self._process.close()
             self._process = CaseProcess()
-        self._change(name, **progress("hard", status), failure=sentence)
+        self._change(name, **WORDS.of(status), failure=sentence)
 
     def _put(self, name: str, **changes: Any) -> None:
         self._shown = {**self._shown, name: {**self._shown.get(name, {}), **changes}}

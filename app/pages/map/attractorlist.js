@@ -26,7 +26,7 @@ const attractorRow = (one, load) =>
 
 // The table, or how far the search is; `load` is called with an attractor's number.
 export function attractorList(load) {
-  if (MAP.search !== "") return MAP.searched ? [paragraph(MAP.searched, "soft")] : [];
+  if (MAP.search !== "done") return MAP.searched ? [paragraph(MAP.searched, "soft")] : [];
   const rows = MAP.attractors.map((one, number) => attractorRow(one, () => load(number)));
   const titles = ["", "attractor", "share of random states", "also from", ""];
   return [table(titles, element("tbody", {}, ...rows), { className: "attractors" })];

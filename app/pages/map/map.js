@@ -119,5 +119,5 @@ export function mapTab(model) {
   sendTheme = () => tab.send("map-theme", { value: window.granchain.theme() });
   sendTheme();
   requestAnimationFrame(() => tab.redraw());
-  return { content: tab.content };
+  return { content: tab.content, updatesItself: true };
 }

@@ -15,10 +15,11 @@ from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagr
 from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
 
-from ...page.hooks import Page
+from ...page.debounce import Debounce
+from ...page.hooks import Actions, Page
 from ...page.host import Host
 from ...page.message_checks import listed
-from ...page.progress import progress
+from ...page.progress import Status, StatusWords
 from ...page.session import slider_range
 from ...page.task import Job, Task
 from ...parts.component import Component
@@ -34,6 +35,9 @@ COLUMNS, ROWS = 60, 40
 _RANDOM_STATES = 64
 #: The same for a scene that cannot be computed in SIMD lanes.
 _FEW_RANDOM_STATES = 12
+
+WORDS = StatusWords(kept="the cells computed so far", instead={"waiting": "waiting for the curve …"})
+SEARCH_WORDS = StatusWords(instead={"searching": "searching from rest, from both sweeps and from random states …"})
 
 
 def page_grid(scene: Scene) -> Grid:
@@ -55,13 +59,13 @@ class MapTab(Page):
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
         self._shown: list[dict[str, Any]] = []
-        self._due = 0
+        self._quiet = Debounce(host, MAP_QUIET)
         self._theme = THEMES["light"]
         self._scale: dict[str, Any] = {}
         self._found: list[Attractor] = []
         self._found_at = ""
-        self.status = "none"
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.status: Status = "none"
+        self.actions: Actions = {
             "map-visible": self._set_visible, "map-theme": self._apply_theme, "map-stop": lambda _: self._stop(),
             "map-compute": lambda _: self._begin(), "map-choose": self._choose,
             "map-attractors": lambda _: self._find(), "map-load": self._load,
@@ -83,8 +87,7 @@ class MapTab(Page):
         if self._stale():
             self._give_up()
             self._send(type="map-stale")
-            self._due += 1
-            self._host.call_later(MAP_QUIET, self._begin_if_last, self._due)
+            self._quiet.start(self._begin_if_visible)
 
     def _stale(self) -> bool:
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
@@ -101,7 +104,7 @@ class MapTab(Page):
         else:
             self._begin()
         self._send_now()
-        self._show_attractors("" if self._found else "none")
+        self._show_attractors("done" if self._found else "none")
 
     def _apply_theme(self, message: dict[str, Any]) -> None:
         """The theme of the page, which the figure follows."""
@@ -111,8 +114,8 @@ class MapTab(Page):
             if self._visible and self._grid is not None:
                 self._send_all()
 
-    def _begin_if_last(self, due: int) -> None:
-        if due == self._due and self._visible:
+    def _begin_if_visible(self) -> None:
+        if self._visible:
             self._begin()
 
     def _begin(self) -> None:
@@ -160,9 +163,9 @@ class MapTab(Page):
         if self._grid is not None:
             self._send(type="map-now", now=now_row(self._grid, scene.f, scene.A0))
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._send(type="map-status", **progress("map", status), sentence=sentence)
+        self._send(type="map-status", **WORDS.of(status), sentence=sentence)
 
     def _send_all(self) -> None:
         assert self._grid is not None
@@ -202,15 +205,15 @@ class MapTab(Page):
         found = attractors(scene, starts, stop=job.stop)
         job.next_tick(self._arrived, scene, found, [described(one) for one in found])
 
-    def _say_search(self, status: str, sentence: str) -> None:
-        self._show_attractors("" if status == "done" else status, sentence)
+    def _say_search(self, status: Status, sentence: str) -> None:
+        self._show_attractors(status, sentence)
 
     def _arrived(self, scene: Scene, found: list[Attractor], shown: list[dict[str, Any]]) -> None:
         self._found, self._found_at, self._shown = found, scene.digest, shown
 
-    def _show_attractors(self, status: str, sentence: str = "") -> None:
+    def _show_attractors(self, status: Status, sentence: str = "") -> None:
         shown = self._shown if self._found else []
-        self._send(type="map-attractors", **progress("attractors", status), sentence=sentence, attractors=shown)
+        self._send(type="map-attractors", **SEARCH_WORDS.of(status), sentence=sentence, attractors=shown)
 
     def _forget_attractors(self) -> None:
         self._search.cancel()

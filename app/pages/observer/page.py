@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 from granchain_core import Scene, Settled
 from granchain_core.warm import CERTIFIED, OBSERVER
 
-from ...page.hooks import Page
+from ...page.hooks import Actions, Page
 from ...page.host import Host
-from ...page.progress import progress
+from ...page.progress import Status, StatusWords
 from ...page.task import Job, Task
 from ...serve.queues import PICTURES
 from .view import Observer
 from .work import ObserverRun, Step
+
+WORDS = StatusWords("the observer's kernels", 10)
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class ObserverPage(Page):
         self._run: ObserverRun | None = None
         self._asked = False
         self._wishes: list[str] = []
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "observer-more": lambda _: self._more(),
             "observer-nudge": lambda _: self._wish("nudge"), "observer-rest": lambda _: self._wish("rest"),
             "observer-again": lambda _: self._wish("again"),
@@ -67,9 +67,9 @@ class ObserverPage(Page):
         session = self._host.session
         self._task.start(partial(self._work, session.scene, session.picture))
 
-    def _said(self, status: str, _: str) -> None:
+    def _said(self, status: Status, _: str) -> None:
         if status == "compiling":
-            self._view.update_state(**progress("observer", status))
+            self._view.update_state(**WORDS.of(status))
         elif self._asked:
             self._more()
 
@@ -95,6 +95,6 @@ class ObserverPage(Page):
 
     def _show(self, moved: _Moved) -> None:
         run = moved.run
-        self._view.update_state(**progress("observer", "done"), sentence=run.sentence, predicted=run.predicted,
+        self._view.update_state(**WORDS.of("done"), sentence=run.sentence, predicted=run.predicted,
                            measured=run.measured)
         self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

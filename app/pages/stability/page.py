@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -15,10 +14,11 @@ from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
 from ...page.activities import Activity
-from ...page.hooks import Page
+from ...page.debounce import Debounce
+from ...page.hooks import Actions, Page
 from ...page.host import Host
 from ...page.message_checks import whole
-from ...page.progress import COMPUTING, OFF, READY, progress
+from ...page.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...page.task import Job, Task
 from ...pictures.multipliers import plane_state
 from ...serve.delays import ANALYSIS_QUIET
@@ -37,6 +37,8 @@ from .work import PHASES, Analysis, Target, analyse, search, section_of, transie
 
 _LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
+WORDS = StatusWords("the tangent flow", 20)
+
 
 class StabilityPage(Page):
     """While it is on the screen, it analyses every picture that stays; a moving knob cancels the analysis."""
@@ -46,7 +48,7 @@ class StabilityPage(Page):
         self._view = view
         self._orbits = Task(host, ANALYSES, self._ended, "The analysis")
         self._sections = Task(host, ANALYSES, self._ended, "The section")
-        self._due = 0
+        self._quiet = Debounce(host, ANALYSIS_QUIET)
         self._open = False
         self._observer = False
         self._rank, self._bead, self._phase = 0, 1, 0
@@ -57,8 +59,8 @@ class StabilityPage(Page):
         self._analysis: Analysis | None = None
         self._section: Section | None = None
         self._trail = Trail()
-        self.status = "none"
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.status: Status = "none"
+        self.actions: Actions = {
             "stability-visible": self._visible, "stability-observer": self._choose_observer,
             "stability-mode": self._choose_mode, "stability-section": self._choose_section,
             "stability-search": self._search, "stability-back": self._back,
@@ -94,8 +96,7 @@ class StabilityPage(Page):
         self._picture = picture
         if not again:
             self._start, self._rank = self._host.session.started_from, 0
-            self._due += 1
-            self._host.call_later(ANALYSIS_QUIET, self._begin, self._due)
+            self._quiet.start(self._begin)
 
     def close(self) -> None:
         """The visitor left."""
@@ -105,7 +106,7 @@ class StabilityPage(Page):
     def _give_up(self) -> None:
         self._orbits.cancel()
         self._sections.cancel()
-        self._due += 1
+        self._quiet.cancel()
         self._analysed = None
         self.status = "none"
 
@@ -116,12 +117,12 @@ class StabilityPage(Page):
         elif self._host.session.mode == "live":
             self._clear(_LIVE)
         else:
-            self._begin(self._due)
+            self._begin()
 
-    def _begin(self, due: int) -> None:
-        """Analyse the picture, unless that was done, a newer one is awaited, or nobody looks."""
+    def _begin(self) -> None:
+        """Analyse the picture, unless there is none, that was done, or nobody looks."""
         picture = self._picture
-        if due != self._due or not self._open or picture is None or self._analysed is picture.state:
+        if not self._open or picture is None or self._analysed is picture.state:
             return
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
@@ -173,7 +174,7 @@ class StabilityPage(Page):
                 self._show_section()
             self._show_evidence()
 
-    def _ended(self, status: str, sentence: str) -> None:
+    def _ended(self, status: Status, sentence: str) -> None:
         """Report a failure or a state such as "compiling"; results have arrived by themselves."""
         if status != "done":
             with unlocked():
@@ -188,7 +189,7 @@ class StabilityPage(Page):
         before = self._trail.before(orbit.period) if analysis.target.followed else []
         self._view.need_figures()
         self._view.update_state(
-            **progress("stability", "done"), failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
+            **WORDS.of("done"), failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
             searched=not analysis.target.followed, rank=self._rank, period=orbit.period,
             count=len(orbit.multipliers), told=multiplier_sentence(orbit, self._rank),
             plane=plane_state(orbit, self._observer, self._rank, before))
@@ -212,7 +213,7 @@ class StabilityPage(Page):
     def _clear(self, sentence: str) -> None:
         """Show no multipliers, and a sentence that says why."""
         self._analysis, self.status = None, "none"
-        self._view.update_state(**progress("stability", "none"), failure="", stale=False, sentence=sentence,
+        self._view.update_state(**WORDS.of("none"), failure="", stale=False, sentence=sentence,
                            plane=plane_state(None), count=0, told="", searched=False, evidence=[],
                            observer=self._observer)
         self._view.send(type="no-mode")
@@ -220,9 +221,9 @@ class StabilityPage(Page):
             self._view.send(type="no-section")
         self._show_evidence()
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._view.update_state(**progress("stability", status), failure=sentence)
+        self._view.update_state(**WORDS.of(status), failure=sentence)
         if status == "failed" and self._analysis is None and self._target is not None:
             self._view.update_state(sentence=sentence, failure="", plane=plane_state(None), count=0, told="",
                                stale=False)
@@ -260,4 +261,4 @@ class StabilityPage(Page):
     def _back(self, _: dict[str, Any]) -> None:
         """Go back from a search, or from the orbit it found, to the settled motion."""
         self._give_up()
-        self._begin(self._due)
+        self._begin()
