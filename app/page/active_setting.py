@@ -10,11 +10,9 @@ import numpy as np
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Row
 from granchain_core.accuracy.ways import label
-from granchain_core.integrate import METHODS, Setting, live, method_for
+from granchain_core.integrate import METHODS, Setting, method_for
+from granchain_core.run.live import LIVE_SETTING
 from granchain_core.steady.relax import orbit_setting
-
-#: The live picture's steps (granchain_core.run.live).
-_LIVE = live(2)
 
 
 @dataclass(frozen=True)
@@ -30,7 +28,7 @@ class PlacedSetting:
 def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
     """The setting of the last computation behind the picture, by the rule of `granchain_core.steady.relax`."""
     if live:
-        return _LIVE
+        return LIVE_SETTING
     if picture is None:
         return method_for(scene.accuracy, scene.cuts_tension)
     if picture.preview or picture.regime.name != "periodic":

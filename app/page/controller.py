@@ -14,6 +14,7 @@ from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
 from ..pages.curve.page import Curves
 from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
+from ..pictures.theme import Theme
 from ..serve.websocket import disable_nagle, with_document_lock
 from .activities import Activity, account_activity, picture_activities
 from .hooks import Actions, all_actions
@@ -42,7 +43,7 @@ class Controller:
         self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
         self.pictures = Pictures(document, self, views, self.note, self._arrived)
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
-        self.choices = DisplayChoices(session, views, self.curves)
+        self.choices = DisplayChoices(session, views, self.curves, self._theme_changed)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
         own: Actions = {
@@ -157,6 +158,10 @@ class Controller:
     def _arrived(self, picture: Settled) -> None:
         for page in self.pages:
             page.picture_ready(picture)
+
+    def _theme_changed(self, theme: Theme) -> None:
+        for page in self.pages:
+            page.theme_changed(theme)
 
     # What the visitor does
 

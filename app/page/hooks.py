@@ -7,6 +7,7 @@ from typing import Any
 
 from granchain_core import Settled
 
+from ..pictures.theme import Theme
 from .activities import Activity
 
 Actions = Mapping[str, Callable[[dict[str, Any]], None]]
@@ -33,6 +34,9 @@ class Page:
 
     def picture_ready(self, picture: Settled) -> None:
         """A settled picture is ready; a better one for these knobs may follow unless `picture.final`."""
+
+    def theme_changed(self, theme: Theme) -> None:
+        """The page is shown in another theme; a view's own figures follow by themselves."""
 
     def close(self) -> None:
         """The visitor left."""

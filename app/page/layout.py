@@ -25,7 +25,7 @@ from ..parts.knobs import Knobs
 from ..parts.status_line import StatusLine
 from ..parts.trains import WIDEST_TITLES, Trains
 from ..pictures.regimes import REGIMES
-from ..pictures.theme import Theme
+from ..pictures.theme import Theme, style_sheet
 from .table import PAGES, described_pages
 from .tabs import Tabs
 
@@ -66,7 +66,7 @@ class Views:
     def template(self) -> pn.Template:
         """The page; its layout is a CSS grid in page.css."""
         page = pn.Template((_HERE / "page.html").read_text(encoding="utf-8"))
-        page.add_variable("page_css", (_HERE / "page.css").read_text(encoding="utf-8"))
+        page.add_variable("page_css", style_sheet() + (_HERE / "page.css").read_text(encoding="utf-8"))
         page.add_variable("page_js", text("page.js") + text("connection.js"))
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)

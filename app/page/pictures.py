@@ -8,10 +8,10 @@ from functools import partial
 from bokeh.document import Document
 
 from granchain_core import Cancelled, Run, Scene, Settled, State, settling
-from granchain_core.warm import CERTIFIED, CURVE, LIVE
+from granchain_core.warm import LIVE
 
 from ..frames import samples_for
-from ..serve.compiler import COMPILER, compiling_words
+from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
 from ..serve.pacing import FramePacer
 from ..serve.queues import LatestWins, Stop
 from ..serve.websocket import batched_messages
@@ -83,7 +83,7 @@ class Pictures:
         self._session.started_from = start or self._session.previous_state()
         pictures = settling(scene, start=self._session.started_from, samples=samples_for(scene), stop=stop)
         yield next(pictures)
-        if all(COMPILER.await_piece(scene, piece, stop) for piece in (CERTIFIED, CURVE)):
+        if all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES):
             for picture in pictures:
                 yield picture
                 if picture.final and self._session.account:
@@ -94,7 +94,7 @@ class Pictures:
         if not COMPILER.has(scene, LIVE):
             words = compiling_words("the kernels for this set of effects", 10).capitalize()
             self._host.next_tick(self._note, f"{words}; the picture then appears by itself.")
-            for piece in (LIVE, CERTIFIED, CURVE):
+            for piece in PICTURE_PIECES:
                 COMPILER.ask(scene, piece)
             if not COMPILER.await_piece(scene, LIVE, stop):
                 raise Cancelled

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from ..pages.curve.page import Curves
-from ..pictures.theme import THEMES
+from ..pictures.theme import THEMES, Theme
 from .hooks import Actions
 from .layout import Views
 from .session import Session
@@ -14,10 +15,12 @@ from .session import Session
 class DisplayChoices:
     """Display choices, which start no computation except, perhaps, another curve."""
 
-    def __init__(self, session: Session, views: Views, curves: Curves) -> None:
+    def __init__(self, session: Session, views: Views, curves: Curves,
+                 theme_changed: Callable[[Theme], None]) -> None:
         self._session = session
         self._views = views
         self._curves = curves
+        self._theme_changed = theme_changed
         self.actions: Actions = {
             "theme": self.choose, "lock-scale": self._lock_scale,
             "curve": self._curve, "curve-stop": lambda _: curves.stop(),
@@ -31,6 +34,7 @@ class DisplayChoices:
             self._views.curve.ink(theme.ink, theme.line)
             self._views.trains.thicken(theme.line)
             self._views.apply_theme(theme)
+            self._theme_changed(theme)
 
     def _lock_scale(self, message: dict[str, Any]) -> None:
         self._views.energy.locked = bool(message.get("value"))

@@ -37,6 +37,7 @@ export class ChainDrawing {
       output: read("--output"),
       bold: parseFloat(read("--line")) || 1,
       small: read("--small"),
+      font: read("--font"),
     };
   }
 
@@ -179,7 +180,7 @@ export class ChainDrawing {
 
   words() {
     const { context: g, ink } = this;
-    g.font = `${ink.small} system-ui, sans-serif`;
+    g.font = `${ink.small} ${ink.font}`;
     g.textBaseline = "top";
     g.textAlign = "center";
     g.fillStyle = ink.text;

@@ -13,11 +13,11 @@ from bokeh.plotting import figure
 from granchain_core.accuracy import Row, ways
 
 from ..format import duration, short_error
-from .theme import Theme, dress, frame, in_theme
+from .theme import AMBER, GREY, TEAL, VIOLET, Theme, dress, frame, in_theme
 
-_PALETTE = ("#e0900a", "#9b6bf2", "#0fa3b8", "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
+_PALETTE = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")
-_NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), "#8a8f98"
+_NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), GREY
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
 _HIGHEST = 10.0
 """Largest error drawn; larger ones, which tell no more, are drawn here."""

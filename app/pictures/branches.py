@@ -13,15 +13,15 @@ from granchain_core.steady.regime import modulus_words
 
 from ..format import short_error
 from .axes import Scale, force_scale, in_words, knob_scale
-from .theme import Theme, dress, frame, in_theme
+from .theme import AMBER, GREY, TEAL, VIOLET, Theme, dress, frame, in_theme
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
            "grazing": "grazing"}
 _STYLES: dict[str, dict[str, Any]] = {
-    "fold": {"marker": "triangle", "size": 14, "colour": "#e0900a", "filled": True},
-    "period_doubling": {"marker": "diamond", "size": 16, "colour": "#9b6bf2", "filled": True},
-    "neimark_sacker": {"marker": "circle", "size": 12, "colour": "#0fa3b8", "filled": False},
-    "grazing": {"marker": "cross", "size": 9, "colour": "#8a8f98", "filled": True},
+    "fold": {"marker": "triangle", "size": 14, "colour": AMBER, "filled": True},
+    "period_doubling": {"marker": "diamond", "size": 16, "colour": VIOLET, "filled": True},
+    "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
+    "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
 _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 """Width and dash."""

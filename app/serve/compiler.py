@@ -19,6 +19,8 @@ from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, 
 from .delays import STOP_POLL
 from .queues import COMPILATIONS, CURVES, Stop
 
+#: The kernels of the main picture and of its curve.
+PICTURE_PIECES = (LIVE, CERTIFIED, CURVE)
 _ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -82,13 +84,13 @@ class Compiler:
 
     def prepare(self, scene: Scene) -> None:
         """Have this scene's kernels ready in this process before the first visitor asks."""
-        for piece in (LIVE, CERTIFIED, CURVE):
+        for piece in PICTURE_PIECES:
             if not self.has(scene, piece):
                 self.ask(scene, piece)
         CURVES.submit(self._load_all, scene)
 
     def _load_all(self, scene: Scene) -> None:
-        for piece in (LIVE, CERTIFIED, CURVE):
+        for piece in PICTURE_PIECES:
             if not self.has(scene, piece):
                 self.ask(scene, piece).result()
             self.load(scene, piece)

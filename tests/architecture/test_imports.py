@@ -85,7 +85,7 @@ ALLOWED = {
     "cli": {"cli", "pictures", "start"},
     "shared": set(),
     "serve": {"serve"},
-    "rules": {"rules", "serve", "shared"},
+    "rules": {"pictures", "rules", "serve", "shared"},
     "pictures": {"pictures", "shared"},
     "parts": {"parts", "pictures", "rules", "serve", "shared"},
     "page": {"page", "pages", "parts", "pictures", "rules", "serve", "shared"},

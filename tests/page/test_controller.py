@@ -18,6 +18,7 @@ from app.page.controller import Controller
 from app.page.hooks import all_actions
 from app.page.message_checks import listed, whole
 from app.page.session import Session
+from app.pictures.theme import THEMES, Theme
 from app.serve import server
 from app.serve.compiler import COMPILER, Compiler
 from granchain_core import BadInput, run, scene
@@ -149,6 +150,18 @@ def test_a_reconnected_page_has_its_speed_its_pause_and_its_energy_account_back(
     assert (session.speed, session.playing, session.account) == (5.0, False, True)
     assert dashboard.views.header.state["account"]
     assert session.sentence.endswith("has started again from rest and your uploaded data are gone.")
+    dashboard.close(None)
+
+
+def test_another_theme_reaches_the_pages_and_their_figures() -> None:
+    dashboard = Dashboard()
+    told: list[Theme] = []
+    for page in dashboard.pages:
+        page.theme_changed = told.append  # type: ignore[method-assign]
+    dashboard.received({"do": "theme", "value": "dark"})
+    dashboard.received({"do": "theme", "value": "none of them"})
+    assert told == [THEMES["dark"]] * len(dashboard.pages)
+    assert dashboard.views.overlays["branches"].theme == THEMES["dark"]  # type: ignore[attr-defined]
     dashboard.close(None)
 
 

@@ -11,7 +11,7 @@ from panel.io import unlocked
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Measured, stated_features
 from granchain_core.steady.curve import draft_curve
-from granchain_core.warm import CERTIFIED, CURVE, LIVE
+from granchain_core.warm import CURVE
 
 from ...page.activities import Activity
 from ...page.debounce import Debounce
@@ -19,7 +19,7 @@ from ...page.host import Host
 from ...page.progress import COMPUTING, OFF, READY
 from ...page.session import rig_beads, slider_range, without_frequency
 from ...page.task import Task
-from ...serve.compiler import COMPILER
+from ...serve.compiler import COMPILER, PICTURE_PIECES
 from ...serve.delays import CURVE_QUIET
 from ...serve.queues import CURVES, LatestWins, Stop
 from .bar import CurveBar
@@ -88,7 +88,7 @@ class Curves:
         self._quiet.start(self._begin_when_compiled, scene)
 
     def _begin_when_compiled(self, scene: Scene) -> None:
-        if COMPILER.has(scene, LIVE, CERTIFIED, CURVE):
+        if COMPILER.has(scene, *PICTURE_PIECES):
             self._begin(scene)
         else:
             self._quiet.start(self._begin_when_compiled, scene)

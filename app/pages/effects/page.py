@@ -9,7 +9,7 @@ from granchain_core import BadInput, Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
 from granchain_core.lower import slots_of
 from granchain_core.scene.effects import ALWAYS
-from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
+from granchain_core.warm import COST, COST_ACCOUNT, structure
 
 from ...page.activities import Activity
 from ...page.debounce import Debounce
@@ -19,7 +19,7 @@ from ...page.progress import COMPUTING, READY, UNDER_WAY
 from ...page.switches import EFFECTS, present, refusal, variants
 from ...page.task import Job, Task
 from ...parts.component import Component
-from ...serve.compiler import COMPILER
+from ...serve.compiler import COMPILER, PICTURE_PIECES
 from ...serve.delays import ACTIVITIES_EVERY, COST_QUIET
 from ...serve.queues import MEASUREMENTS
 
@@ -105,7 +105,7 @@ class EffectsPanel(Page):
         busy = self.measuring or self._host.awaiting_picture or self._host.curve_computing
         if busy or self._quiet.pending or not self._open:
             return
-        if not COMPILER.has(scene, LIVE, CERTIFIED, CURVE):  # the picture's own kernels come first
+        if not COMPILER.has(scene, *PICTURE_PIECES):  # the picture's own kernels come first
             return
         self._compiling = ""
         for name in EFFECTS:

@@ -12,10 +12,6 @@ const SHOWN = [
 ];
 const ARROWS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
 
-// Tells the server the page's theme, for the colours of the figure; set when the tab is first opened.
-let sendTheme = () => {};
-window.granchain.on("theme", () => sendTheme());
-
 const within = (value, count) => Math.max(0, Math.min(count - 1, value));
 
 class MapTab {
@@ -116,8 +112,6 @@ export function mapTab(model) {
   MAP.redraw = (what) => {
     if (tab.host.isConnected) tab.redraw(what);
   };
-  sendTheme = () => tab.send("map-theme", { value: window.granchain.theme() });
-  sendTheme();
   requestAnimationFrame(() => tab.redraw());
   return { content: tab.content, updatesItself: true };
 }

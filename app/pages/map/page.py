@@ -13,7 +13,7 @@ from panel.io import unlocked
 from granchain_core import Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
 from granchain_core.diagram.cells import cell_of, empty_cells
-from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
+from granchain_core.warm import ORBIT
 
 from ...page.debounce import Debounce
 from ...page.hooks import Actions, Page
@@ -24,7 +24,8 @@ from ...page.session import slider_range
 from ...page.task import Job, Task
 from ...parts.component import Component
 from ...pictures.diagram import now_row
-from ...pictures.theme import THEMES
+from ...pictures.theme import THEMES, Theme
+from ...serve.compiler import PICTURE_PIECES
 from ...serve.delays import CELLS_EVERY, MAP_QUIET
 from ...serve.queues import LONG, Stop
 from .view import cells_message, described, head_message
@@ -66,7 +67,7 @@ class MapTab(Page):
         self._found_at = ""
         self.status: Status = "none"
         self.actions: Actions = {
-            "map-visible": self._set_visible, "map-theme": self._apply_theme, "map-stop": lambda _: self._stop(),
+            "map-visible": self._set_visible, "map-stop": lambda _: self._stop(),
             "map-compute": lambda _: self._begin(), "map-choose": self._choose,
             "map-attractors": lambda _: self._find(), "map-load": self._load,
         }
@@ -106,13 +107,11 @@ class MapTab(Page):
         self._send_now()
         self._show_attractors("done" if self._found else "none")
 
-    def _apply_theme(self, message: dict[str, Any]) -> None:
-        """The theme of the page, which the figure follows."""
-        theme = THEMES.get(str(message.get("value")), self._theme)
-        if theme != self._theme:
-            self._theme = theme
-            if self._visible and self._grid is not None:
-                self._send_all()
+    def theme_changed(self, theme: Theme) -> None:
+        """Another theme: the figure has its colours from here."""
+        changed, self._theme = theme != self._theme, theme
+        if changed and self._visible and self._grid is not None:
+            self._send_all()
 
     def _begin_if_visible(self) -> None:
         if self._visible:
@@ -144,7 +143,7 @@ class MapTab(Page):
 
     def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
         """In a worker thread: compute the missing cells, waiting while a knob moves."""
-        job.compile(grid.scene, LIVE, CERTIFIED, CURVE)
+        job.compile(grid.scene, *PICTURE_PIECES)
         job.say("computing")
         for rows in _batches(grid, missing, job.stop, partial(job.give_way, self._in_front)):
             job.next_tick(self._show, rows)
@@ -199,7 +198,7 @@ class MapTab(Page):
         self._search.start(partial(self._search_work, self._host.session.scene))
 
     def _search_work(self, scene: Scene, job: Job) -> None:
-        job.compile(scene, LIVE, CERTIFIED, CURVE, *(() if scene.cuts_tension else (ORBIT,)))
+        job.compile(scene, *PICTURE_PIECES, *(() if scene.cuts_tension else (ORBIT,)))
         job.say("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
         found = attractors(scene, starts, stop=job.stop)
