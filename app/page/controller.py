@@ -21,9 +21,11 @@ from .hooks import Actions, all_actions
 from .layout import Views
 from .links_and_files import LinksAndFiles
 from .live import LiveRun
+from .message_checks import is_number, quoted
 from .pictures import Pictures
 from .playback import Playback
 from .session import SPEEDS, Session, presets, slider_range
+from .share import EXTRAS
 from .show import show_regime
 from .table import PAGES
 from .theme import DisplayChoices
@@ -69,7 +71,7 @@ class Controller:
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
-            self.say(f"The page sent a request {str(name)[:40]!r} that is not known here; reload the page.")
+            self.say(f"The page sent a request {quoted(name)} that is not known here; reload the page.")
             return
         with_document_lock(self._document, partial(self._guarded, action, message))
 
@@ -192,7 +194,7 @@ class Controller:
         self.views.header.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
             speeds=list(SPEEDS), speed=session.speed, playing=session.playing, account=session.account,
-            query=session.link)
+            query=session.link, view_fields=list(EXTRAS))
 
     def _tell_pages(self) -> None:
         scene = self.session.scene
@@ -228,7 +230,7 @@ class Controller:
 
     def _choose_frequency(self, frequency: object) -> None:
         """Go to the clicked frequency; the knob refuses anything that is not a number."""
-        if isinstance(frequency, (int, float)) and not isinstance(frequency, bool):
+        if is_number(frequency):
             low, high = slider_range(self.session.scene, "f")
             frequency = round(min(max(frequency, low), high), 1)
         self.session.change("f", frequency)

@@ -24,7 +24,8 @@ from ..parts.header import Header
 from ..parts.knobs import Knobs
 from ..parts.status_line import StatusLine
 from ..parts.trains import WIDEST_TITLES, Trains
-from ..pictures.regimes import REGIMES
+from ..pictures.curve import KEY
+from ..pictures.regimes import REGIMES, SYMBOLS
 from ..pictures.theme import Theme, style_sheet
 from .table import PAGES, described_pages
 from .tabs import Tabs
@@ -46,8 +47,8 @@ class Views:
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
-            "largest_file": MOST_BYTES, "pages": described_pages(), "regimes": [
-                {"name": name, "marker": style[0], "colour": style[1]} for name, style in REGIMES.items()]})
+            "largest_file": MOST_BYTES, "lines": KEY, "pages": described_pages(), "regimes": [
+                {"name": name, "symbol": SYMBOLS[style[0]], "colour": style[1]} for name, style in REGIMES.items()]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
         self.shown: Settled | None = None

@@ -2,9 +2,6 @@
 
 import { button, element, paragraph } from "../parts/dom.js";
 
-const MARKS = { circle: "●", diamond: "◆", triangle: "▲", square: "■", star: "★", circle_dot: "◉", x: "✕", dash: "–" };
-const LINES =
-  "Solid line: from rest; dashed: frequency rising; dotted: frequency falling. The ringed dot is the present setting.";
 const FORM = "CSV: frequency in Hz, force in N, and, if you have it, its error in N.";
 
 export const lookAtTab = ({ state }) => ({
@@ -13,9 +10,9 @@ export const lookAtTab = ({ state }) => ({
 
 export function regimesTab({ state }) {
   const legend = element("div", { className: "legend" });
-  for (const { name, marker, colour } of state.regimes ?? [])
-    legend.append(element("span", { innerHTML: `<b style="color:${colour}">${MARKS[marker]}</b> ${name}` }));
-  return { content: [legend, paragraph(LINES, "soft")] };
+  for (const { name, symbol, colour } of state.regimes ?? [])
+    legend.append(element("span", { innerHTML: `<b style="color:${colour}">${symbol}</b> ${name}` }));
+  return { content: [legend, paragraph(`${state.lines} The ringed dot is the present setting.`, "soft")] };
 }
 
 async function sendFile(model, [chosen]) {

@@ -12,6 +12,7 @@ from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
+from .message_checks import is_number, quoted
 from .share import EXTRAS, encode
 from .switches import ACCOUNT, changes
 
@@ -60,7 +61,7 @@ class Session:
         """Turn knob `name` back to its value in the preset."""
         preset = scene(self.scene.name).knobs
         if name not in preset:
-            raise BadInput(f"There is no knob {str(name)[:40]!r} to put back.")
+            raise BadInput(f"There is no knob {quoted(name)} to put back.")
         self.change(name, preset[name])
 
     def choose(self, name: object) -> None:
@@ -79,7 +80,7 @@ class Session:
 
     def set_speed(self, speed: object) -> None:
         """Drive periods shown in a second, limited to what a page can show."""
-        if isinstance(speed, bool) or not isinstance(speed, (int, float)) or not 0.01 <= speed <= 1000.0:
+        if not is_number(speed) or not 0.01 <= speed <= 1000.0:
             raise BadInput("speed must be from 0.01 to 1000 drive periods a second; 1 is a good start.")
         self.speed = float(speed)
 
@@ -112,7 +113,7 @@ def rig_beads() -> tuple[Bead, ...]:
 def _one_of(what: str, value: object, known: tuple[str, ...]) -> str:
     if value in known:
         return str(value)
-    raise BadInput(f"{what} {str(value)[:40]!r} is not one of {', '.join(known)}.")
+    raise BadInput(f"{what} {quoted(value)} is not one of {', '.join(known)}.")
 
 
 def presets() -> list[dict[str, str]]:

@@ -10,6 +10,8 @@ from granchain_core.accuracy.effect_cost import Variant
 from granchain_core.scene import effects as table
 from granchain_core.scene.effects import Effect
 
+from .message_checks import quoted
+
 ACCOUNT = table.ACCOUNT.name
 """The one effect that is no knob of the scene: it changes nothing in the motion."""
 
@@ -30,7 +32,7 @@ def refusal(name: str, shown: Scene) -> str:
 def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
     """Knob values that a switch sets; on: those the visitor had, else the preset's, else the usual ones."""
     if name not in EFFECTS or name == ACCOUNT:
-        raise BadInput(f"There is no switchable effect {str(name)[:40]!r}.")
+        raise BadInput(f"There is no switchable effect {quoted(name)}.")
     if refused := refusal(name, shown):
         raise BadInput(refused)
     effect = EFFECTS[name]

@@ -12,7 +12,7 @@ from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
 from ..pages.effects.page import EffectsPanel
 from ..pages.hard_cases.page import HardPage
-from ..pages.hard_cases.view import Hard
+from ..pages.hard_cases.view import ABOUT, Hard
 from ..pages.map.page import MapTab
 from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer
@@ -47,12 +47,11 @@ PAGES = (
     Row("accuracy", "accuracy", AccuracyPage, Accuracy),
     Row("map", "map", MapTab, None, reports_visibility=True),
     Row("effects", "effects", EffectsPanel, None, reports_visibility=True),
-    Row("branches", "branches", BranchesPage, Branches),
+    Row("branches", "branches", BranchesPage, Branches,
+        "Periodic orbits followed over the drive frequency, stable and unstable."),
     Row("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else."),
-    Row("hard", "hard cases", HardPage, Hard,
-        "Cases in which solvers of granular chains go wrong without warning, each compared with a known result.",
-        taller=False),
+    Row("hard", "hard cases", HardPage, Hard, ABOUT, taller=False),
 )
 
 

@@ -58,7 +58,7 @@ class Chain {
   }
 
   load(frames) {
-    unpack(frames);
+    Object.assign(frames, unpack(frames).series);
     document.getElementById("scale-high").textContent = frames.energy_label;
     this.drawing.load(frames);
     this.clock.show(frames);

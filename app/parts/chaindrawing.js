@@ -2,10 +2,10 @@
 
 import { stepBelow } from "./plot.js";
 
-// The four series of a picture from their one array.
-export function unpack(frames) {
-  const { rows, beads, values } = frames;
-  let at = 0;
+// The four series of a chain in a message's one array, from value `start` on, and where they end.
+export function unpack({ rows, beads, values }, start = 0) {
+  const series = {};
+  let end = start;
   for (const [name, width] of [
     ["displacement", beads],
     ["force", beads + 1],
@@ -13,9 +13,10 @@ export function unpack(frames) {
     ["drive", 1],
   ]) {
     // A plain Float32Array: a part of Bokeh's own array type would start at the buffer's beginning again.
-    frames[name] = new Float32Array(values.buffer, values.byteOffset + 4 * at, rows * width);
-    at += rows * width;
+    series[name] = new Float32Array(values.buffer, values.byteOffset + 4 * end, rows * width);
+    end += rows * width;
   }
+  return { series, end };
 }
 
 export class ChainDrawing {

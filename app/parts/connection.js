@@ -16,8 +16,10 @@
   // The last share link from the server, and the requests since then that it has not answered.
   let link = "v=1";
   const unanswered = new Map();
-  const linkReceived = (query, answered) => {
+  let viewFields = []; // the fields of a link that belong to no scene
+  const linkReceived = (query, answered, fields = viewFields) => {
     link = query;
+    viewFields = fields;
     for (const name of answered) unanswered.delete(name);
   };
   const requested = (name, value) => {
@@ -30,7 +32,7 @@
     const query = new URLSearchParams(link);
     // Another scene has knobs of its own.
     if (unanswered.has("scene"))
-      for (const name of [...query.keys()]) if (!["v", "mode", "start"].includes(name)) query.delete(name);
+      for (const name of [...query.keys()]) if (!["v", ...viewFields].includes(name)) query.delete(name);
     for (const [name, value] of unanswered) {
       query.set(name, value);
       if (name === "k") query.delete("kappa");

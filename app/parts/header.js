@@ -135,7 +135,7 @@ class Header {
     this.showChoices(state);
     this.showPlaying(state);
     if (!state.query) return;
-    window.granchain.linkReceived(state.query, ["scene", "mode", "start"]);
+    window.granchain.linkReceived(state.query, ["scene", ...state.view_fields], state.view_fields);
     this.restore();
   }
 

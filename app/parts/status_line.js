@@ -4,11 +4,7 @@ import { button, element } from "./dom.js";
 
 const ENTRIES = [
   ["start", (v) => v, "Where the steady state was started."],
-  [
-    "accuracy",
-    (v) => v,
-    "Relative error of the displacements, asked for and reached, and the computing time of this picture. Click to see what accuracy costs.",
-  ],
+  ["accuracy", (v) => v, ""], // its title comes with it
   [
     "energy",
     (v) => v,

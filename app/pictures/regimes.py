@@ -12,6 +12,10 @@ REGIMES = {
     "chaotic": ("x", "#e879f9", 9), "unsettled": ("dash", GREY, 10),
 }
 
+#: The markers as characters, for a legend in words.
+SYMBOLS = {"circle": "●", "diamond": "◆", "triangle": "▲", "square": "■", "star": "★", "circle_dot": "◉", "x": "✕",
+           "dash": "–"}
+
 
 def regime_key(name: str, period: int | None) -> str:
     """The entry of `REGIMES` of a motion, by the name of its regime and its period where it has one."""

@@ -3,7 +3,6 @@
 import { button, element, pageHead, paragraph } from "../../parts/dom.js";
 import { Embedded, StreamedData } from "../../parts/embedded.js";
 
-const SPECIAL = ["fold", "period_doubling", "neimark_sacker", "grazing"];
 const WORDS = "largest elastic output force of periodic orbits over drive frequency";
 // Below this width in pixels the legend stands in two columns.
 const NARROW = 700;
@@ -89,7 +88,9 @@ class BranchesPage {
 
   fill(figure) {
     this.data.fill(figure);
-    figure.taps([...SPECIAL, "orbits"], (source, row) => this.choice.show(source, this.data.rows[source], row));
+    figure.taps([...this.model.state.special, "orbits"], (source, row) =>
+      this.choice.show(source, this.data.rows[source], row),
+    );
     this.fit();
   }
 

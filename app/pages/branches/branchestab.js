@@ -3,7 +3,7 @@
 import { element, openButton, paragraph } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
-export function branchesTab() {
+export function branchesTab(_, { placeholder }) {
   const page = window.granchain;
   const host = element("div", { className: "small" });
   const said = paragraph();
@@ -11,7 +11,7 @@ export function branchesTab() {
   page.branches.figures[1] = figure;
   const show = () => {
     const { data, words, small } = page.branches;
-    said.textContent = words || "Periodic orbits followed over the drive frequency, stable and unstable.";
+    said.textContent = words || placeholder;
     if (host.isConnected && data.rows.orbits) figure.load(small, "branches of periodic orbits");
   };
   requestAnimationFrame(show);

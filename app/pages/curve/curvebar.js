@@ -2,13 +2,6 @@
 
 import { button, element, meter } from "../../parts/dom.js";
 
-const CHOICES = [
-  ["rest", "from rest", "Every frequency started from rest."],
-  ["up", "╌ up", "Frequency rising, the state carried along."],
-  ["down", "┈ down", "Frequency falling, the state carried along."],
-  ["features", "from the paper", "Frequencies the paper states for its rig; it gives no forces."],
-];
-
 // Tells the server whether the curve is on the screen; one that nobody looks at is not computed.
 function watchVisibility(tell) {
   let onScreen = true;
@@ -27,8 +20,9 @@ function choiceBox(model, name) {
 }
 
 export function render({ model }) {
-  const boxes = new Map(CHOICES.map(([name]) => [name, choiceBox(model, name)]));
-  const labels = CHOICES.map(([name, text, title]) => element("label", { title }, boxes.get(name), text));
+  const { choices } = model.state;
+  const boxes = new Map(choices.map(([name]) => [name, choiceBox(model, name)]));
+  const labels = choices.map(([name, text, title]) => element("label", { title }, boxes.get(name), text));
   const done = meter("progress of the curve");
   const stop = button("✕", () => model.send_msg({ do: "curve-stop" }), { title: "Stop the curve" });
   const progress = element("span", { className: "progress" }, done, stop);

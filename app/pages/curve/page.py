@@ -19,14 +19,13 @@ from ...page.host import Host
 from ...page.progress import COMPUTING, OFF, READY
 from ...page.session import rig_beads, slider_range, without_frequency
 from ...page.task import Task
+from ...pictures.curve import WORDS
 from ...serve.compiler import COMPILER, PICTURE_PIECES
 from ...serve.delays import CURVE_QUIET
 from ...serve.queues import CURVES, LatestWins, Stop
-from .bar import CurveBar
+from .bar import CHOICES, CurveBar
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
 from .view import Curve
-
-_SETTINGS = (*DIRECTIONS, "features")
 
 
 class Curves:
@@ -44,7 +43,7 @@ class Curves:
         self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed))
         self._asked: Scene | None = None
         self._begun = 0
-        self._wanted = {name: name == "rest" for name in _SETTINGS}
+        self._wanted = {name: name == "rest" for name, *_ in CHOICES}
         self._visible = True
         self._computed: dict[str, Scene] = {}
         self._quiet = Debounce(host, CURVE_QUIET)
@@ -127,7 +126,7 @@ class Curves:
         """Name, state and detail of every direction, as it is at this moment."""
         found = []
         for name in DIRECTIONS:
-            title = "resonance curve " + ("from rest" if name == "rest" else f"sweeping {name}")
+            title = f"resonance curve, {WORDS[name]}"
             if not self._wanted[name]:
                 found.append((title, OFF, "not selected"))
             elif self._computed.get(name) is not None and self._computed.get(name) == self._key:

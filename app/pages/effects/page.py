@@ -15,6 +15,7 @@ from ...page.activities import Activity
 from ...page.debounce import Debounce
 from ...page.hooks import Actions, Page
 from ...page.host import Host
+from ...page.message_checks import quoted
 from ...page.progress import COMPUTING, READY, UNDER_WAY
 from ...page.switches import EFFECTS, present, refusal, variants
 from ...page.task import Job, Task
@@ -83,7 +84,7 @@ class EffectsPanel(Page):
     def _switch(self, message: dict[str, Any]) -> None:
         name, on = message.get("name"), message.get("value")
         if not isinstance(name, str) or name not in EFFECTS or not isinstance(on, bool):
-            raise BadInput(f"There is no effect {str(name)[:40]!r} to switch.")
+            raise BadInput(f"There is no effect {quoted(name)} to switch.")
         try:
             session = self._host.session
             session.switch(name, on)

@@ -9,8 +9,6 @@ const raised = (text) =>
     .split(/(\^\{[^}]+\}|\^-?\d+)/)
     .map((piece) => (piece.startsWith("^") ? element("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
 const PATIENCE = 20; // seconds after which the card says why the first run on a computer takes long
-const ABOUT =
-  "Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and must stay below its limit.";
 
 function rowTable(rows) {
   const body = element("tbody");
@@ -110,7 +108,7 @@ class HardCases {
     this.meter.hidden = this.stop.hidden = !running;
     this.all.hidden = Boolean(running);
     this.meter.value = done ?? 0;
-    this.said.textContent = summary || ABOUT;
+    this.said.textContent = summary || this.model.state.about;
     for (const [name, card] of this.cards) card.show(results[name]);
     window.granchain.hard = { sentence: summary };
     window.granchain.emit("hard");

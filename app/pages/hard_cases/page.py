@@ -11,6 +11,7 @@ from granchain_core.hard import CASES, Case, Check, Picture
 from ...page.activities import Activity
 from ...page.hooks import Actions, Page
 from ...page.host import Host
+from ...page.message_checks import quoted
 from ...page.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
@@ -67,7 +68,7 @@ class HardPage(Page):
     def _run_one(self, message: dict[str, Any]) -> None:
         case = case_of(message.get("case"))
         if case is None:
-            raise BadInput(f"There is no hard case {str(message.get('case'))[:40]!r}; reload the page.")
+            raise BadInput(f"There is no hard case {quoted(message.get('case'))}; reload the page.")
         self._run((case,))
 
     def _run(self, cases: tuple[Case, ...]) -> None:

@@ -16,6 +16,9 @@ from ...pictures.check import check
 from ...pictures.theme import THEMES, Theme
 from ...scripts import module
 
+ABOUT = ("Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and "
+         "must stay below its limit.")
+
 
 class Hard(Component):
     """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
@@ -24,7 +27,7 @@ class Hard(Component):
     _stylesheets = [text("controls.css"), text("hard_cases.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"cases": described_cases()}, **params)
+        super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)
         self._theme = THEMES["light"]
         self._drawn: dict[str, Picture] = {}
 

@@ -11,7 +11,7 @@ const KEPT_PERIODS = 80;
 
 // The foundation's stiffness: a slider, and a button for each of the paper's two values.
 class KappaControl {
-  constructor(set) {
+  constructor(set, paper) {
     this.slider = element("input", { type: "range", min: 0, max: 0.002, step: 0.00001, ariaLabel: "foundation κ" });
     this.slider.addEventListener("change", () => set(Number(this.slider.value)));
     this.shown = element("output");
@@ -21,7 +21,7 @@ class KappaControl {
       "κ",
       button("0", () => set(0), { title: "No foundation" }),
       this.slider,
-      button("0.001", () => set(0.001), { title: "The paper's foundation" }),
+      button(String(paper), () => set(paper), { title: "The paper's foundation" }),
       this.shown,
     );
   }
@@ -52,7 +52,7 @@ class ObserverPage {
     const control = (words, name, title) => button(words, () => send(name), { title });
     this.model = model;
     this.history = [];
-    this.kappa = new KappaControl((value) => send("set", { name: "kappa", value }));
+    this.kappa = new KappaControl((value) => send("set", { name: "kappa", value }), model.state.paper_kappa);
     this.said = element("b");
     this.rates = element("span", { className: "soft" });
     this.status = element("span", { className: "soft" });
@@ -69,7 +69,7 @@ class ObserverPage {
       pageHead(
         "Observer",
         this.kappa.root,
-        control("nudge", "observer-nudge", "Move the observer's beads by a thousandth of A₀"),
+        control("nudge", "observer-nudge", `Move the observer's beads by ${model.state.nudge} A₀`),
         control("from rest", "observer-rest", "Start the observer at rest, with no knowledge of the chain"),
         control("start again", "observer-again", "Start both on the orbit, with the observer nudged"),
       ),

@@ -18,6 +18,7 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD, modulus_words
 
 from ...format import duration, prefixed, short_error
+from ...parts.chain import drawn_chain
 from ...parts.component import text
 from ...parts.figure_part import FigurePart
 from ...pictures.multipliers import multiplier_words, plane, plane_state
@@ -163,8 +164,7 @@ def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:
     turn = mode.multiplier / abs(mode.multiplier) if mode.multiplier else 1.0
     factor, letter = prefixed(orbit.period * orbit.scene.period)
     return {
-        "type": "mode", "beads": orbit.scene.N, "samples": mode.samples, "period": mode.period,
-        "radii": [bead.radius for bead in orbit.scene.beads], "foundation": orbit.scene.k > 0.0,
+        "type": "mode", **drawn_chain(orbit.scene), "samples": mode.samples, "period": mode.period,
         "turn_re": float(turn.real), "turn_im": float(turn.imag), "size": abs(mode.multiplier),
         "time": orbit.period * orbit.scene.period / factor, "time_unit": f"{letter}s",
         "values": np.concatenate([np.real(mode.displacement).ravel(), np.imag(mode.displacement).ravel()],
