@@ -7,6 +7,7 @@ their own; this one then loads them from the cache.
 from __future__ import annotations
 
 import json
+import logging
 import subprocess
 import sys
 import threading
@@ -19,8 +20,12 @@ from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, 
 from .delays import STOP_POLL
 from .queues import COMPILATIONS, CURVES, Stop
 
+log = logging.getLogger("granchain")
+
 #: The kernels of the main picture and of its curve.
 PICTURE_PIECES = (LIVE, CERTIFIED, CURVE)
+#: The end of a compiler's messages that goes into the log [characters].
+_LONGEST_REPORT = 2000
 _ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -34,9 +39,18 @@ def _compile(scene: Scene, piece: str) -> None:
     command = [sys.executable, "-m", "granchain_core.warm", piece]
     try:
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-    except (OSError, subprocess.CalledProcessError):
+                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
+    except (OSError, subprocess.CalledProcessError) as problem:
+        log.warning("compiling %s in another process failed: %s %s", piece, problem,
+                    getattr(problem, "stderr", "")[-_LONGEST_REPORT:])
         compile_piece(scene, piece)
+
+
+def _log_failure(ended: Future[None]) -> None:
+    """Report a failure that nobody waits for."""
+    error = ended.exception()
+    if error is not None:
+        log.error("loading kernels ahead of time failed", exc_info=error)
 
 
 class Compiler:
@@ -87,7 +101,7 @@ class Compiler:
         for piece in PICTURE_PIECES:
             if not self.has(scene, piece):
                 self.ask(scene, piece)
-        CURVES.submit(self._load_all, scene)
+        CURVES.submit(self._load_all, scene).add_done_callback(_log_failure)
 
     def _load_all(self, scene: Scene) -> None:
         for piece in PICTURE_PIECES:

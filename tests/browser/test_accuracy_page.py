@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-from knobs import type_into
+from drawn import source
+from knobs import COMPILED, Visit, type_into
 from playwright.sync_api import Locator, Page, expect
 
-Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile every method, on a machine that runs tests.
-COMPILED = 120_000
 #: The figure of the page, and how many points each method has in it.
 FIGURE = 'Bokeh.documents.find((one) => one.roots()[0].name === "accuracy" && one.roots()[0].below[0].axis_label)'
 POINTS = f"""() => Object.fromEntries(({FIGURE}?.roots()[0].renderers ?? [])
@@ -20,7 +17,7 @@ POINTS = f"""() => Object.fromEntries(({FIGURE}?.roots()[0].renderers ?? [])
 
 def marked(page: Page, name: str) -> int:
     """How many points the source of this name has."""
-    return int(page.evaluate(f"{FIGURE}.get_model_by_name('{name}').data.ms.length"))
+    return len(source(page, "accuracy", name).get("ms", []))
 
 
 def naive_line(page: Page) -> dict[str, Any]:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 
 import pytest
 from drawn import place, source, tooltips
+from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
-Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile the kernels for branches, on a machine that runs tests.
-COMPILED = 150_000
 #: A short chain whose branch is followed in seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
 #: The kinds of special points that were found; the orbits of an arm.
@@ -107,7 +104,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
         page.mouse.click(*at("orbits", row))
         expect(sheet.locator(".chosen")).to_contain_text(words)
         expect(page.locator("#foot")).to_contain_text(regime, timeout=15_000)
-        shown = page.locator('[data-knob="f"] input[type="text"]').input_value()
+        shown = field(page, "f").input_value()
         assert float(shown) == pytest.approx(frequency, rel=1e-5)  # six figures are written
 
 
@@ -125,13 +122,13 @@ def test_moved_knobs_grey_the_branch_and_say_so(visit: Visit) -> None:
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached", timeout=20_000)
     sheet = followed(page)
     sheet.get_by_role("button", name="stop").click()
-    field = page.locator('[data-knob="D"] input[type="text"]')
-    field.fill("90")
-    field.press("Enter")
+    damping = field(page, "D")
+    damping.fill("90")
+    damping.press("Enter")
     expect(sheet.locator(".stale")).to_be_visible()
     expect(sheet).to_contain_text("these orbits belong to another chain")
-    field.fill("100")
-    field.press("Enter")
+    damping.fill("100")
+    damping.press("Enter")
     expect(sheet.locator(".stale")).to_have_count(0)
 
 

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
-
-Visit = Callable[..., Page]
-#: A structure that was never compiled on this machine takes a while, on a machine that runs tests.
-COMPILED = 180_000
 
 
 def panel(page: Page) -> Locator:
@@ -58,9 +53,9 @@ def test_the_foundation_comes_with_its_knob(visit: Visit) -> None:
     tab = panel(page)
     page.get_by_role("switch", name="foundation").click()
     expect(effect(tab, "foundation")).to_contain_text("Foundation")
-    expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("0.001")
+    expect(field(page, "kappa")).to_have_value("0.001")
     page.get_by_role("switch", name="foundation").click()
-    expect(page.locator('[data-knob="k"] input[type="text"]')).to_have_value("0")
+    expect(field(page, "k")).to_have_value("0")
 
 
 def test_the_energy_account_is_told_in_the_status_line(visit: Visit) -> None:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
-Visit = Callable[..., Page]
-#: A first visit may have to compile the pair's kernels, on a machine that runs tests.
-COMPILED = 240_000
 #: What the page drew last: period and distance.
 LAST = "granchain.observer?.history.at(-1)"
 
@@ -48,7 +44,7 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
     page = visit()
     sheet = opened(page)
     expect(sheet).to_contain_text("it drifts: an offset of its beads grows, because nothing pulls them back", timeout=COMPILED)
-    expect(sheet).to_contain_text("predicted × 4.418")  # PHYSICS.md, section 3: one real multiplier outside
+    expect(sheet).to_contain_text("predicted × 4.418")  # docs/observers.md: one real multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5", timeout=30_000)
     chains = sheet.locator(".chains canvas")
     assert chains.count() == 3
@@ -58,7 +54,7 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
     expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
     page.wait_for_function(drawn("prediction", 2), timeout=30_000)
     page.wait_for_function(f"{LAST}[1] < 0.1", timeout=30_000)
-    expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("0.001")
+    expect(field(page, "kappa")).to_have_value("0.001")
 
 
 def test_a_new_start_is_seen_and_nobody_looking_stops_it(visit: Visit) -> None:

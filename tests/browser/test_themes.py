@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
-from playwright.sync_api import Page
-
-Visit = Callable[..., Page]
-
+from knobs import Visit
 
 # Whether a mark of a picture that the server draws has this colour.
 INK = """(ink) => Bokeh.documents.some((one) => [...(one.all_models ?? one._all_models.values())].some(

@@ -28,7 +28,7 @@ def test_run_prints_one_json_object_with_the_contracts_keys(capsys: pytest.Captu
     assert set(data) == RUN_KEYS
     assert set(data["cost"]) == {"wall_s", "steps", "rhs", "events", "method"}
     assert data["regime"] == "periodic" and data["period"] == 1 and data["status"] == "done"
-    assert data["max_output_force_elastic"] == pytest.approx(0.62, rel=0.01)  # PHYSICS, section 3
+    assert data["max_output_force_elastic"] == pytest.approx(0.62, rel=0.01)  # docs/model.md#what-to-observe-scene-by-scene
     assert "absent, with no code and no array: tension cut, foundation, preload" in err
 
 

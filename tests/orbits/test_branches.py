@@ -132,7 +132,7 @@ def test_between_doublings_the_disturbed_chain_leaves_its_orbit(doubling: Branch
 
 
 def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
-    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (PHYSICS, section 3)
+    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (docs/model.md#equations)
     s, shown = 7.0, scene("sec2")
     scaled = shown.evolve(A0=s * shown.A0, D=s**0.25 * shown.D)
     first = doubling.points[0]

@@ -14,7 +14,7 @@ from granchain_core.orbits.flow import StroboscopicMap
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: float, period: int) -> None:
     orbit = periodic_orbit(scene("sec2").evolve(f=frequency))
-    assert orbit.period == period  # PHYSICS, trap 8: what sec2 reaches from rest
+    assert orbit.period == period  # docs/model.md#what-to-observe-scene-by-scene: what sec2 reaches from rest
     assert orbit.residual <= 1e-11  # the map is computed to about 1e-12
     assert len(orbit.newton_residuals) - 1 <= 4  # quadratic convergence from a settled start
     assert orbit.stable
@@ -64,7 +64,7 @@ def test_an_orbit_is_found_again_with_twice_its_period_and_squared_multipliers()
 
 
 def test_scaled_chains_have_the_same_multipliers() -> None:
-    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (PHYSICS, section 3)
+    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (docs/model.md#equations)
     first, s = scene("sec2"), 7.0
     second = first.evolve(A0=s * first.A0, f=s**0.25 * first.f, D=s**0.25 * first.D)
     a, b = periodic_orbit(first), periodic_orbit(second)

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from bokeh.document import Document
 from bokeh.events import Tap
-from turns import Turns
+from host import FakeHost
 
 from app.page import links_and_files, pictures
 from app.page.controller import Controller
@@ -25,18 +25,21 @@ from granchain_core import BadInput, run, scene
 from granchain_core.experiment.measured import MOST_BYTES
 
 
-class Dashboard(Turns, Controller):
-    """A dashboard whose next turn comes when the test says so, and whose messages to the browser are kept."""
+class Dashboard(FakeHost, Controller):
+    """A dashboard whose callbacks are called when the test says so, and whose messages to the browser are kept."""
+
+    busy, awaiting_picture, curve_computing = Controller.busy, Controller.awaiting_picture, Controller.curve_computing
+    call_later, failed = Controller.call_later, Controller.failed
 
     def __init__(self) -> None:
-        Turns.__init__(self)
+        FakeHost.__init__(self)
         self.told: list[dict[str, Any]] = []
         Controller.__init__(self, Document(), Session())
         self.views.header.send = lambda **message: self.told.append(message)  # type: ignore[method-assign]
 
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """From any thread."""
-        self.turns.append(lambda: self._guarded(action, *arguments))
+        self.callbacks.append(lambda: self._guarded(action, *arguments))
 
 
 @pytest.mark.parametrize("wrong", [True, False, None, "3", 2.5, 0, 9, float("nan"), [1]])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from host import FakeHost
 
 from app.pages.stability import page as module
 from app.pages.stability import work
@@ -137,43 +137,22 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
         analyse(Target(shown.run.scene, 1, far, True), False, 0, Stop())
 
 
-class Page:
-    """The host of the page: what is asked to be done later is done when the test says so."""
-
-    busy = awaiting_picture = curve_computing = False
+class Page(FakeHost):
+    """The host of the page, with what the page shows and sends."""
 
     def __init__(self, mode: str = "settled") -> None:
+        super().__init__()
         self.session = SimpleNamespace(mode=mode, started_from=None, scene=scene("sec2"))
         self.told: list[dict[str, Any]] = []
-        self.queue: list[Any] = []
-        self.failures: list[Exception] = []
         view = SimpleNamespace(
             state={}, update_state=lambda **changes: view.state.update(changes),
             send=lambda **message: self.told.append(message),
             need_figures=lambda: None, section=lambda shown: self.told.append(section_message(shown)))
         self.view = view
 
-    def next_tick(self, action: Any, *arguments: Any) -> None:
-        """From any thread."""
-        self.queue.append((action, arguments))
-
-    def call_later(self, seconds: float, action: Any, *arguments: Any) -> None:
-        """The quiet time passes when the queue is worked off."""
-        self.next_tick(action, *arguments)
-
-    def failed(self, error: Exception) -> None:
-        """Nothing may fail."""
-        self.failures.append(error)
-
     def work(self, until: Any, seconds: float = 60.0) -> None:
-        """Do what is due until something holds."""
-        end = time.monotonic() + seconds
-        while not until():
-            assert time.monotonic() < end, "did not come"
-            while self.queue:
-                action, arguments = self.queue.pop(0)
-                action(*arguments)
-            time.sleep(0.005)
+        """Work off until something holds; nothing may fail."""
+        self.work_off(until, seconds)
         assert self.failures == []
 
     def marks(self, name: str) -> int:
@@ -203,7 +182,7 @@ def test_nothing_is_computed_while_nobody_looks(page: Page, monkeypatch: pytest.
     monkeypatch.setattr(module, "analyse", lambda *_: pytest.fail("computed"))
     view = StabilityPage(page, page.view)  # type: ignore[arg-type]
     view.picture_ready(picture())
-    page.work(lambda: not page.queue)
+    page.work(lambda: not page.callbacks)
     assert view.activity[1] == "off" and "plane" not in page.state
 
 
@@ -219,7 +198,7 @@ def test_a_picture_that_stays_is_analysed(page: Page) -> None:
     # the same picture with its energy account changes nothing
     count = len(page.told)
     view.picture_ready(replace(picture()))
-    page.work(lambda: not page.queue)
+    page.work(lambda: not page.callbacks)
     assert len(page.told) == count
     view.close()
 
@@ -231,7 +210,7 @@ def test_a_moved_knob_gives_up_and_greys(page: Page) -> None:
     view.picture_ready(replace(picture(), state=replace(picture().state)))
     view.picture_requested()
     assert page.state["stale"]
-    page.work(lambda: not page.queue)
+    page.work(lambda: not page.callbacks)
     assert page.state["stale"], "what was asked for before the knob moved is not computed"
     view.close()
 

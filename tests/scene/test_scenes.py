@@ -86,7 +86,7 @@ def test_any_value_of_a_knob_is_taken_or_refused_with_a_sentence(name, value):
 
 
 def test_kappa_uses_the_resulting_scenes_own_amplitude():
-    """k = κ·K·√A0 with the A0 set in the same breath; a later A0 leaves k alone and moves κ (PHYSICS trap 1)."""
+    """k = κ·K·√A0 with the A0 set in the same breath; a later A0 leaves k alone and moves κ (docs/model.md#equations)."""
     rig = scene("rig")
     both = rig.evolve(A0=1.2e-5, kappa=0.002)
     assert both.k == pytest.approx(0.002 * both.K * np.sqrt(1.2e-5), rel=1e-15)
@@ -96,7 +96,7 @@ def test_kappa_uses_the_resulting_scenes_own_amplitude():
 
 
 def test_the_papers_numbers_of_both_sets():
-    """K, φ, λ, force unit of PHYSICS section 1, to the digits given there."""
+    """K, φ, λ and the force unit of docs/model.md#the-system, to the digits given there."""
     sec2, rig = scene("sec2"), scene("rig")
     rate = np.sqrt(sec2.K * np.sqrt(sec2.A0) / sec2.bead(1).mass)
     found = [sec2.K, rate, sec2.D / (sec2.bead(1).mass * rate), sec2.K * sec2.A0**1.5, rig.K]

@@ -13,7 +13,7 @@ from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
 from granchain_core.steady.settle import run_until_settled
 from granchain_core.stop import Stop
 
-CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # PHYSICS, trap 8: irregular everywhere with κ = 0
+CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # irregular everywhere with κ = 0
 QUASI = scene("sec2").evolve(f=1640.0)
 
 

@@ -13,7 +13,7 @@ from granchain_core.stop import Stop
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_section_2_from_rest_has_its_periods(f, period):
-    """PHYSICS trap 8; the picture of the orbit closes on itself and says how exactly."""
+    """docs/model.md#steady-states-what-settled-means-here: the picture of the orbit closes on itself and says how exactly."""
     found = settled(scene("sec2").evolve(f=f))
     assert (found.regime.name, found.regime.period) == ("periodic", period)
     kept = found.run
@@ -78,7 +78,7 @@ def test_the_distance_bound_holds_for_a_linear_map(rate):
 
 
 def test_a_slow_approach_is_not_called_settled_by_a_small_change():
-    """|μ| = 0.9999: a change of 1e-8 a period is a distance of 1e-4 (PHYSICS trap 8)."""
+    """|μ| = 0.9999: a change of 1e-8 a period is a distance of 1e-4 (docs/model.md#steady-states-what-settled-means-here)."""
     assert regimes.find_period(strobes([0.9999], [1e-4], 400)).name == "unsettled"
 
 
@@ -106,7 +106,7 @@ def curve():
     return resonance_curve(scene("sec2"), np.linspace(30.0, 3000.0, 298))
 
 
-#: PHYSICS section 3: frequency [Hz], elastic output force [N] and how exactly the text gives it.
+#: docs/model.md#what-to-observe-scene-by-scene: frequency [Hz], elastic output force [N] and how exactly the text gives it.
 PEAKS = [(340.0, 0.62, 0.005), (615.0, 1.20, 0.005), (1130.0, 1.11, 0.005), (1575.0, 0.76, 0.005), (1950.0, 0.335, 0.005)]
 
 

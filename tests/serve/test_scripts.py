@@ -70,7 +70,7 @@ def test_every_component_renders_a_module_of_its_own() -> None:
 
 @pytest.mark.parametrize("path", ["scripts.py", "page/controller.py", "../pyproject.toml", "page/page.html"])
 def test_no_other_file_is_served(path: str) -> None:
-    root = address("page.js").removesuffix("page/page.js").removesuffix("parts/page.js")
+    root = address("page.js").removesuffix("parts/page.js")
     with pytest.raises(HTTPError):
         served(root + path)
 

@@ -5,33 +5,21 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from typing import Any
 
 import pytest
-from turns import Turns
+from host import FakeHost
 
 from app.page.task import Job, Task
 from app.serve.queues import Queue
 from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 
 
-class Dashboard(Turns):
-    """A host whose turn comes when the test says so."""
-
-    awaiting_picture = False
+class Dashboard(FakeHost):
+    """A host that keeps what a task's page says."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.failures: list[Exception] = []
         self.said: list[tuple[str, str]] = []
-
-    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
-        """From any thread."""
-        self.turns.append(lambda: action(*arguments))
-
-    def failed(self, error: Exception) -> None:
-        """What has no place on a page."""
-        self.failures.append(error)
 
     def say(self, status: str, sentence: str) -> None:
         """What the page of the task says."""
@@ -71,7 +59,7 @@ def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) ->
 def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: Dashboard,
                                                           task: Task) -> None:
     task.start(failing(error))
-    host.work_off(lambda: not task.running and not host.turns)
+    host.work_off(lambda: not task.running and not host.callbacks)
     assert host.said == [("failed", sentence)]
     assert host.failures == ([error] if told else [])
 
@@ -124,7 +112,7 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: Dashboard) ->
     task.cancel()
     leave.set()
     assert queue.submit(lambda: True).result(20)
-    host.work_off(lambda: not host.turns)
+    host.work_off(lambda: not host.callbacks)
     assert host.said == [] and host.failures == []
 
 
@@ -132,7 +120,7 @@ def test_work_gives_way_to_a_moving_knob(host: Dashboard, task: Task) -> None:
     host.awaiting_picture = True
     task.start(lambda job: job.give_way())
     time.sleep(0.1)
-    assert host.turns == []
+    assert host.callbacks == []
     host.awaiting_picture = False
     host.work_off(lambda: not task.running)
 
