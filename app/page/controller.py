@@ -16,19 +16,19 @@ from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..pictures.theme import Theme
 from ..serve.websocket import disable_nagle, with_document_lock
-from .activities import Activity, account_activity, picture_activities
-from .hooks import Actions, all_actions
+from ..session.activities import Activity, account_activity, picture_activities
+from ..session.hooks import Actions, all_actions
+from ..session.live import LiveRun
+from ..session.message_checks import is_number, quoted
+from ..session.session import SPEEDS, Session, presets, slider_range
+from ..session.share import EXTRAS
+from .display_choices import DisplayChoices
 from .layout import Views
 from .links_and_files import LinksAndFiles
-from .live import LiveRun
-from .message_checks import is_number, quoted
-from .pictures import Pictures
+from .main_picture import Pictures
 from .playback import Playback
-from .session import SPEEDS, Session, presets, slider_range
-from .share import EXTRAS
 from .show import show_regime
 from .table import PAGES
-from .theme import DisplayChoices
 
 log = logging.getLogger("granchain")
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import panel as pn
 
 from ..serve.compiler import COMPILER
+from ..session.session import Session
+from ..session.share import decode
 from .controller import Controller
-from .session import Session
-from .share import decode
 
 
 def page() -> pn.Template:

@@ -14,11 +14,11 @@ from granchain_core.store import save
 
 from ..pages.curve.page import Curves
 from ..serve.queues import FILES
-from .hooks import Actions
-from .host import Host
+from ..session.hooks import Actions
+from ..session.host import Host
+from ..session.task import Job, Task
 from .layout import Views
-from .pictures import Pictures
-from .task import Job, Task
+from .main_picture import Pictures
 
 
 class LinksAndFiles:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .hooks import Actions
-from .live import LiveRun
-from .pictures import Pictures
-from .session import Session
-from .switches import ACCOUNT
+from ..session.hooks import Actions
+from ..session.live import LiveRun
+from ..session.session import Session
+from ..session.switches import ACCOUNT
+from .main_picture import Pictures
 
 
 class Playback:

@@ -11,8 +11,8 @@ from ..format import prefixed
 from ..frames import Frames, settled_frames
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
+from ..session.live import LivePicture
 from .layout import Views
-from .live import LivePicture
 
 
 def show_settled(views: Views, number: int, picture: Settled) -> None:

@@ -10,17 +10,17 @@ from ..pages.accuracy.page import AccuracyPage
 from ..pages.accuracy.view import Accuracy
 from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
-from ..pages.effects.page import EffectsPanel
-from ..pages.hard_cases.page import HardPage
-from ..pages.hard_cases.view import ABOUT, Hard
-from ..pages.map.page import MapTab
+from ..pages.effects.page import EffectsPage
+from ..pages.hard_cases.page import HardCasesPage
+from ..pages.hard_cases.view import ABOUT, HardCases
+from ..pages.map.page import MapPage
 from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer
 from ..pages.stability.page import StabilityPage
 from ..pages.stability.view import Stability
 from ..parts.component import Component
-from .hooks import Page
-from .host import Host
+from ..session.hooks import Page
+from ..session.host import Host
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,13 @@ class Row:
 PAGES = (
     Row("stability", "stability", StabilityPage, Stability),
     Row("accuracy", "accuracy", AccuracyPage, Accuracy),
-    Row("map", "map", MapTab, None, reports_visibility=True),
-    Row("effects", "effects", EffectsPanel, None, reports_visibility=True),
+    Row("map", "map", MapPage, None, reports_visibility=True),
+    Row("effects", "effects", EffectsPage, None, reports_visibility=True),
     Row("branches", "branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable."),
     Row("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else."),
-    Row("hard", "hard cases", HardPage, Hard, ABOUT, taller=False),
+    Row("hard", "hard cases", HardCasesPage, HardCases, ABOUT, taller=False),
 )
 
 

@@ -1,14 +1,14 @@
 // The tabs below the curve: what to look at, what the marks mean, a tab for every page, the visitor's own data.
 
-import { accuracyTab } from "../pages/accuracy/accuracytab.js";
-import { branchesTab } from "../pages/branches/branchestab.js";
+import { accuracyTab } from "../pages/accuracy/accuracy_tab.js";
+import { branchesTab } from "../pages/branches/branches_tab.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/cells.js";
 import { mapTab } from "../pages/map/map.js";
-import { observerTab } from "../pages/observer/observertab.js";
-import { stabilityTab } from "../pages/stability/stabilitytab.js";
+import { observerTab } from "../pages/observer/observer_tab.js";
+import { stabilityTab } from "../pages/stability/stability_tab.js";
 import { button, element, openButton, paragraph } from "../parts/dom.js";
-import { dataTab, lookAtTab, regimesTab } from "./scenetabs.js";
+import { dataTab, lookAtTab, regimesTab } from "./scene_tabs.js";
 
 // The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name. A tab
 // that `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.

@@ -1,6 +1,6 @@
 // The chain on the page: bead i stands above column i of the map; its clock is the page's.
 
-import { ChainDrawing, unpack } from "./chaindrawing.js";
+import { ChainDrawing, unpack } from "./chain_drawing.js";
 import { Clock, Cursor } from "./clock.js";
 import { element } from "./dom.js";
 

@@ -49,11 +49,11 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live
 
 
 def drawn_chain(scene: Scene) -> dict[str, Any]:
-    """What chaindrawing.js draws of a chain besides its motion."""
+    """What chain_drawing.js draws of a chain besides its motion."""
     return {"beads": scene.N, "radii": [bead.radius for bead in scene.beads], "foundation": scene.k > 0.0}
 
 
 def chain_series(displacement: np.ndarray, force: np.ndarray, energy: np.ndarray,
                  drive: np.ndarray) -> list[np.ndarray]:
-    """The series of one chain, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chaindrawing.js."""
+    """The series of one chain, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chain_drawing.js."""
     return [series.ravel() for series in (displacement, force, energy, drive)]

@@ -7,8 +7,8 @@ from typing import Any
 from granchain_core import Scene, scene
 from granchain_core.quantities import QUANTITIES
 
-from ..page.session import slider_range
 from ..scripts import module
+from ..session.session import slider_range
 from .component import Component, text
 from .foundation import beside_kappa, foundation_words
 

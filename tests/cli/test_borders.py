@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.cli import main
-from app.page.share import decode
+from app.session.share import decode
 from granchain_core import BadInput, NumbersFailed, run, scene
 from granchain_core.experiment import read_measured_csv
 from granchain_core.store import load, save

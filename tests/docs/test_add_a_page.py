@@ -37,7 +37,7 @@ def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
 from types import SimpleNamespace
 from bokeh.document import Document
 from app.page.controller import Controller
-from app.page.session import Session
+from app.session.session import Session
 from app.scripts import FILES
 
 dashboard = Controller(Document(), Session())

@@ -13,14 +13,14 @@ from bokeh.document import Document
 from bokeh.events import Tap
 from host import FakeHost
 
-from app.page import links_and_files, pictures
+from app import server
+from app.page import links_and_files, main_picture
 from app.page.controller import Controller
-from app.page.hooks import all_actions
-from app.page.message_checks import listed, whole
-from app.page.session import Session
 from app.pictures.theme import THEMES, Theme
-from app.serve import server
 from app.serve.compiler import COMPILER, Compiler
+from app.session.hooks import all_actions
+from app.session.message_checks import listed, whole
+from app.session.session import Session
 from granchain_core import BadInput, run, scene
 from granchain_core.experiment.measured import MOST_BYTES
 
@@ -125,8 +125,8 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(m
             waiting.set()
             return Future()
 
-    monkeypatch.setattr(pictures, "COMPILER", Compiling())
-    monkeypatch.setattr(pictures, "settling", lambda *_, **__: settled.append("began") or iter(()))
+    monkeypatch.setattr(main_picture, "COMPILER", Compiling())
+    monkeypatch.setattr(main_picture, "settling", lambda *_, **__: settled.append("began") or iter(()))
     dashboard = Dashboard()
     dashboard.pictures.compute()
     assert waiting.wait(10)

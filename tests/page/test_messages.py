@@ -8,8 +8,8 @@ from pathlib import Path
 from bokeh.document import Document
 
 from app.page.controller import Controller
-from app.page.session import Session
 from app.scripts import FILES
+from app.session.session import Session
 
 PAGE = (Path(__file__).parents[2] / "docs" / "design.md").read_text(encoding="utf-8")
 LISTED = {owner: re.findall(r"`([\w-]+)`", messages)

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 import app
-from app.page.share import EXTRAS
 from app.parts import figure_style
 from app.pictures.theme import THEMES, Theme, style_sheet
+from app.session.share import EXTRAS
 
 SCRIPT = Path(app.__file__).parent / "parts" / "page.js"
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from app.page.energy_residual import with_account
-from app.page.session import Session
-from app.page.switches import ACCOUNT, EFFECTS, changes, present, variants
+from app.session.energy_residual import with_account
+from app.session.session import Session
+from app.session.switches import ACCOUNT, EFFECTS, changes, present, variants
 from granchain_core import BadInput, scene, scene_names, settled
 from granchain_core.lower import slots_of
 from granchain_core.stop import Stop

@@ -2,8 +2,8 @@
 
 import { button, element, meter, pageHead, table } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
-import { fillAccuracy, showAccuracy } from "./accuracytab.js";
-import { NaiveForces } from "./naiveforces.js";
+import { fillAccuracy, showAccuracy } from "./accuracy_tab.js";
+import { NaiveForces } from "./naive_forces.js";
 
 const STALE = "The knobs have moved: this was measured for another chain. Measure again to see it for this one.";
 

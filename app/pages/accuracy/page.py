@@ -13,14 +13,14 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_p
 from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
 from ...format import duration, short_error
-from ...page.active_setting import locate, page_setting
-from ...page.activities import Activity
-from ...page.hooks import Actions, Page
-from ...page.host import Host
-from ...page.progress import COMPUTING, OFF, READY, Status, StatusWords
-from ...page.task import Job, Task
 from ...pictures.accuracy import Annotations
 from ...serve.queues import MEASUREMENTS
+from ...session.active_setting import locate, page_setting
+from ...session.activities import Activity
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.task import Job, Task
 from .view import Accuracy, described_reference, described_ways
 
 WORDS = StatusWords("the kernels of all methods", 20, kept="the measurements so far")

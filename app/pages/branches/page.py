@@ -13,15 +13,15 @@ from granchain_core import Scene
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
-from ...page.hooks import Actions, Page
-from ...page.host import Host
-from ...page.message_checks import listed, whole
-from ...page.progress import Status, StatusWords
-from ...page.session import slider_range, without_frequency
-from ...page.task import Job, Task
 from ...pictures.branches import BranchRows
 from ...serve.delays import BRANCH_EVERY
 from ...serve.queues import LONG, Stop
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import listed, whole
+from ...session.progress import Status, StatusWords
+from ...session.session import slider_range, without_frequency
+from ...session.task import Job, Task
 from .view import LONGEST_PERIOD, Branches
 
 WORDS = StatusWords("the kernels for branches", 40, kept="the orbits found so far")

@@ -19,8 +19,8 @@ CHOICES = (*((name, label, _MEANINGS[name]) for name, label in LABELS.items()),
 class CurveBar(Component):
     """Which curves are shown, their progress, and a button that stops them."""
 
-    _esm = module("curvebar.js")
-    _stylesheets = [text("controls.css"), text("curvebar.css")]  # noqa: RUF012
+    _esm = module("curve_bar.js")
+    _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"choices": [list(choice) for choice in CHOICES]}, **params)

@@ -13,16 +13,16 @@ from granchain_core.experiment import Measured, stated_features
 from granchain_core.steady.curve import draft_curve
 from granchain_core.warm import CURVE
 
-from ...page.activities import Activity
-from ...page.debounce import Debounce
-from ...page.host import Host
-from ...page.progress import COMPUTING, OFF, READY
-from ...page.session import rig_beads, slider_range, without_frequency
-from ...page.task import Task
 from ...pictures.curve import WORDS
 from ...serve.compiler import COMPILER, PICTURE_PIECES
 from ...serve.delays import CURVE_QUIET
 from ...serve.queues import CURVES, LatestWins, Stop
+from ...session.activities import Activity
+from ...session.debounce import Debounce
+from ...session.host import Host
+from ...session.progress import COMPUTING, OFF, READY
+from ...session.session import rig_beads, slider_range, without_frequency
+from ...session.task import Task
 from .bar import CHOICES, CurveBar
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
 from .view import Curve

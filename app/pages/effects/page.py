@@ -11,21 +11,21 @@ from granchain_core.lower import slots_of
 from granchain_core.scene.effects import ALWAYS
 from granchain_core.warm import COST, COST_ACCOUNT, structure
 
-from ...page.activities import Activity
-from ...page.debounce import Debounce
-from ...page.hooks import Actions, Page
-from ...page.host import Host
-from ...page.message_checks import quoted
-from ...page.progress import COMPUTING, READY, UNDER_WAY
-from ...page.switches import EFFECTS, present, refusal, variants
-from ...page.task import Job, Task
 from ...parts.component import Component
 from ...serve.compiler import COMPILER, PICTURE_PIECES
 from ...serve.delays import ACTIVITIES_EVERY, COST_QUIET
 from ...serve.queues import MEASUREMENTS
+from ...session.activities import Activity
+from ...session.debounce import Debounce
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import quoted
+from ...session.progress import COMPUTING, READY, UNDER_WAY
+from ...session.switches import EFFECTS, present, refusal, variants
+from ...session.task import Job, Task
 
 
-class EffectsPanel(Page):
+class EffectsPage(Page):
     """Lists what is being computed and measures the cost of one effect after the other, while it is on the screen."""
 
     def __init__(self, host: Host, view: Component) -> None:

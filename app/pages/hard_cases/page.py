@@ -8,14 +8,14 @@ from typing import Any
 from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Picture
 
-from ...page.activities import Activity
-from ...page.hooks import Actions, Page
-from ...page.host import Host
-from ...page.message_checks import quoted
-from ...page.progress import COMPUTING, OFF, READY, Status, StatusWords
-from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
-from .view import Hard, described, summary
+from ...session.activities import Activity
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import quoted
+from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.task import Job, Task
+from .view import HardCases, described, summary
 from .work import CaseProcess, Ended, case_of
 
 _FAULT = "The process that ran this case ended unexpectedly; run it again, and please report it."
@@ -23,10 +23,10 @@ _FAULT = "The process that ran this case ended unexpectedly; run it again, and p
 WORDS = StatusWords()
 
 
-class HardPage(Page):
+class HardCasesPage(Page):
     """Runs the requested cases one after the other; results stay until a case is run again."""
 
-    def __init__(self, host: Host, view: Hard) -> None:
+    def __init__(self, host: Host, view: HardCases) -> None:
         self._view = view
         self._process = CaseProcess()
         self._task = Task(host, MEASUREMENTS, self._end, "The case")

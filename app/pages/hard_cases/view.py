@@ -20,7 +20,7 @@ ABOUT = ("Cases in which solvers of granular chains go wrong without warning. Ea
          "must stay below its limit.")
 
 
-class Hard(Component):
+class HardCases(Component):
     """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
 
     _esm = module("hard_cases.js")

@@ -2,7 +2,7 @@
 
 import { button, element, meter, paragraph } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
-import { attractorList } from "./attractorlist.js";
+import { attractorList } from "./attractor_list.js";
 import { cellAt, finest, MAP, valuesOf } from "./cells.js";
 
 const WORDS = "regime and largest force over drive frequency and amplitude; arrow keys move, Enter chooses";

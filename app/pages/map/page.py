@@ -15,19 +15,19 @@ from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagr
 from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.warm import ORBIT
 
-from ...page.debounce import Debounce
-from ...page.hooks import Actions, Page
-from ...page.host import Host
-from ...page.message_checks import listed
-from ...page.progress import Status, StatusWords
-from ...page.session import slider_range
-from ...page.task import Job, Task
 from ...parts.component import Component
 from ...pictures.diagram import now_row
 from ...pictures.theme import THEMES, Theme
 from ...serve.compiler import PICTURE_PIECES
 from ...serve.delays import CELLS_EVERY, MAP_QUIET
 from ...serve.queues import LONG, Stop
+from ...session.debounce import Debounce
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import listed
+from ...session.progress import Status, StatusWords
+from ...session.session import slider_range
+from ...session.task import Job, Task
 from .view import cells_message, described, head_message
 
 #: Cells along f and A0: few enough to be computed in about ten seconds on one core.
@@ -48,7 +48,7 @@ def page_grid(scene: Scene) -> Grid:
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
 
 
-class MapTab(Page):
+class MapPage(Page):
     """Computes its diagram while the tab is on the screen."""
 
     def __init__(self, host: Host, view: Component) -> None:

@@ -1,6 +1,6 @@
 // The drawings of the Observer page: the chain, its observer, and between them the force that goes from one to the other.
 
-import { ChainDrawing } from "../../parts/chaindrawing.js";
+import { ChainDrawing } from "../../parts/chain_drawing.js";
 import { element } from "../../parts/dom.js";
 
 // A chain that fills its own canvas, without the words of the main picture.

@@ -3,7 +3,7 @@
 import { button, element, pageHead } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 import { Chains } from "./chains.js";
-import { fillDistance, showDistance } from "./observertab.js";
+import { fillDistance, showDistance } from "./observer_tab.js";
 import { Replay } from "./replay.js";
 
 const KEPT_A_PERIOD = 8; // points of the distance

@@ -8,11 +8,11 @@ from functools import partial
 from granchain_core import Scene, Settled
 from granchain_core.warm import CERTIFIED, OBSERVER
 
-from ...page.hooks import Actions, Page
-from ...page.host import Host
-from ...page.progress import Status, StatusWords
-from ...page.task import Job, Task
 from ...serve.queues import PICTURES
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.progress import Status, StatusWords
+from ...session.task import Job, Task
 from .view import Observer
 from .work import ObserverRun, Step
 

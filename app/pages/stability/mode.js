@@ -1,6 +1,6 @@
 // One Floquet mode as a motion of the chain: where a small disturbance of the orbit moves every bead.
 
-import { ChainDrawing } from "../../parts/chaindrawing.js";
+import { ChainDrawing } from "../../parts/chain_drawing.js";
 import { element } from "../../parts/dom.js";
 import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
 

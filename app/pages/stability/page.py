@@ -13,16 +13,16 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
-from ...page.activities import Activity
-from ...page.debounce import Debounce
-from ...page.hooks import Actions, Page
-from ...page.host import Host
-from ...page.message_checks import whole
-from ...page.progress import COMPUTING, OFF, READY, Status, StatusWords
-from ...page.task import Job, Task
 from ...pictures.multipliers import plane_state
 from ...serve.delays import ANALYSIS_QUIET
 from ...serve.queues import ANALYSES
+from ...session.activities import Activity
+from ...session.debounce import Debounce
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import whole
+from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.task import Job, Task
 from .trail import Trail
 from .view import (
     Stability,

@@ -2,9 +2,9 @@
 
 import { element, pageHead } from "../../parts/dom.js";
 import { ModeView } from "./mode.js";
-import { MultiplierPlane } from "./multiplierplane.js";
-import { OrbitSearch } from "./orbitsearch.js";
-import { SectionView } from "./sectionview.js";
+import { MultiplierPlane } from "./multiplier_plane.js";
+import { OrbitSearch } from "./orbit_search.js";
+import { SectionView } from "./section_view.js";
 
 function evidenceTable(rows) {
   const body = element("tbody");

@@ -9,8 +9,8 @@ from collections.abc import Callable
 import pytest
 from host import FakeHost
 
-from app.page.task import Job, Task
 from app.serve.queues import Queue
+from app.session.task import Job, Task
 from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 
 
@@ -126,9 +126,9 @@ def test_work_gives_way_to_a_moving_knob(host: Dashboard, task: Task) -> None:
 
 
 def test_compiling_is_said_and_given_up_with_the_job(host: Dashboard, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.page.task.COMPILER.has", lambda *_: False)
-    monkeypatch.setattr("app.page.task.COMPILER.await_piece", lambda *_: False)
-    monkeypatch.setattr("app.page.task.COMPILER.load", lambda *_: pytest.fail("loaded"))
+    monkeypatch.setattr("app.session.task.COMPILER.has", lambda *_: False)
+    monkeypatch.setattr("app.session.task.COMPILER.await_piece", lambda *_: False)
+    monkeypatch.setattr("app.session.task.COMPILER.load", lambda *_: pytest.fail("loaded"))
     task.start(lambda job: job.compile(scene("sec2"), "live"))
     host.work_off(lambda: host.said == [("compiling", "")])
     assert host.failures == []

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.page.share import EXTRAS, decode, encode
+from app.session.share import EXTRAS, decode, encode
 from granchain_core import scene, scene_names
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from host import FakeHost
 
-from app.page.debounce import Debounce
+from app.session.debounce import Debounce
 
 
 def test_only_the_last_start_is_called() -> None:

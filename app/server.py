@@ -8,9 +8,9 @@ import panel as pn
 
 from granchain_core.experiment.measured import MOST_BYTES
 
-from ..page.entry import page
-from ..page.session import Session
-from .compiler import COMPILER
+from .page.entry import page
+from .serve.compiler import COMPILER
+from .session.session import Session
 
 #: The largest message a page sends is an uploaded file, in which JSON may write a character in six bytes.
 LARGEST_MESSAGE = 6 * MOST_BYTES + 100_000

@@ -15,10 +15,10 @@ from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
 from ..serve.pacing import FramePacer
 from ..serve.queues import LatestWins, Stop
 from ..serve.websocket import batched_messages
-from .energy_residual import with_account
-from .host import Host
+from ..session.energy_residual import with_account
+from ..session.host import Host
+from ..session.live import LivePicture, LiveRun
 from .layout import Views
-from .live import LivePicture, LiveRun
 from .show import show_live, show_settled
 
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from ..pages.curve.page import Curves
 from ..pictures.theme import THEMES, Theme
-from .hooks import Actions
+from ..session.hooks import Actions
+from ..session.session import Session
 from .layout import Views
-from .session import Session
 
 
 class DisplayChoices:

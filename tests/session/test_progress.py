@@ -9,11 +9,11 @@ from typing import get_args
 
 import pytest
 
-from app.page import progress as module
-from app.page.progress import UNDER_WAY, Status, StatusWords
 from app.pages.branches.page import WORDS as BRANCHES
 from app.pages.hard_cases.page import WORDS as HARD_CASES
 from app.pages.map.page import WORDS as MAP
+from app.session import progress as module
+from app.session.progress import UNDER_WAY, Status, StatusWords
 
 PAGES = Path(module.__file__).parents[1] / "pages"
 #: Every `StatusWords` of a page, by page and name.

@@ -1,7 +1,7 @@
 """Share links: scene name, knobs that differ from its preset, mode, start and look, as one versioned
 query string.
 
-A link stores differences only: a changed preset changes what old links mean (tests/page/test_share.py).
+A link stores differences only: a changed preset changes what old links mean (tests/session/test_share.py).
 Each field is checked by itself: a bad one is refused with a sentence, and the others are still used.
 """
 
