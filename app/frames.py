@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from granchain_core import Run, Scene
+from granchain_core.lower import scales_of
 
 _FEWEST, _MOST, _STEP = 96, 384, 48
 _PER_CONTACT_TIME = 1.5
@@ -83,8 +84,7 @@ def _jumps(run: Run, contact: int) -> np.ndarray:
 
 def samples_for(scene: Scene) -> int:
     """Rows per drive period: as many as the pulses need, which are short in a slow drive."""
-    rate = np.sqrt(scene.K * np.sqrt(scene.A0) / scene.bead(1).mass)
-    needed = _STEP * round(_PER_CONTACT_TIME * rate / scene.f / _STEP)
+    needed = _STEP * round(_PER_CONTACT_TIME * scales_of(scene).rate / scene.f / _STEP)
     return int(min(max(needed, _FEWEST), _MOST))
 
 

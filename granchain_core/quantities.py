@@ -19,9 +19,12 @@ from .text import number_in
 class Quantity:
     """One knob of a scene, in SI.
 
-    `low` and `high` limit the accepted values; the narrower range of a slider belongs to the scene. `step` is the fine
-    step of the keyboard. `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted
-    too. `main` knobs are always on the page, the others under "more". `changes_motion` is False for a knob of the
+    `low` and `high` limit the accepted values; the narrower range of a slider belongs to the scene. `scale` says how
+    a slider goes through its range: "linear", "log", or "cubic" for knobs that start at 0 and span decades: the value
+    is the cube of the position, fine near 0. `step` is the fine step of the keyboard; 0 stands for half a decade.
+    `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted too. `main` knobs are
+    always on the page, the others under "more". `short` is the label beside a number where `label` is too long.
+    `shown_in` is the factor and unit on the page if that is not `unit`. `changes_motion` is False for a knob of the
     computation alone.
     """
 
@@ -39,6 +42,8 @@ class Quantity:
     numeric: bool = True
     whole: bool = False
     main: bool = False
+    short: str = ""
+    shown_in: tuple[float, str] | None = None
     changes_motion: bool = True
 
     @property
@@ -110,29 +115,29 @@ _TABLE = (
     Quantity("f", "f", "Hz", "f", "drive frequency", "How often a second the driver moves to and fro.",
              0.1, 1e6, "log", 0.1, main=True),
     Quantity("A0", "A₀", "m", "A_0", "drive amplitude", "How far the driver moves from its middle position.",
-             1e-12, 1e-4, "log", 1e-9, main=True),
+             1e-12, 1e-4, "log", 1e-9, main=True, shown_in=(1e-6, "µm")),
     Quantity("D", "D", "N s/m", "D", "contact damping",
              "Force of the contact's dashpot per speed of approach; where it grows with the overlap its value at the "
-             "scene's reference overlap.", 0.0, 1e6, "linear", 0.1, main=True),
+             "scene's reference overlap.", 0.0, 1e6, "linear", 0.1, main=True, short="damping"),
     Quantity("k", "k", "N/m", "k", "foundation stiffness", "Spring from every bead to the ground (the flexures).",
-             0.0, 1e10, "linear", 10.0, main=True),
+             0.0, 1e10, "cubic", 10.0, main=True, short="foundation"),
     Quantity("kappa", "κ", "1", r"\kappa", "foundation stiffness, dimensionless",
              "k divided by K·√A₀, the contact stiffness at one drive amplitude of overlap.",
-             0.0, 100.0, "linear", 1e-5, main=True),
+             0.0, 100.0, "cubic", 1e-5, main=True, short="k / (K√A₀)"),
     Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
-             1, 10_000, "linear", 1, whole=True),
+             1, 10_000, "linear", 1, whole=True, short="beads"),
     Quantity("F0", "F₀", "N", "F_0", "preload", "Static force that presses the chain together; 0 is the sonic vacuum.",
              0.0, 1e4, "linear", 0.1),
     Quantity("wall", "W", "1", r"K_N/K", "right wall",
              "Stiffness of the last contact: a fixed bead (K), a flat wall of the same material (√2 K), "
              "a rigid flat wall (2√2 K), or a number times K.",
-             1e-6, 1e6, choices=tuple(WALL_FACTORS)),
+             1e-6, 1e6, choices=tuple(WALL_FACTORS), short="wall"),
     Quantity("dissipation", "", "", "", "dissipation law", "How a contact loses energy.",
-             choices=DISSIPATION_LAWS, numeric=False),
+             choices=DISSIPATION_LAWS, numeric=False, short="law"),
     Quantity("tension", "", "", "", "tension", "Whether the dashpot may pull while a contact opens "
              "(the paper's law) or the contact force is cut at zero.", choices=TENSION, numeric=False),
     Quantity("accuracy", "ε", "1", r"\varepsilon", "accuracy", "Relative error of the displacements asked for.",
-             1e-12, 0.1, "log", 1e-12, main=True, changes_motion=False),
+             1e-12, 0.1, "log", 0.0, main=True, changes_motion=False),
 )
 
 QUANTITIES: dict[str, Quantity] = {q.name: q for q in _TABLE}

@@ -15,12 +15,12 @@ HERE = Path(__file__).parent
 #: Folders and files of the inner loop, `python -m pytest -m quick`: below 90 s once the kernels are compiled.
 #: Each part of the core has one that fails where that part is wrong; orders, random scenes and browsers are for the whole suite.
 QUICK = (
-    "architecture", "public", "scene", "experiment", "store/test_files.py", "store/test_hdf5_border.py", "page", "integrate", "run/test_peaks.py",
+    "architecture", "public", "scene", "experiment", "store/test_files.py", "store/test_hdf5_border.py", "page", "session", "integrate", "run/test_peaks.py",
     "kernels/equations", "kernels/effects", "kernels/rk4", "kernels/dop853", "kernels/test_absent_effects.py",
     "kernels/simd/test_vector_nan.py", "kernels/batch/test_period_end.py", "physics/test_impact.py",
     "physics/test_work_on_the_way.py", "steady/test_claims.py", "steady/test_places.py", "orbits/test_orbits.py",
     "orbits/test_orbit_claims.py", "diagram/test_boundary.py", "observe/test_force_files.py",
-    "accuracy/test_effect_cost.py", "pages/test_foundation.py", "pages/test_hard_words.py", "cli/test_borders.py",
+    "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py",
 )
 
 

@@ -69,9 +69,10 @@ def _show_accuracy(found: Any) -> None:
 
 
 def _drawn(found: Any, asked: float, theme: Any) -> Any:
-    from app.pictures.accuracy import Asked
+    from app.pictures.accuracy import Annotations
     from app.pictures.accuracy import accuracy as drawn
 
     best = found.cheapest(asked)
     cheapest = None if best is None else (best.wall_s, best.error)
-    return drawn(found.rows, Asked(asked, found.agreement if math.isfinite(found.agreement) else None, cheapest), theme)
+    agreement = found.agreement if math.isfinite(found.agreement) else None
+    return drawn(found.rows, Annotations(asked, agreement, cheapest), theme)

@@ -18,7 +18,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Open the dashboard."""
-    from app.serve.server import serve as serve_page
+    from app.server import serve as serve_page
 
     if not 0 <= arguments.port <= 65535:
         raise BadInput(f"port {arguments.port} is outside 0 to 65535; the usual one is 5006.")

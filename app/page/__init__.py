@@ -1,1 +1,1 @@
-"""One visitor's page: its session, its computations and its layout."""
+"""The dashboard of one visitor: controller, main picture, layout and tabs."""

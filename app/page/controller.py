@@ -14,18 +14,21 @@ from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
 from ..pages.curve.page import Curves
 from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
-from ..serve.websocket import in_its_turn, send_at_once
-from .activities import Activity, account_activity, picture_activities
-from .hooks import Actions, all_actions
+from ..pictures.theme import Theme
+from ..serve.websocket import disable_nagle, with_document_lock
+from ..session.activities import Activity, account_activity, picture_activities
+from ..session.hooks import Actions, all_actions
+from ..session.live import LiveRun
+from ..session.message_checks import is_number, quoted
+from ..session.session import SPEEDS, Session, presets, slider_range
+from ..session.share import EXTRAS
+from .display_choices import DisplayChoices
 from .layout import Views
 from .links_and_files import LinksAndFiles
-from .live import LiveRun
-from .pictures import Pictures
+from .main_picture import Pictures
 from .playback import Playback
-from .session import SPEEDS, Session, presets, slider_range
 from .show import show_regime
 from .table import PAGES
-from .theme import DisplayChoices
 
 log = logging.getLogger("granchain")
 
@@ -33,7 +36,7 @@ log = logging.getLogger("granchain")
 class Controller:
     """One visitor's dashboard: owns session, pictures and pages, and passes each message to the action of its name.
 
-    It is the `Host` of its pages. Everything here runs in the document's turn.
+    It is the `Host` of its pages. Everything here runs with the document locked.
     """
 
     def __init__(self, document: Document, session: Session) -> None:
@@ -42,23 +45,24 @@ class Controller:
         self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
         self.pictures = Pictures(document, self, views, self.note, self._arrived)
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
-        self.choices = DisplayChoices(session, views, self.curves)
+        self.choices = DisplayChoices(session, views, self.curves, self._theme_changed)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
-        self.pages = tuple(row.page(self, views.covers.get(row.name, views.tabs)) for row in PAGES)
+        self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
         own: Actions = {
-            "ping": lambda _: views.chain.tell(type="pong"),
-            "ready": self._ready, "visible": lambda _: self.pictures.restart(),
-            "room": lambda m: views.fit(bool(m.get("narrow"))),
+            "ping": lambda _: views.chain.send(type="pong"),
+            "ready": self._ready, "page-visible": lambda _: self.pictures.restart(),
+            "narrow": lambda m: views.fit(bool(m.get("value"))),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
-            "understood": self._understood,
+            "dismiss-sentence": self._dismiss_sentence,
         }
         playback = Playback(session, self.pictures, self._compute, self._header, self.say)
-        self._actions = all_actions({
+        self.owners: dict[str, Actions] = {
             "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
             "display choices": self.choices.actions,
-            **{f"the page {row.name!r}": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
-        })
+            **{f"page `{row.name}`": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
+        }
+        self._actions = all_actions(self.owners)
 
     # Coming in and going out
 
@@ -67,9 +71,9 @@ class Controller:
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
-            self.say(f"The page sent a request {str(name)[:40]!r} that is not known here; reload the page.")
+            self.say(f"The page sent a request {quoted(name)} that is not known here; reload the page.")
             return
-        in_its_turn(self._document, partial(self._guarded, action, message))
+        with_document_lock(self._document, partial(self._guarded, action, message))
 
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
         try:
@@ -77,12 +81,12 @@ class Controller:
         except Exception as error:
             self.failed(error)
 
-    def later(self, action: Callable[..., None], *arguments: Any) -> None:
-        """Call `action` in the document's turn; this may be called from any thread."""
+    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
+        """Call `action` with the document locked, as soon as that is possible; this may be called from any thread."""
         self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
 
-    def after(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
-        """Call `action` in the document's turn, so many seconds from now."""
+    def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
+        """Call `action` with the document locked, so many seconds from now."""
         self._document.add_timeout_callback(partial(self._guarded, action, *arguments), round(1e3 * seconds))
 
     def say(self, sentence: str) -> None:
@@ -96,7 +100,7 @@ class Controller:
         self._show_sentences()
 
     def _show_sentences(self) -> None:
-        self.views.status_line.display(sentence=f"{self.session.sentence} {self.session.notice}".strip())
+        self.views.status_line.update_state(sentence=f"{self.session.sentence} {self.session.notice}".strip())
 
     def failed(self, error: Exception) -> None:
         """Say in one sentence what happened; the last good picture stays."""
@@ -143,8 +147,8 @@ class Controller:
         elif state is not None or self.pictures.live is None:
             self.pictures.live = LiveRun(scene, state)
         self._header()
-        self._echo()
-        self._turned(state)
+        self._send_knob_values()
+        self._scene_changed(state)
 
     def activities(self) -> list[Activity]:
         """Everything that is computed for this visitor, or could be."""
@@ -155,12 +159,16 @@ class Controller:
 
     def _arrived(self, picture: Settled) -> None:
         for page in self.pages:
-            page.arrived(picture)
+            page.picture_ready(picture)
+
+    def _theme_changed(self, theme: Theme) -> None:
+        for page in self.pages:
+            page.theme_changed(theme)
 
     # What the visitor does
 
     def _ready(self, message: dict[str, Any]) -> None:
-        send_at_once(self._document)
+        disable_nagle(self._document)
         self.views.fit(bool(message.get("narrow")))
         self.choices.choose({"value": message.get("theme")})
         self._new_scene()
@@ -168,9 +176,9 @@ class Controller:
     def _new_scene(self) -> None:
         scene = self.session.scene
         self.views.knobs.state = knob_state(scene)
-        self.views.tabs.display(look_at=scene.look_at, paper=scene.paper)
+        self.views.tabs.update_state(look_at=scene.look_at, paper=scene.paper)
         self._header()
-        self._describe()
+        self._tell_pages()
         self.curves.open(scene)
         if self.session.mode == "live":
             self.pictures.live = LiveRun(scene)
@@ -178,61 +186,62 @@ class Controller:
 
     def _compute(self, start: State | None = None) -> None:
         for page in self.pages:
-            page.moved()
+            page.picture_requested()
         self.pictures.compute(start)
 
     def _header(self) -> None:
         session = self.session
-        self.views.header.display(
+        self.views.header.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
-            speeds=list(SPEEDS), speed=session.speed, playing=session.playing, query=session.link)
+            speeds=list(SPEEDS), speed=session.speed, playing=session.playing, account=session.account,
+            query=session.link, view_fields=list(EXTRAS))
 
-    def _describe(self) -> None:
+    def _tell_pages(self) -> None:
         scene = self.session.scene
         for page in self.pages:
-            page.changed()
-        self.views.equation.display(latex=scene.equation_latex())
-        self.views.tabs.display(validity=list(scene.validity()))
+            page.scene_changed()
+        self.views.equation.update_state(latex=scene.equation_latex())
+        self.views.tabs.update_state(validity=list(scene.validity()))
 
     def _set(self, message: dict[str, Any]) -> None:
         name = str(message.get("name"))
         try:
             self.session.change(name, message.get("value"))
-            self._turned()
+            self._scene_changed()
         finally:
-            self._echo(message.get("seq"))
+            self._send_knob_values(message.get("seq"))
 
     def _restore(self, message: dict[str, Any]) -> None:
         self.session.restore(str(message.get("name")))
-        self._echo(message.get("seq"))
-        self._turned()
+        self._send_knob_values(message.get("seq"))
+        self._scene_changed()
 
-    def _echo(self, seq: object = None) -> None:
+    def _send_knob_values(self, seq: object = None) -> None:
         scene = self.session.scene
-        self.views.knobs.tell(type="values", seq=seq, values=dict(scene.knobs),
+        self.views.knobs.send(type="values", seq=seq, values=dict(scene.knobs),
                               foundation=foundation_words(scene), kept=beside_kappa(scene), query=self.session.link)
 
-    def _turned(self, start: State | None = None) -> None:
+    def _scene_changed(self, start: State | None = None) -> None:
         self._compute(start)
         if self.session.sentence:
             self.say("")
-        self._describe()
+        self._tell_pages()
         self.curves.moved(self.session.scene)
 
     def _choose_frequency(self, frequency: object) -> None:
         """Go to the clicked frequency; the knob refuses anything that is not a number."""
-        if isinstance(frequency, (int, float)) and not isinstance(frequency, bool):
+        if is_number(frequency):
             low, high = slider_range(self.session.scene, "f")
             frequency = round(min(max(frequency, low), high), 1)
         self.session.change("f", frequency)
-        self._echo()
-        self._turned()
+        self._send_knob_values()
+        self._scene_changed()
 
     def _scene(self, message: dict[str, Any]) -> None:
         self.session.choose(message.get("name"))
         self.say("")
         self._new_scene()
 
-    def _understood(self, _: dict[str, Any]) -> None:
+    def _dismiss_sentence(self, _: dict[str, Any]) -> None:
         self.session.notice = ""
         self.say("")

@@ -8,9 +8,9 @@ import panel as pn
 from bokeh.document import Document
 
 from ..serve.compiler import COMPILER
+from ..session.session import Session
+from ..session.share import decode
 from .controller import Controller
-from .session import Session
-from .share import decode
 
 
 def page() -> pn.Template:

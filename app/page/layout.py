@@ -24,8 +24,9 @@ from ..parts.header import Header
 from ..parts.knobs import Knobs
 from ..parts.status_line import StatusLine
 from ..parts.trains import WIDEST_TITLES, Trains
-from ..pictures.regimes import REGIMES
-from ..pictures.theme import Theme
+from ..pictures.curve import KEY
+from ..pictures.regimes import REGIMES, SYMBOLS
+from ..pictures.theme import Theme, style_sheet
 from .table import PAGES, described_pages
 from .tabs import Tabs
 
@@ -46,9 +47,9 @@ class Views:
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
-            "largest_file": MOST_BYTES, "pages": described_pages(), "regimes": [
-                {"name": name, "marker": style[0], "colour": style[1]} for name, style in REGIMES.items()]})
-        self.covers = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
+            "largest_file": MOST_BYTES, "lines": KEY, "pages": described_pages(), "regimes": [
+                {"name": name, "symbol": SYMBOLS[style[0]], "colour": style[1]} for name, style in REGIMES.items()]})
+        self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
         self.shown: Settled | None = None
 
@@ -58,25 +59,25 @@ class Views:
             self.trains.fit(narrow)
             self.energy.fit(narrow)
 
-    def dress(self, theme: Theme) -> None:
+    def apply_theme(self, theme: Theme) -> None:
         """Draw the figures of all pages in another theme."""
-        for cover in self.covers.values():
-            cover.dress(theme)
+        for overlay in self.overlays.values():
+            overlay.apply_theme(theme)
 
     def template(self) -> pn.Template:
         """The page; its layout is a CSS grid in page.css."""
         page = pn.Template((_HERE / "page.html").read_text(encoding="utf-8"))
-        page.add_variable("page_css", (_HERE / "page.css").read_text(encoding="utf-8"))
+        page.add_variable("page_css", style_sheet() + (_HERE / "page.css").read_text(encoding="utf-8"))
         page.add_variable("page_js", text("page.js") + text("connection.js"))
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)
         page.add_variable("frame_left", LEFT)
         page.add_variable("gap", GAP)
-        page.add_variable("covers", [(row.name, row.tab.capitalize()) for row in PAGES if row.view])
+        page.add_variable("overlays", [(row.name, row.title.capitalize()) for row in PAGES if row.view])
         for name in ("header", "knobs", "equation", "chain", "curvebar", "tabs", "status_line"):
             page.add_panel(name, getattr(self, name))
-        for name, cover in self.covers.items():
-            page.add_panel(name, cover)
+        for name, overlay in self.overlays.items():
+            page.add_panel(name, overlay)
         page.add_panel("left", pane(self.trains.left))
         page.add_panel("map", pane(self.energy.figure))
         page.add_panel("right", pane(self.trains.right))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,10 +14,11 @@ from granchain_core.store import save
 
 from ..pages.curve.page import Curves
 from ..serve.queues import FILES
-from .host import Host
+from ..session.hooks import Actions
+from ..session.host import Host
+from ..session.task import Job, Task
 from .layout import Views
-from .pictures import Pictures
-from .task import Job, Task
+from .main_picture import Pictures
 
 
 class LinksAndFiles:
@@ -31,7 +31,7 @@ class LinksAndFiles:
         self._pictures = pictures
         self._saving = Task(host, FILES, _say_nothing, "Saving the picture", host.failed)
         self._reading = Task(host, FILES, _say_nothing, "Reading the measurement", host.failed)
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "share": self._share, "save": self._save, "csv": self._csv,
             "csv-too-large": self._too_large, "csv-remove": self._remove,
         }
@@ -42,7 +42,7 @@ class LinksAndFiles:
         self._reading.cancel()
 
     def _share(self, _: dict[str, Any]) -> None:
-        self._views.header.tell(type="link", query=self._host.session.link)
+        self._views.header.send(type="link", query=self._host.session.link)
 
     def _save(self, _: dict[str, Any]) -> None:
         run = self._pictures.run()
@@ -57,7 +57,7 @@ class LinksAndFiles:
             save(run, path)
             content = path.read_bytes()
         name = f"{run.scene.name}-{run.scene.f:g}Hz.h5"
-        job.later(self._views.header.tell, type="file", name=name, content=content)
+        job.next_tick(self._views.header.send, type="file", name=name, content=content)
 
     def _csv(self, message: dict[str, Any]) -> None:
         text = message.get("text")
@@ -67,11 +67,11 @@ class LinksAndFiles:
 
     def _read(self, name: str, text: str, job: Job) -> None:
         """In a worker thread: read the file. A `BadInput` names the line that cannot be read."""
-        job.later(self._show, name, read_measured_csv(text))
+        job.next_tick(self._show, name, read_measured_csv(text))
 
     def _show(self, name: str, measured: Measured) -> None:
         self._curves.measured(measured)
-        self._views.tabs.display(understood=f"{name}: {measured.understood}")
+        self._views.tabs.update_state(understood=f"{name}: {measured.understood}")
 
     def _too_large(self, _: dict[str, Any]) -> None:
         raise BadInput(f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve of frequency and force needs "
@@ -80,7 +80,7 @@ class LinksAndFiles:
     def _remove(self, _: dict[str, Any]) -> None:
         self._reading.cancel()
         self._curves.measured(None)
-        self._views.tabs.display(understood="")
+        self._views.tabs.update_state(understood="")
 
 
 def _say_nothing(status: str, sentence: str) -> None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .live import LiveRun
-from .pictures import Pictures
-from .session import Session
+from ..session.hooks import Actions
+from ..session.live import LiveRun
+from ..session.session import Session
+from ..session.switches import ACCOUNT
+from .main_picture import Pictures
 
 
 class Playback:
@@ -20,9 +22,9 @@ class Playback:
         self._compute = compute
         self._header = header
         self._say = say
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
-            "reset": self._reset, "step": self._step, "again": self._again,
+            "reset": self._reset, "next-period": self._next_period, "reconnected": self._reconnected,
         }
 
     def _mode(self, message: dict[str, Any]) -> None:
@@ -48,12 +50,16 @@ class Playback:
                 self._pictures.advance(1)
         self._pictures.idle()
 
-    def _again(self, message: dict[str, Any]) -> None:
+    def _reconnected(self, message: dict[str, Any]) -> None:
         """The browser lost its server and has loaded the page again from its share link."""
         self._speed({"value": message.get("speed")})
         if not message.get("playing"):
             self._playing({"value": False})
             self._header()
+        if message.get("account"):
+            self._session.switch(ACCOUNT, True)
+            self._header()
+            self._compute()
         gone = " and your uploaded data are gone" if message.get("uploaded") else ""
         self._say("The connection was lost. Your settings are restored, but the chain has started again from rest"
                   f"{gone}.")
@@ -64,7 +70,7 @@ class Playback:
         self._session.picture = None
         self._compute()
 
-    def _step(self, _: dict[str, Any]) -> None:
+    def _next_period(self, _: dict[str, Any]) -> None:
         if self._pictures.live is not None:
             self._session.playing = False
             self._pictures.advance(self._pictures.live.samples)

@@ -11,8 +11,8 @@ from ..format import prefixed
 from ..frames import Frames, settled_frames
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
+from ..session.live import LivePicture
 from .layout import Views
-from .live import LivePicture
 
 
 def show_settled(views: Views, number: int, picture: Settled) -> None:
@@ -24,13 +24,13 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
         _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s")
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
         views.shown = picture
-        views.status_line.display(**settled_entries(picture, views.curve.place(picture.run)))
+        views.status_line.update_state(**settled_entries(picture, views.curve.place(picture.run)))
 
 
 def show_regime(views: Views) -> None:
     """Update the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
     if views.shown is not None:
-        views.status_line.display(**settled_entries(views.shown, views.curve.place(views.shown.run)))
+        views.status_line.update_state(**settled_entries(views.shown, views.curve.place(views.shown.run)))
 
 
 def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
@@ -41,7 +41,7 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
         views.trains.left.yaxis.axis_label = "time (drive periods before now)"
         _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)
         views.curve.now(run.scene.knobs["f"], frames.largest_output)
-        views.status_line.display(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
+        views.status_line.update_state(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
@@ -49,4 +49,4 @@ def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndar
     views.time.update(start=float(time[-1]), end=float(time[0]))
     views.trains.update(frames, time)
     scale = views.energy.update(frames, time, unit, live)
-    views.chain.tell(**frames_message(number, frames, scene, scale, live, running))
+    views.chain.send(**frames_message(number, frames, scene, scale, live, running))

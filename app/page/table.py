@@ -1,4 +1,4 @@
-"""The table of pages: layout, controller, the covers of page.html and the tabs are made from it."""
+"""The table of pages: layout, controller, the overlays of page.html and the tabs are made from it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from ..pages.accuracy.page import AccuracyPage
 from ..pages.accuracy.view import Accuracy
 from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
-from ..pages.effects.page import EffectsPanel
-from ..pages.hard_cases.page import HardPage
-from ..pages.hard_cases.view import Hard
-from ..pages.map.page import MapTab
+from ..pages.effects.page import EffectsPage
+from ..pages.hard_cases.page import HardCasesPage
+from ..pages.hard_cases.view import ABOUT, HardCases
+from ..pages.map.page import MapPage
 from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer
 from ..pages.paper.page import PaperPage
@@ -21,43 +21,45 @@ from ..pages.paper.view import Paper
 from ..pages.stability.page import StabilityPage
 from ..pages.stability.view import Stability
 from ..parts.component import Component
-from .hooks import Page
-from .host import Host
+from ..session.hooks import Page
+from ..session.host import Host
 
 
 @dataclass(frozen=True)
 class Row:
-    """One page: its name in messages, the words on its tab, what is computed and how it is drawn.
+    """One page: its name in messages, the title of its tab, what is computed and how it is drawn.
 
-    `page` is made with the host and the view. `view` covers the pictures; a page without one is drawn in its tab by
-    tabs.js. `words` stand in the tab until the page has something to say. `roomy` gives the tab more height.
+    `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
+    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height. A
+    page that `reports_visibility` gets the message "NAME-visible" whenever its tab comes on the screen or leaves it.
     """
 
     name: str
-    tab: str
+    title: str
     page: Callable[[Host, Any], Page]
     view: Callable[..., Component] | None
-    words: str = ""
-    roomy: bool = True
+    placeholder: str = ""
+    taller: bool = True
+    reports_visibility: bool = False
 
 
 #: In the order of the tabs.
 PAGES = (
     Row("stability", "stability", StabilityPage, Stability),
     Row("accuracy", "accuracy", AccuracyPage, Accuracy),
-    Row("map", "map", MapTab, None),
-    Row("effects", "effects", EffectsPanel, None),
-    Row("branches", "branches", BranchesPage, Branches),
+    Row("map", "map", MapPage, None, reports_visibility=True),
+    Row("effects", "effects", EffectsPage, None, reports_visibility=True),
+    Row("branches", "branches", BranchesPage, Branches,
+        "Periodic orbits followed over the drive frequency, stable and unstable."),
     Row("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else."),
-    Row("hard", "hard cases", HardPage, Hard,
-        "Cases in which solvers of granular chains go wrong without warning, each compared with a known result.",
-        roomy=False),
+    Row("hard", "hard cases", HardCasesPage, HardCases, ABOUT, taller=False),
     Row("paper", "paper", PaperPage, Paper,
-        "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", roomy=False),
+        "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False),
 )
 
 
 def described_pages() -> list[dict[str, Any]]:
     """What the tabs need of the table."""
-    return [{"name": row.name, "tab": row.tab, "words": row.words, "roomy": row.roomy} for row in PAGES]
+    return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller,
+             "reports_visibility": row.reports_visibility} for row in PAGES]

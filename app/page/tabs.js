@@ -1,16 +1,17 @@
 // The tabs below the curve: what to look at, what the marks mean, a tab for every page, the visitor's own data.
 
-import { accuracyTab } from "../pages/accuracy/accuracytab.js";
-import { branchesTab } from "../pages/branches/branchestab.js";
+import { accuracyTab } from "../pages/accuracy/accuracy_tab.js";
+import { branchesTab } from "../pages/branches/branches_tab.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/cells.js";
 import { mapTab } from "../pages/map/map.js";
-import { observerTab } from "../pages/observer/observertab.js";
-import { stabilityTab } from "../pages/stability/stabilitytab.js";
-import { button, openButton, paragraph, part } from "../parts/dom.js";
-import { dataTab, lookAtTab, regimesTab } from "./scenetabs.js";
+import { observerTab } from "../pages/observer/observer_tab.js";
+import { stabilityTab } from "../pages/stability/stability_tab.js";
+import { button, element, openButton, paragraph } from "../parts/dom.js";
+import { dataTab, lookAtTab, regimesTab } from "./scene_tabs.js";
 
-// The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name.
+// The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name. A tab
+// that `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
 const TABS = {
   "look at": lookAtTab,
   regimes: regimesTab,
@@ -24,13 +25,13 @@ const TABS = {
 };
 
 // The tab of a page that has no function in TABS: its sentence, or what it is, and a button that opens it.
-function plainTab(_, { name, words }) {
+function plainTab(_, { name, placeholder }) {
   const said = paragraph();
   const show = () => {
-    said.textContent = window.granchain[name]?.sentence || words;
+    said.textContent = window.granchain[name]?.sentence || placeholder;
   };
   show();
-  return { content: [part("div", { className: "row top" }, said, openButton(name))], show };
+  return { content: [element("div", { className: "row top" }, said, openButton(name))], show };
 }
 
 // The button that gives the tabs the place of the curve, and back.
@@ -51,39 +52,44 @@ class Tabs {
   constructor(model) {
     this.model = model;
     const pages = model.state.pages;
-    const rows = [{ name: "look at", tab: "look at" }, { name: "regimes", tab: "regimes" }, ...pages];
-    rows.push({ name: "data", tab: "data" });
+    const rows = [{ name: "look at", title: "look at" }, { name: "regimes", title: "regimes" }, ...pages];
+    rows.push({ name: "data", title: "data" });
     this.rows = new Map(rows.map((row) => [row.name, row]));
     this.chosen = "look at";
+    this.seen = this.chosen; // the tab that is on the screen, null while a page lies over the pictures
     this.redraw = () => {};
     this.tabs = rows.map((row) => this.tab(row));
     // The larger button floats, so it comes first: the second line of tabs has the whole width.
-    this.list = part("div", { className: "tabs", role: "tablist" }, largerButton(), ...this.tabs);
+    this.list = element("div", { className: "tabs", role: "tablist" }, largerButton(), ...this.tabs);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
-    this.body = part("div", { className: "body", role: "tabpanel" });
-    this.root = part("div", { className: "part tabbed" }, this.list, this.body);
+    this.body = element("div", { className: "body", role: "tabpanel" });
+    this.root = element("div", { className: "part tabbed" }, this.list, this.body);
   }
 
-  tab({ name, tab: words }) {
-    const tab = button(words, () => this.choose(name), { role: "tab" });
+  tab({ name, title }) {
+    const tab = button(title, () => this.choose(name), { role: "tab" });
     tab.dataset.tab = name;
     return tab;
   }
 
   choose(name) {
-    const before = this.chosen;
     this.chosen = name;
-    document.getElementById("curves").classList.toggle("roomy", Boolean(this.rows.get(name).roomy));
-    if (before === "effects" || name === "effects") this.tellEffectsVisible();
-    if (before === "map" || name === "map") this.model.send_msg({ do: "map-visible", value: name === "map" });
+    document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
+    this.reportVisibility();
     this.show();
     window.granchain.emit("tab", name);
   }
 
-  // Costs are measured only while somebody looks at them.
-  tellEffectsVisible() {
-    const value = this.chosen === "effects" && !window.granchain.covered;
-    this.model.send_msg({ do: "effects-visible", value });
+  // Some pages compute only while somebody looks at their tab; a page over the pictures hides it.
+  reportVisibility() {
+    const seen = window.granchain.overlay ? null : this.chosen;
+    if (seen === this.seen) return;
+    for (const [name, value] of [
+      [this.seen, false],
+      [seen, true],
+    ])
+      if (this.rows.get(name)?.reports_visibility) this.model.send_msg({ do: `${name}-visible`, value });
+    this.seen = seen;
   }
 
   // The Tab key stops once; arrows, Home and End go from tab to tab.
@@ -106,16 +112,15 @@ class Tabs {
       tab.tabIndex = selected ? 0 : -1;
     }
     const make = TABS[this.chosen] ?? plainTab;
-    const { content, show = () => {} } = make(this.model, this.rows.get(this.chosen));
-    this.redraw = show;
+    const { content, show = () => {}, updatesItself = false } = make(this.model, this.rows.get(this.chosen));
+    Object.assign(this, { redraw: show, updatesItself });
     this.body.replaceChildren(...content);
     if (focused) this.body.querySelector(`[data-name="${focused}"]`)?.focus();
   }
 
   stateChanged() {
     window.granchain.kept = { ...window.granchain.kept, uploaded: Boolean(this.model.state.understood) };
-    // The map keeps itself up to date by messages; drawing it anew would take away what the pointer is on.
-    if (this.chosen !== "map") this.show();
+    if (!this.updatesItself) this.show();
   }
 }
 
@@ -127,9 +132,7 @@ export function render({ model }) {
     window.granchain.on(name, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
-  window.granchain.on("cover", () => {
-    if (tabs.chosen === "effects") tabs.tellEffectsVisible();
-  });
+  window.granchain.on("overlay", () => tabs.reportVisibility());
   tabs.show();
   return tabs.root;
 }

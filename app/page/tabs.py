@@ -11,4 +11,4 @@ class Tabs(Component):
 
     _esm = module("tabs.js")
     _stylesheets = [text(f"{name}.css")  # noqa: RUF012
-                    for name in ("controls", "drawing", "tabs", "map")]
+                    for name in ("controls", "tabs", "map")]

@@ -1,8 +1,8 @@
 // The chain on the page: bead i stands above column i of the map; its clock is the page's.
 
-import { ChainDrawing, unpack } from "./chaindrawing.js";
+import { ChainDrawing, unpack } from "./chain_drawing.js";
 import { Clock, Cursor } from "./clock.js";
-import { part } from "./dom.js";
+import { element } from "./dom.js";
 
 // Calls `act` after the present animation frame: a message posted in a frame arrives when that is done.
 function afterFrame(act) {
@@ -14,7 +14,7 @@ function afterFrame(act) {
 class Chain {
   constructor(model) {
     this.model = model;
-    this.canvas = part("canvas");
+    this.canvas = element("canvas");
     this.drawing = new ChainDrawing(this.canvas, model.state.palette);
     this.clock = new Clock(() => this.mark());
     this.cursor = new Cursor(this.clock);
@@ -33,7 +33,7 @@ class Chain {
     this.mark();
     if (this.narrow === null || this.narrow === this.isNarrow()) return;
     this.narrow = !this.narrow;
-    this.model.send_msg({ do: "room", narrow: this.narrow });
+    this.model.send_msg({ do: "narrow", value: this.narrow });
   }
 
   isNarrow() {
@@ -48,7 +48,7 @@ class Chain {
     scale.addEventListener("click", () => {
       const locked = scale.ariaPressed !== "true";
       scale.ariaPressed = String(locked);
-      this.model.send_msg({ do: "lock", value: locked });
+      this.model.send_msg({ do: "lock-scale", value: locked });
     });
   }
 
@@ -58,7 +58,7 @@ class Chain {
   }
 
   load(frames) {
-    unpack(frames);
+    Object.assign(frames, unpack(frames).series);
     document.getElementById("scale-high").textContent = frames.energy_label;
     this.drawing.load(frames);
     this.clock.show(frames);
@@ -85,7 +85,7 @@ class Chain {
     this.clock.tick(now, page.lost);
     const { frames, playing, row } = this.clock;
     const moving = playing && !frames?.live && !page.lost;
-    if (frames && !page.covered && (this.dirty || moving)) {
+    if (frames && !page.overlay && (this.dirty || moving)) {
       this.drawing.draw(frames, row);
       this.cursor.place();
       this.dirty = false;
@@ -112,7 +112,7 @@ function listen(chain) {
     clock.speed = speed;
   });
   page.on("period", () => chain.nextPeriod());
-  page.on("cover", () => chain.mark());
+  page.on("overlay", () => chain.mark());
   page.on("theme", () => chain.measure());
 }
 
@@ -123,7 +123,7 @@ export function render({ model }) {
   model.on("msg:custom", (message) => chain.receive(message));
   listen(chain);
   document.addEventListener("visibilitychange", () => {
-    if (!document.hidden) model.send_msg({ do: "visible" });
+    if (!document.hidden) model.send_msg({ do: "page-visible" });
   });
   requestAnimationFrame((now) => chain.tick(now));
   setTimeout(() => chain.begin(), 0);

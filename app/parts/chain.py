@@ -36,14 +36,24 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live
         "number": number,
         "live": live,
         "rows": 1 if running else frames.rows,
-        "beads": frames.beads,
         "samples": frames.samples,
-        "radii": [bead.radius for bead in scene.beads],
-        "foundation": scene.knobs["k"] > 0.0,
+        **drawn_chain(scene),
         "energy_high": scale,
         "energy_label": f"{scale / factor:g} {letter}J",
         "sent": time.time(),
         # One array, because every array is two messages on the websocket.
-        "values": np.concatenate([series[rows].ravel() for series in (
-            frames.displacement, frames.force, frames.kinetic_energy, frames.drive_displacement)], dtype=np.float32),
+        "values": np.concatenate(chain_series(frames.displacement[rows], frames.force[rows],
+                                              frames.kinetic_energy[rows], frames.drive_displacement[rows]),
+                                 dtype=np.float32),
     }
+
+
+def drawn_chain(scene: Scene) -> dict[str, Any]:
+    """What chain_drawing.js draws of a chain besides its motion."""
+    return {"beads": scene.N, "radii": [bead.radius for bead in scene.beads], "foundation": scene.k > 0.0}
+
+
+def chain_series(displacement: np.ndarray, force: np.ndarray, energy: np.ndarray,
+                 drive: np.ndarray) -> list[np.ndarray]:
+    """The series of one chain, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chain_drawing.js."""
+    return [series.ravel() for series in (displacement, force, energy, drive)]

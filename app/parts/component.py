@@ -10,7 +10,7 @@ import param
 from panel.custom import JSComponent
 
 from ..pictures.theme import Theme
-from ..serve.websocket import PromptEvents
+from ..serve.websocket import WithoutBusyIndicator
 
 _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
 
@@ -20,7 +20,7 @@ def text(name: str) -> str:
     return _FILES[name].read_text(encoding="utf-8")
 
 
-class Component(PromptEvents, JSComponent):
+class Component(WithoutBusyIndicator, JSComponent):
     """A part of the page. `state` is sent to the browser and kept; messages go both ways and are not kept.
 
     What the visitor does comes as messages, because Panel delays property changes by 50 ms and messages not at all.
@@ -34,14 +34,14 @@ class Component(PromptEvents, JSComponent):
         super().__init__(margin=0, **params)
         self._received = received
 
-    def tell(self, **message: Any) -> None:
+    def send(self, **message: Any) -> None:
         """Send a message to this part in the browser."""
         self._send_msg(message)
 
-    def dress(self, theme: Theme) -> None:
+    def apply_theme(self, theme: Theme) -> None:
         """Draw the figures in another theme; a part without figures needs only its style sheet."""
 
-    def display(self, **changes: Any) -> None:
+    def update_state(self, **changes: Any) -> None:
         """Change some entries of `state`."""
         merged = {**self.state, **changes}
         if merged != self.state:

@@ -2,22 +2,24 @@
 // greyed, the knobs disabled, and a banner says so. When the server is back, the page reloads from its own share link.
 (() => {
   const page = window.granchain;
-  // All in milliseconds; REST + PATIENCE stays below 2 s.
+  // All in milliseconds; PING_EVERY + PING_TIMEOUT stays below 2 s.
   const TICK = 100, // how often the state is checked
-    REST = 300, // from an answer to the next ping
-    PATIENCE = 1300, // silence after a ping that counts as a lost connection
-    TRY = 400, // between attempts to reach a lost server
-    GRACE = 3000; // how long the socket may stay silent once the server answers HTTP again
-  const LOST = "Connection lost – trying again … These are the last pictures.";
+    PING_EVERY = 300, // from an answer to the next ping
+    PING_TIMEOUT = 1300, // silence after a ping that counts as a lost connection
+    RETRY_EVERY = 400, // between attempts to reach a lost server
+    SILENT_SOCKET = 3000; // how long the socket may stay silent once the server answers HTTP again
+  const LOST = "Connection lost – trying again … The pictures are from before.";
   const BACK = "Connected again – restoring your settings …";
   const AGAIN = "granchain-again";
-  const PARTS = ["bar", "side", "stage", "curves", "cover", "foot"];
+  const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
   // The last share link from the server, and the requests since then that it has not answered.
   let link = "v=1";
   const unanswered = new Map();
-  const linkReceived = (query, answered) => {
+  let viewFields = []; // the fields of a link that belong to no scene
+  const linkReceived = (query, answered, fields = viewFields) => {
     link = query;
+    viewFields = fields;
     for (const name of answered) unanswered.delete(name);
   };
   const requested = (name, value) => {
@@ -30,7 +32,7 @@
     const query = new URLSearchParams(link);
     // Another scene has knobs of its own.
     if (unanswered.has("scene"))
-      for (const name of [...query.keys()]) if (!["v", "mode", "start"].includes(name)) query.delete(name);
+      for (const name of [...query.keys()]) if (!["v", ...viewFields].includes(name)) query.delete(name);
     for (const [name, value] of unanswered) {
       query.set(name, value);
       if (name === "k") query.delete("kappa");
@@ -58,11 +60,11 @@
     closed = false,
     leaving = false;
   // Milliseconds since the last ping without an answer (null if all are answered), since the last answer, since the
-  // last try to reach a lost server, and since that could be reached again (0 if it cannot).
+  // last attempt to reach a lost server, and since that answered HTTP again (null if it does not).
   let sincePing = null,
     sinceAnswer = 0,
-    sinceTry = TRY,
-    sinceReached = 0;
+    sinceTry = RETRY_EVERY,
+    sinceReached = null;
 
   // The last pictures as one image: they stay, grey, until the page built again has its own.
   const canvases = (node) =>
@@ -70,19 +72,19 @@
       ...(element.tagName === "CANVAS" ? [element] : []),
       ...(element.shadowRoot ? canvases(element.shadowRoot) : []),
     ]);
-  const photo = () => {
-    const film = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
-    if (!page.covered)
+  const snapshot = () => {
+    const canvas = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
+    if (!page.overlay)
       for (const one of ["stage", "curve"].flatMap((id) => canvases(document.getElementById(id)))) {
         const { x, y, width, height } = one.getBoundingClientRect();
-        if (width && height && one.width && one.height) film.getContext("2d").drawImage(one, x, y, width, height);
+        if (width && height && one.width && one.height) canvas.getContext("2d").drawImage(one, x, y, width, height);
       }
-    return film.toDataURL("image/webp", 0.7);
+    return canvas.toDataURL("image/webp", 0.7);
   };
   const rebuild = () => {
     leaving = true;
     try {
-      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, photo: photo() }));
+      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, snapshot: snapshot() }));
     } catch {
       /* no room to keep them: the sentence and the last pictures are missing for a moment */
     }
@@ -92,7 +94,7 @@
     try {
       const { status } = await fetch(new URL("liveness", location.href), {
         cache: "no-store",
-        signal: AbortSignal.timeout(2 * PATIENCE),
+        signal: AbortSignal.timeout(2 * PING_TIMEOUT),
       });
       // A server without health checks answers 404, which will do; a proxy whose server is down answers 502.
       return status < 500;
@@ -104,9 +106,9 @@
     sinceTry = -Infinity; // not while one is under way
     const alive = await reach();
     sinceTry = 0;
-    if (!alive) sinceReached = 0;
-    else if (closed || sinceReached > GRACE) rebuild();
-    else sinceReached += 1;
+    if (!alive) sinceReached = null;
+    else if (closed || sinceReached > SILENT_SOCKET) rebuild();
+    else sinceReached ??= 0;
   };
 
   // One tick counts for four at most, so that a sleeping computer or a busy page is not taken for a silent server.
@@ -118,22 +120,23 @@
     if (leaving || !ping || (document.hidden && !closed)) return;
     const resting = !closed && sincePing === null;
     if (resting) sinceAnswer += passed;
-    if (resting && sinceAnswer >= REST) {
+    if (resting && sinceAnswer >= PING_EVERY) {
       sincePing = 0;
       ping();
     } else if (sincePing !== null) sincePing += passed;
-    if (!page.lost && (closed || sincePing > PATIENCE)) show(true);
+    if (!page.lost && (closed || sincePing > PING_TIMEOUT)) show(true);
     if (!page.lost) return;
-    if (sinceReached) sinceReached += passed;
+    if (sinceReached !== null) sinceReached += passed;
     sinceTry += passed;
-    if (sinceTry >= TRY) tryAgain();
+    if (sinceTry >= RETRY_EVERY) tryAgain();
   };
   setInterval(tick, TICK);
 
   // The server has answered: a socket that was only silent goes on, and what was sent meanwhile has been read.
   const answerReceived = () => {
     sincePing = null;
-    sinceAnswer = sinceReached = 0;
+    sinceAnswer = 0;
+    sinceReached = null;
     if (page.lost && !closed) show(false);
   };
   const connect = (send) => {
@@ -153,7 +156,7 @@
     /* nothing kept */
   }
   if (again) {
-    const before = Object.assign(new Image(), { id: "last-pictures", alt: "", src: again.photo ?? "" });
+    const before = Object.assign(new Image(), { id: "last-pictures", alt: "", src: again.snapshot ?? "" });
     document.addEventListener("DOMContentLoaded", () => {
       say(BACK);
       document.body.append(before);

@@ -1,40 +1,41 @@
 // Elements, and the controls that several parts of the page have.
 
 // An element with its properties and children.
-export const part = (tag, properties = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), properties);
-  element.append(...children);
-  return element;
+export const element = (tag, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(tag), properties);
+  made.append(...children);
+  return made;
 };
 
-export const paragraph = (textContent = "", className = "") => part("p", { textContent, className });
+export const paragraph = (textContent = "", className = "") => element("p", { textContent, className });
 
 // A button that calls `act` when it is clicked.
 export const button = (textContent, act, properties = {}) => {
-  const made = part("button", { type: "button", textContent, ...properties });
+  const made = element("button", { type: "button", textContent, ...properties });
   made.addEventListener("click", act);
   return made;
 };
 
 // A progress bar from 0 to 1.
-export const meter = (ariaLabel) => part("progress", { max: 1, ariaLabel });
+export const meter = (ariaLabel) => element("progress", { max: 1, ariaLabel });
 
 // A table with a title over each column.
 export const table = (titles, body, properties = {}) => {
-  const head = part("tr", {}, ...titles.map((textContent) => part("th", { textContent })));
-  return part("table", properties, part("thead", {}, head), body);
+  const head = element("tr", {}, ...titles.map((textContent) => element("th", { textContent })));
+  return element("table", properties, element("thead", {}, head), body);
 };
 
 // In a tab: the button that opens its page.
-export const openButton = (name) => button("open the page", () => window.granchain.cover(name), { className: "open" });
+export const openButton = (name) =>
+  button("open the page", () => window.granchain.openPage(name), { className: "open" });
 
 // The top line of a page: its title, its controls and, at the right end, the button that closes the page.
 export const pageHead = (title, ...controls) =>
-  part(
+  element(
     "div",
     { className: "head" },
-    part("h2", { textContent: title }),
+    element("h2", { textContent: title }),
     ...controls,
-    part("span", { className: "grow" }),
-    button("✕", () => window.granchain.cover(null), { title: "Back to the chain", className: "close" }),
+    element("span", { className: "grow" }),
+    button("✕", () => window.granchain.closePage(), { title: "Back to the chain", className: "close" }),
   );

@@ -96,7 +96,7 @@ function join({ x, y }, lines) {
 }
 
 // The data of a figure that grows: kept, so that another figure can be filled with it, and added to those that are there.
-export class Grown {
+export class StreamedData {
   constructor() {
     this.clear();
   }

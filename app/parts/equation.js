@@ -1,12 +1,12 @@
 // The equation of motion as MathML, which the browser typesets with its own fonts.
 
-import { part } from "./dom.js";
+import { element } from "./dom.js";
 
 // A line that is longer than the column is set smaller, down to this part of the size of the others.
 const SMALLEST = 0.55;
 
 export function render({ model }) {
-  const root = part("div", { className: "formula" });
+  const root = element("div", { className: "formula" });
   root.title = "The equation being computed, with its active terms only.";
   const fit = () => {
     for (const line of root.children) {
@@ -20,10 +20,10 @@ export function render({ model }) {
     const { latex } = model.state;
     root.replaceChildren();
     for (const text of latex ? latex.split(/,?\\qquad/) : []) {
-      const line = part("div");
+      const line = element("div");
       // Two short equations share a line where there is room.
       for (const equation of text.split(/,\s*\\quad/)) {
-        const place = part("span");
+        const place = element("span");
         window.katex.render(equation.trim(), place, { output: "mathml", throwOnError: false });
         line.append(place);
       }

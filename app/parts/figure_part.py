@@ -36,7 +36,7 @@ class FigurePart(Component):
         super().__init__(received, **params)
         self.theme = THEMES["light"]
 
-    def dress(self, theme: Theme) -> None:
+    def apply_theme(self, theme: Theme) -> None:
         """Draw the figures anew in another theme."""
         if theme != self.theme:
             self.theme = theme

@@ -1,6 +1,6 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
-import { part } from "./dom.js";
+import { button, element } from "./dom.js";
 import { Popovers } from "./popovers.js";
 
 // Paths of our own, so that no font needs these symbols.
@@ -29,20 +29,18 @@ const STARTS = [
   ["previous", "from the previous state"],
 ];
 
-function button(innerHTML, title, act, className = "") {
-  const element = part("button", { type: "button", innerHTML, title, ariaLabel: title, className });
-  element.addEventListener("click", act);
-  return element;
-}
+// A button with an icon; its title is its name for who cannot see it.
+const iconButton = (innerHTML, title, act, className = "") =>
+  button("", act, { innerHTML, title, ariaLabel: title, className });
 
 function chooser(label, className, act) {
-  const select = part("select", { className, title: label, ariaLabel: label });
+  const select = element("select", { className, title: label, ariaLabel: label });
   select.addEventListener("change", () => act(select.value));
   return select;
 }
 
 function download({ name, content }) {
-  const link = part("a", { href: URL.createObjectURL(new Blob([content])), download: name });
+  const link = element("a", { href: URL.createObjectURL(new Blob([content])), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
@@ -57,34 +55,36 @@ class Header {
     this.makeTimeControls();
     this.scene = chooser("scene", "scene", (name) => this.request("scene", name, { name }));
     const send = (name) => () => this.send(name);
-    this.root = part(
+    this.root = element(
       "div",
       { className: "part bar" },
-      button(icon("knobs", "knobs"), "Show the knobs", () => window.granchain.drawer(true), "knobs-button"),
-      part("h1", { textContent: "granchain" }),
+      iconButton(icon("knobs", "knobs"), "Show the knobs", () => window.granchain.drawer(true), "knobs-button"),
+      element("h1", { textContent: "granchain" }),
       this.scene,
-      button(icon("reset", "reset"), "Back to rest", send("reset")),
+      iconButton(icon("reset", "reset"), "Back to rest", send("reset")),
       this.play,
-      button(icon("step", "period"), "Forward one drive period", () => this.nextPeriod()),
+      iconButton(icon("step", "period"), "Forward one drive period", () => this.nextPeriod()),
       this.speed,
-      part("span", { className: "segments", role: "group" }, ...this.modes),
+      element("span", { className: "segments", role: "group" }, ...this.modes),
       this.start,
-      part("span", { className: "grow" }),
-      button(icon("share", "share"), "Link to this picture", send("share")),
-      button(icon("save", "save"), "Save this picture as HDF5", send("save"), "save"),
-      button(icon("help"), "Help", () => this.popovers.toggleHelp(), "icon"),
-      button(icon("theme"), "Light, dark, projector", () => window.granchain.nextTheme(), "icon"),
+      element("span", { className: "grow" }),
+      iconButton(icon("share", "share"), "Link to this picture", send("share")),
+      iconButton(icon("save", "save"), "Save this picture as HDF5", send("save"), "save"),
+      iconButton(icon("help"), "Help", () => this.popovers.toggleHelp(), "icon"),
+      iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon"),
       this.popovers.help,
       this.popovers.link,
     );
   }
 
   makeTimeControls() {
-    this.play = button("", "Play or pause (space)", () => this.setPlaying(!this.playing));
+    this.play = iconButton("", "Play or pause (space)", () => this.setPlaying(!this.playing));
     this.speed = chooser("drive periods shown per second", "speed", (value) =>
       this.send("speed", { value: Number(value) }),
     );
-    this.modes = MODES.map(([mode, title]) => button(mode, title, () => this.request("mode", mode, { value: mode })));
+    this.modes = MODES.map(([mode, title]) =>
+      iconButton(mode, title, () => this.request("mode", mode, { value: mode })),
+    );
     this.start = chooser("where the steady state starts", "start", (value) => this.request("start", value, { value }));
     for (const [value, words] of STARTS) this.start.add(new Option(words, value));
   }
@@ -115,7 +115,7 @@ class Header {
   nextPeriod() {
     this.setPlaying(false);
     window.granchain.emit("period");
-    this.send("step");
+    this.send("next-period");
   }
 
   key(event) {
@@ -136,7 +136,7 @@ class Header {
     this.showChoices(state);
     this.showPlaying(state);
     if (!state.query) return;
-    window.granchain.linkReceived(state.query, ["scene", "mode", "start"]);
+    window.granchain.linkReceived(state.query, ["scene", ...state.view_fields], state.view_fields);
     if (!this.begun) this.begin();
     this.begun = true;
   }
@@ -168,20 +168,20 @@ class Header {
     this.start.style.display = mode === "live" ? "none" : "";
   }
 
-  showPlaying({ playing = this.playing, speed }) {
+  showPlaying({ playing = this.playing, speed, account = false }) {
     if (playing !== this.playing) {
       this.playing = playing;
       window.granchain.emit("play", playing);
     }
     this.drawPlay();
-    window.granchain.kept = { ...window.granchain.kept, speed, playing };
+    window.granchain.kept = { ...window.granchain.kept, speed, playing, account };
   }
 
   // After a lost connection: what the share link does not carry.
   restore(again) {
     window.granchain.again = null;
-    const { speed = 1, playing = true, uploaded = false } = again;
-    this.send("again", { speed, playing, uploaded });
+    const { speed = 1, playing = true, account = false, uploaded = false } = again;
+    this.send("reconnected", { speed, playing, account, uploaded });
   }
 
   receive(message) {

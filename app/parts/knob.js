@@ -1,6 +1,6 @@
 // One knob: slider, number and unit; arrows fine, shift coarse, double click back to the scene's value.
 
-import { part } from "./dom.js";
+import { element } from "./dom.js";
 
 const STEPS = 1000;
 
@@ -34,10 +34,10 @@ export class Knob {
   constructor(spec, send) {
     this.spec = spec;
     this.send = send;
-    this.el = part(
+    this.el = element(
       "div",
       { className: "knob" },
-      part("label", {
+      element("label", {
         title: `${spec.label}: ${spec.meaning}`,
         innerHTML: `${spec.symbol || ""} <small>${spec.short}</small>`,
       }),
@@ -53,7 +53,7 @@ export class Knob {
 
   chooser() {
     const options = this.spec.choices.map((choice) => new Option(choice, choice));
-    this.select = part("select", { ariaLabel: this.spec.label }, ...options);
+    this.select = element("select", { ariaLabel: this.spec.label }, ...options);
     this.select.addEventListener("change", () => this.set(this.select.value, true));
     this.el.append(this.select);
   }
@@ -61,15 +61,15 @@ export class Knob {
   number() {
     const { label, unit } = this.spec;
     const ariaLabel = `${label}, ${unit}`;
-    this.field = part("input", {
+    this.field = element("input", {
       type: "text",
       inputMode: "decimal",
       spellcheck: false,
       autocomplete: "off",
       ariaLabel,
     });
-    this.slider = part("input", { type: "range", min: 0, max: STEPS, step: 1, ariaLabel: label });
-    this.el.append(this.field, part("span", { className: "unit", textContent: unit }), this.slider);
+    this.slider = element("input", { type: "range", min: 0, max: STEPS, step: 1, ariaLabel: label });
+    this.el.append(this.field, element("span", { className: "unit", textContent: unit }), this.slider);
     this.field.addEventListener("input", () => {
       this.editing = true;
     });

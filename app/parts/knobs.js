@@ -1,6 +1,6 @@
 // The knobs, one below the other; those that are seldom moved are folded away under "more".
 
-import { part } from "./dom.js";
+import { element } from "./dom.js";
 import { Knob } from "./knob.js";
 
 const KEPT = "κ = k/(K√A₀): at the same k, κ changes with A₀. Set κ to get the old value back.";
@@ -40,21 +40,21 @@ class Knobs {
     this.model = model;
     this.sender = new Sender(model);
     this.knobs = new Map();
-    this.kept = part("div", { className: "kept", title: KEPT });
-    this.foundation = part("span");
-    this.aside = part(
+    this.kept = element("div", { className: "kept", title: KEPT });
+    this.foundation = element("span");
+    this.aside = element(
       "div",
       { className: "aside" },
       this.kept,
-      part("div", { title: FREQUENCY }, "foundation frequency ", this.foundation),
+      element("div", { title: FREQUENCY }, "foundation frequency ", this.foundation),
     );
-    this.root = part("div", { className: "part" });
+    this.root = element("div", { className: "part" });
   }
 
   // The knobs of another scene.
   build() {
     const open = Boolean(this.root.querySelector("details")?.open);
-    const more = part("details", { innerHTML: "<summary>more</summary>", open });
+    const more = element("details", { innerHTML: "<summary>more</summary>", open });
     this.root.replaceChildren();
     this.knobs.clear();
     for (const spec of this.model.state.specs ?? []) {

@@ -7,23 +7,13 @@ from typing import Any
 from granchain_core import Scene, scene
 from granchain_core.quantities import QUANTITIES
 
-from ..page.session import slider_range
 from ..scripts import module
+from ..session.session import slider_range
 from .component import Component, text
 from .foundation import beside_kappa, foundation_words
 
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
-
-_SHOWN_IN = {"A0": (1e-6, "µm")}
-"""Quantities that are shown in a unit other than SI: factor and unit."""
-
-_SHORT = {"D": "damping", "k": "foundation", "kappa": "k / (K√A₀)", "N": "beads", "F0": "preload",
-          "wall": "wall", "dissipation": "law", "tension": "tension"}
-"""Short labels to fit beside a number; the tooltip has the full one."""
-
-_CUBIC = ("k", "kappa")
-"""Knobs that start at 0 and span decades: the value is the cube of the slider's position, fine near 0."""
 
 
 class Knobs(Component):
@@ -46,16 +36,11 @@ def knob_state(current: Scene) -> dict[str, Any]:
 
 def _spec(name: str, current: Scene) -> dict[str, Any]:
     quantity = QUANTITIES[name]
-    factor, unit = _SHOWN_IN.get(name, (1.0, quantity.unit if quantity.unit != "1" else ""))
-    spec: dict[str, Any] = {
+    factor, unit = quantity.shown_in or (1.0, quantity.unit if quantity.unit != "1" else "")
+    low, high = slider_range(current, name)
+    return {
         "name": name, "symbol": "" if quantity.choices else quantity.symbol, "label": quantity.label,
-        "short": _SHORT.get(name, quantity.label), "meaning": quantity.meaning,
-        "unit": unit, "factor": factor, "choices": list(quantity.choices),
+        "short": quantity.short or quantity.label, "meaning": quantity.meaning,
+        "unit": unit, "factor": factor, "choices": list(quantity.choices), "low": low, "high": high,
         "whole": quantity.whole, "more": name in MORE, "step": quantity.step, "scale": quantity.scale,
     }
-    spec["low"], spec["high"] = slider_range(current, name)
-    if name in _CUBIC:
-        spec["scale"] = "cubic"
-    if name == "accuracy":
-        spec["step"] = 0.0
-    return spec

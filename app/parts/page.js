@@ -39,16 +39,17 @@ window.granchain = (() => {
   const drawer = (open) => {
     document.getElementById("page").classList.toggle("drawer", open);
   };
-  // A page over the pictures, or null for the pictures themselves; the curve is not computed meanwhile.
-  let covered = null;
-  const cover = (name) => {
-    covered = name;
-    document.getElementById("page").classList.toggle("covered", name !== null);
-    for (const one of document.querySelectorAll("[data-cover]")) one.hidden = one.dataset.cover !== name;
-    emit("cover", name);
+  // The name of the page that lies over the pictures, or null; the curve is not computed while there is one.
+  let overlay = null;
+  const openPage = (name) => {
+    overlay = name;
+    document.getElementById("page").classList.toggle("overlaid", name !== null);
+    for (const one of document.querySelectorAll("[data-overlay]")) one.hidden = one.dataset.overlay !== name;
+    emit("overlay", name);
   };
+  const closePage = () => openPage(null);
   document.addEventListener("keydown", (event) => {
-    if (event.key === "Escape" && covered) cover(null);
+    if (event.key === "Escape" && overlay) closePage();
   });
   document.addEventListener("pointerdown", (event) => {
     const side = document.getElementById("side");
@@ -59,13 +60,14 @@ window.granchain = (() => {
   return {
     on,
     emit,
-    cover,
-    get covered() {
-      return covered;
+    openPage,
+    closePage,
+    get overlay() {
+      return overlay;
     },
     theme,
     setTheme,
-    nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % 3], true),
+    nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % THEMES.length], true),
     drawer,
   };
 })();

@@ -1,6 +1,6 @@
 // What opens over the pictures from the bar on top: the help, and the link to the picture.
 
-import { part } from "./dom.js";
+import { element } from "./dom.js";
 
 const HELP = [
   ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
@@ -16,18 +16,18 @@ const HELP = [
 ];
 
 function helpList() {
-  const list = part("dl");
+  const list = element("dl");
   for (const [term, meaning] of HELP)
-    list.append(part("dt", { textContent: term }), part("dd", { textContent: meaning }));
+    list.append(element("dt", { textContent: term }), element("dd", { textContent: meaning }));
   return list;
 }
 
 // At most one of them is open.
 export class Popovers {
   constructor() {
-    this.field = part("input", { readOnly: true, ariaLabel: "link to this picture" });
-    this.help = part("div", { className: "popover", hidden: true }, helpList());
-    this.link = part("div", { className: "popover", hidden: true }, this.field);
+    this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
+    this.help = element("div", { className: "popover", hidden: true }, helpList());
+    this.link = element("div", { className: "popover", hidden: true }, this.field);
   }
 
   close() {

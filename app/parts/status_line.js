@@ -1,14 +1,10 @@
 // The status line: what is on the screen, how sure it is and what it cost.
 
-import { button, part } from "./dom.js";
+import { button, element } from "./dom.js";
 
 const ENTRIES = [
   ["start", (v) => v, "Where the steady state was started."],
-  [
-    "accuracy",
-    (v) => v,
-    "Relative error of the displacements, asked for and reached, and the computing time of this picture. Click to see what accuracy costs.",
-  ],
+  ["accuracy", (v) => v, ""], // its title comes with it
   [
     "energy",
     (v) => v,
@@ -19,32 +15,32 @@ const ENTRIES = [
 ];
 
 function entryOf([name, write, meaning], state) {
-  const entry = part(name === "accuracy" ? "button" : "span", {
+  const entry = element(name === "accuracy" ? "button" : "span", {
     textContent: write(state[name]),
     title: state[`${name}_hint`] ?? meaning,
     id: name,
   });
-  if (name === "accuracy") entry.addEventListener("click", () => window.granchain.cover("accuracy"));
+  if (name === "accuracy") entry.addEventListener("click", () => window.granchain.openPage("accuracy"));
   return entry;
 }
 
 export function render({ model }) {
-  const words = part("p");
-  const close = button("✕", () => model.send_msg({ do: "understood" }), { title: "Close" });
-  const sentence = part("div", { className: "sentence", role: "alert" }, words, close);
-  const line = part("div", { className: "line" });
+  const words = element("p");
+  const close = button("✕", () => model.send_msg({ do: "dismiss-sentence" }), { title: "Close" });
+  const sentence = element("div", { className: "sentence", role: "alert" }, words, close);
+  const line = element("div", { className: "line" });
   const show = () => {
     const { state } = model;
     words.textContent = state.sentence ?? "";
     sentence.hidden = !state.sentence;
     const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");
     line.replaceChildren(
-      part("b", { textContent: state.regime ?? "" }),
-      part("i", { className: "grow" }),
+      element("b", { textContent: state.regime ?? "" }),
+      element("i", { className: "grow" }),
       ...known.map((entry) => entryOf(entry, state)),
     );
   };
   model.on("state", show);
   show();
-  return part("div", { className: "part" }, sentence, line);
+  return element("div", { className: "part" }, sentence, line);
 }

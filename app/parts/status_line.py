@@ -54,7 +54,7 @@ def run_entries(run: Run) -> dict[str, Any]:
     return {
         "accuracy": accuracy_words(run),
         "accuracy_hint": errors_hint(run),
-        "energy": "" if run.energy_residual is None else f"energy balance {short_error(run.energy_residual)}",
+        "energy": "" if run.energy_residual is None else f"energy residual {short_error(run.energy_residual)}",
         "method": run.cost.method,
         "effects": list(run.scene.effects),
     }

@@ -2,7 +2,7 @@
 
 accuracy, branches, check, curve, diagram, multipliers, naive_forces, observation, observer, section: one module each,
 with a function of that name. `theme.THEMES` has the themes; `file.page_of` makes a page that needs no server and no
-network. What a page adds to a figure as a computation goes on comes from functions beside it: `branches.Growth`,
+network. What a page adds to a figure as a computation goes on comes from functions beside it: `branches.BranchRows`,
 `diagram.cell_rows`. The dashboard's own resonance curve is redrawn while a knob moves; it is in
 app/pages/curve/view.py.
 """

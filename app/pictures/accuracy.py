@@ -13,11 +13,11 @@ from bokeh.plotting import figure
 from granchain_core.accuracy import Row, ways
 
 from ..format import duration, short_error
-from .theme import Theme, dress, frame, in_theme
+from .theme import AMBER, GREY, TEAL, VIOLET, Theme, dress, frame, in_theme
 
-_PALETTE = ("#e0900a", "#9b6bf2", "#0fa3b8", "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
+_PALETTE = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")
-_NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), "#8a8f98"
+_NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), GREY
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
 _HIGHEST = 10.0
 """Largest error drawn; larger ones, which tell no more, are drawn here."""
@@ -25,7 +25,7 @@ _COLUMNS = ("ms", "error", "setting", "tooltip")
 
 
 @dataclass(frozen=True)
-class Asked:
+class Annotations:
     """What belongs to the picture but is no measurement.
 
     accuracy : asked for, a fraction of the largest displacement. agreement : of the two references, or None.
@@ -65,7 +65,7 @@ def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
     return columns
 
 
-def marks(asked: Asked, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+def marks(asked: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     """Properties of the models that show what is asked, the references' agreement, the cheapest and the present row."""
     times = [1e3 * row.wall_s for row in rows if row.wall_s > 0.0] or [1.0]
 
@@ -83,7 +83,7 @@ def marks(asked: Asked, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     }
 
 
-def accuracy(rows: Sequence[Row], asked: Asked, theme: Theme, compact: bool = False) -> figure:
+def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: bool = False) -> figure:
     """Largest error over largest displacement against the computing time of ten drive periods in ms.
 
     The sources have the names of the methods; `points` and `marks` give what changes while a measurement goes on.
@@ -99,8 +99,8 @@ def accuracy(rows: Sequence[Row], asked: Asked, theme: Theme, compact: bool = Fa
         model.update(**state[model.name])
         plot.add_layout(model)
     shown = _lines(plot, points(rows), compact) + _rings(plot, state, compact)
-    for both in (plot.x_range, plot.y_range):
-        both.update(renderers=shown, range_padding=0.06)
+    for data_range in (plot.x_range, plot.y_range):
+        data_range.update(renderers=shown, range_padding=0.06)
     if not compact:
         plot.xaxis.axis_label = "computing time of ten drive periods (ms)"
         plot.yaxis.axis_label = "largest error / largest displacement"

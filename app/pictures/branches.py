@@ -13,15 +13,15 @@ from granchain_core.regime import modulus_words
 
 from ..format import short_error
 from .axes import Scale, force_scale, in_words, knob_scale
-from .theme import Theme, dress, frame, in_theme
+from .theme import AMBER, GREY, TEAL, VIOLET, Theme, dress, frame, in_theme
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
            "grazing": "grazing"}
 _STYLES: dict[str, dict[str, Any]] = {
-    "fold": {"marker": "triangle", "size": 14, "colour": "#e0900a", "filled": True},
-    "period_doubling": {"marker": "diamond", "size": 16, "colour": "#9b6bf2", "filled": True},
-    "neimark_sacker": {"marker": "circle", "size": 12, "colour": "#0fa3b8", "filled": False},
-    "grazing": {"marker": "cross", "size": 9, "colour": "#8a8f98", "filled": True},
+    "fold": {"marker": "triangle", "size": 14, "colour": AMBER, "filled": True},
+    "period_doubling": {"marker": "diamond", "size": 16, "colour": VIOLET, "filled": True},
+    "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
+    "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
 _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 """Width and dash."""
@@ -35,7 +35,7 @@ _TARGET = 13
 Columns = dict[str, dict[str, list[Any]]]
 
 
-class Growth:
+class BranchRows:
     """Branches as they grow: `add` gives what one more piece of an arm adds to the figure's sources.
 
     The unit of force is that of the first orbit, or of `largest` [N] where that is known. `orbits` holds all drawn
@@ -102,9 +102,9 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     """The largest elastic output force of periodic orbits over the knob of their branches.
 
     `now` is a value of the knob [SI] with a line. Sources have names: "stable" and "unstable" hold lines, "orbits"
-    one row for each orbit, the kinds of special points one for each point; `Growth` says what an orbit more adds.
+    one row for each orbit, the kinds of special points one for each point; `BranchRows` says what an orbit more adds.
     """
-    growth = Growth(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
+    rows = BranchRows(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
     data: Columns = {**{name: {"x": [], "y": []} for name in _LINES}, "orbits": _columns(_ORBIT, []),
                      **{kind: _columns(_MARK, []) for kind in SPECIAL}}
     models: dict[str, Any] = {}
@@ -112,7 +112,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     for one in found:
         for arm in one.arms:
             if arm.points:
-                added = growth.add(number, one, arm.points, arm.special)
+                added = rows.add(number, one, arm.points, arm.special)
                 _put(data, added)
                 models |= added["models"]
             number += 1
@@ -157,8 +157,8 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
                              line_color="ink", line_width=1.2))
     items += [LegendItem(name=f"legend of {kind}", label=SPECIAL[kind], renderers=[one], visible=False)
               for kind, one in _marks(plot, sources, compact).items()]
-    for both in (plot.x_range, plot.y_range):
-        both.renderers = [targets]
+    for data_range in (plot.x_range, plot.y_range):
+        data_range.renderers = [targets]
     if not compact:
         _tools(plot, targets, items)
         plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, _TITLE

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 from bokeh.models import ColumnDataSource, DataRange1d, HoverTool
 from bokeh.plotting import figure
@@ -21,6 +22,10 @@ WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
 """The same in words."""
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 """A tooltip's lines for the columns of `forces_in_words`."""
+LABELS = {"rest": "from rest", "up": "╌ up", "down": "┈ down"}
+"""The same for a choice beside the curve, with a piece of the line."""
+KEY = "Solid line: from rest; dashed: frequency rising; dotted: frequency falling."
+"""What the dashes mean, in a sentence."""
 
 
 def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure:
@@ -35,19 +40,12 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure
     plot = frame(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
     for one in found:
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
-        keys = [regime_key(p.regime.name, p.regime.period) for p in points]
-        styles = [REGIMES[key] for key in keys]
-        source = ColumnDataSource(name=one.start, data={
-            "frequency": [p.frequency for p in points], "force": [getattr(p, drawn) / scale.factor for p in points],
-            "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
-            "size": [style[2] + 3 for style in styles], "regime": keys,
-            "sentence": [p.regime.sentence for p in points], **forces_in_words(points)})
+        source = ColumnDataSource(name=one.start, data=curve_columns(points, scale.factor, 3, drawn))
         line = plot.line("frequency", "force", source=source, line_dash=DASHES[one.start] or "solid")
         marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
                              line_color="colour", line_width=1.5, legend_group="regime")
         in_theme(line, line_color="output", line_width=1.8)
-        plot.add_tools(HoverTool(renderers=[marks], tooltips=[
-            ("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"), ("start", WORDS[one.start])]))
+        plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(one.start)))
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
     for legend in plot.legend:
         legend.update(orientation="horizontal", padding=0, margin=2, ncols=4)
@@ -56,8 +54,28 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure
     return dress(plot, theme)
 
 
+def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
+                  drawn: str = "max_output_force") -> dict[str, list[Any]]:
+    """Columns for a line, its marks and their tooltips.
+
+    The force `drawn` is drawn over `factor` [N], marks `larger` px larger.
+    """
+    keys = [regime_key(p.regime.name, p.regime.period) for p in points]
+    styles = [REGIMES[key] for key in keys]
+    return {
+        "frequency": [p.frequency for p in points], "force": [getattr(p, drawn) / factor for p in points],
+        "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
+        "size": [style[2] + larger for style in styles], "regime": keys,
+        "sentence": [p.regime.sentence for p in points], **forces_in_words(points)}
+
+
+def curve_tooltips(start: str) -> list[tuple[str, str]]:
+    """The lines of a tooltip over `curve_columns`."""
+    return [("drive frequency", "@frequency{0.0} Hz"), *FORCES, ("motion", "@sentence"), ("start", WORDS[start])]
+
+
 def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:
-    """Columns with the largest forces of every point and their relative errors, for a tooltip with `FORCES`."""
+    """The largest forces of every point with their relative errors."""
     return {"total": [in_words(p.max_output_force, "N", 5) + _error(p.force_errors.output) for p in points],
             "elastic": [in_words(p.max_output_force_elastic, "N", 5) + _error(p.force_errors.elastic) for p in points],
             "input": [in_words(p.max_input_force, "N", 5) + _error(p.force_errors.input) for p in points]}

@@ -30,13 +30,13 @@ from granchain_core.diagram.cells import empty_cells
 from ..format import short_error
 from .axes import Scale, in_words, knob_scale
 from .regimes import REGIMES, regime_key
-from .theme import Theme, dress, frame, in_theme
+from .theme import BROWN, Theme, dress, frame, in_theme
 
 CATEGORIES = (*REGIMES, "failed")
 """What a cell may be, in the curve's colours, each with a hatch of its own."""
-COLOURS = [REGIMES[name][1] if name in REGIMES else "#7a3b00" for name in CATEGORIES]
+COLOURS = [REGIMES[name][1] if name in REGIMES else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
-MOST_CELLS = 40_000
+MOST_DRAWN_CELLS = 40_000
 """Most cells that a browser shows smoothly."""
 _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip", "spacing",
          "number", "own_right", "own_top")

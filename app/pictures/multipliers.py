@@ -45,8 +45,8 @@ def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False)
     plot = frame(name="multipliers", min_border=2, match_aspect=True, active_scroll=None,
                  toolbar_location=None if compact else "right", **ranges)
     corners = plot.scatter("x", "y", source=made["reach"], alpha=0.0)
-    for both in ranges.values():
-        both.renderers = [corners]
+    for data_range in ranges.values():
+        data_range.renderers = [corners]
     _circle(plot, compact)
     in_theme(plot.segment("x", "y", "x1", "y1", source=made["ways"], line_alpha="alpha"), line_color="soft",
              line_width=1.6)

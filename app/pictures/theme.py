@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from bokeh.models import Model, Range1d
@@ -12,33 +12,64 @@ from bokeh.plotting import figure
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 
 
+AMBER, VIOLET, TEAL, BROWN, GREY = "#e0900a", "#9b6bf2", "#0fa3b8", "#7a3b00", "#8a8f98"
+"""Colours of marks in several pictures, the same in every theme."""
+
+
 @dataclass(frozen=True)
 class Theme:
-    """Colours by role. `line` multiplies all line widths, `small` is the size of numbers and words in pixels.
+    """Colours by role. `line` multiplies all line widths; `type` and `small` are sizes of words in pixels.
 
-    The colours are those of page.css.
+    `style_sheet` gives the page the same.
     """
 
+    scheme: str
+    paper: str
+    card: str
     ink: str
     soft: str
     faint: str
-    card: str
     accent: str
     steel: str
+    steel_light: str
+    warn: str
+    warn_paper: str
     line: float = 1.0
+    type: int = 15
     small: int = 14
     drive: str = "#e5484d"
     input: str = "#3b82f6"
     output: str = "#2f9e6a"
     naive: str = "#d97706"
-    second: str = "#9b6bf2"
+    second: str = VIOLET
 
 
 THEMES = {
-    "light": Theme("#14181f", "#565f6d", "#dfe3e8", "#ffffff", "#2456c7", "#8b95a3"),
-    "dark": Theme("#eef1f6", "#a4adba", "#2a313b", "#161a21", "#7aa5ff", "#7c8796"),
-    "projector": Theme("#000000", "#222222", "#c4c9d0", "#ffffff", "#003cc0", "#66707d", line=1.8, small=17),
+    "light": Theme("light", paper="#f6f7f9", card="#ffffff", ink="#14181f", soft="#565f6d", faint="#dfe3e8",
+                   accent="#2456c7", steel="#8b95a3", steel_light="#eef1f5", warn="#8a4b00", warn_paper="#fff1da"),
+    "dark": Theme("dark", paper="#0e1116", card="#161a21", ink="#eef1f6", soft="#a4adba", faint="#2a313b",
+                  accent="#7aa5ff", steel="#7c8796", steel_light="#cfd6df", warn="#ffcf87", warn_paper="#3a2a10"),
+    "projector": Theme("light", paper="#ffffff", card="#ffffff", ink="#000000", soft="#222222", faint="#c4c9d0",
+                       accent="#003cc0", steel="#66707d", steel_light="#e6e9ee", warn=BROWN, warn_paper="#ffe8c2",
+                       line=1.8, type=19, small=17),
 }
+
+
+def style_sheet() -> str:
+    """The themes as CSS: a custom property for every role. A theme's rule has only what differs from the first one's,
+    so that the page may change sizes on large and small screens for all themes at once.
+    """
+    rules: list[str] = []
+    first: dict[str, str] = {}
+    for name, theme in THEMES.items():
+        roles = {f"--{role.replace('_', '-')}": str(value) for role, value in asdict(theme).items()}
+        roles["color-scheme"] = roles.pop("--scheme")
+        for size in ("--type", "--small"):
+            roles[size] += "px"
+        own = "; ".join(f"{role}: {value}" for role, value in roles.items() if first.get(role) != value)
+        rules.append(f':root{(first and f"[data-theme={name}]") or ""} {{ {own} }}\n')
+        first = first or roles
+    return "".join(rules)
 
 
 def frame(tools: str = TOOLS, **options: Any) -> figure:

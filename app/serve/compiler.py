@@ -7,6 +7,7 @@ their own; this one then loads them from the cache.
 from __future__ import annotations
 
 import json
+import logging
 import os
 import subprocess
 import sys
@@ -20,18 +21,15 @@ from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, 
 from .delays import STOP_POLL
 from .queues import COMPILATIONS, CURVES, Stop
 
-#: What is compiled for a page, and how long that takes on two cores [s].
-_COMPILED = {"picture": ("the kernels for this set of effects", 10), "map": ("the kernels", 10),
-             "attractors": ("the kernels", 10), "observer": ("the observer's kernels", 10),
-             "accuracy": ("the kernels of all methods", 20), "stability": ("the tangent flow", 20),
-             "branches": ("the kernels for branches", 40), "paper": ("the figure's kernels", 20)}
+log = logging.getLogger("granchain")
 
+#: The kernels of the main picture and of its curve.
+PICTURE_PIECES = (LIVE, CERTIFIED, CURVE)
 _ROOT = Path(__file__).resolve().parents[2]
 
 
-def compiling_words(page: str) -> str:
-    """What is being compiled for a page, or for the "picture" in front, and how long one has to wait for it."""
-    what, seconds = _COMPILED[page]
+def compiling_words(what: str, seconds: int) -> str:
+    """What is being compiled, and how long that takes on two cores [s]."""
     return f"compiling {what}: about {seconds} s, only the first time on this computer"
 
 
@@ -41,8 +39,16 @@ def _compile(scene: Scene, piece: str) -> None:
     try:  # in a session of its own, where a terminal's Ctrl-C does not reach it; its stderr is the server's
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
                        stdout=subprocess.DEVNULL, start_new_session=True)
-    except (OSError, subprocess.CalledProcessError):
+    except (OSError, subprocess.CalledProcessError) as problem:
+        log.warning("compiling %s in another process failed: %s", piece, problem)
         compile_piece(scene, piece)
+
+
+def _log_failure(ended: Future[None]) -> None:
+    """Report a failure that nobody waits for."""
+    error = ended.exception()
+    if error is not None:
+        log.error("loading kernels ahead of time failed", exc_info=error)
 
 
 class Compiler:
@@ -90,13 +96,13 @@ class Compiler:
 
     def prepare(self, scene: Scene) -> None:
         """Have this scene's kernels ready in this process before the first visitor asks."""
-        for piece in (LIVE, CERTIFIED, CURVE):
+        for piece in PICTURE_PIECES:
             if not self.has(scene, piece):
                 self.ask(scene, piece)
-        CURVES.submit(self._load_all, scene)
+        CURVES.submit(self._load_all, scene).add_done_callback(_log_failure)
 
     def _load_all(self, scene: Scene) -> None:
-        for piece in (LIVE, CERTIFIED, CURVE):
+        for piece in PICTURE_PIECES:
             if not self.has(scene, piece):
                 self.ask(scene, piece).result()
             self.load(scene, piece)

@@ -13,7 +13,7 @@ _AHEAD = 2
 and 45 ms of lag (p95) with one, 28 and 43 with two."""
 
 
-class Painter(Generic[Picture]):
+class FramePacer(Generic[Picture]):
     """Passes pictures to the browser; of those that wait, only the latest is sent.
 
     Without the acknowledgement a server that computes faster than the browser paints fills the websocket, and

@@ -1,4 +1,5 @@
-"""Where computations of the dashboard run: named queues for all visitors, one latest-wins job a page.
+"""Where computations of the dashboard run: named queues shared by all visitors, and latest-wins jobs, of which each
+visitor has one for the picture and one for drafts of the curve.
 
 Kernels release the GIL, so threads are enough. Long work has queues of its own, because a picture must never wait for
 it.

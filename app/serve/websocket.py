@@ -1,7 +1,7 @@
 """The websocket: a picture's messages leave together and at once; requests wait until they can be answered.
 
-The optional private attributes of Tornado, Bokeh and Panel are used in this file only. Each saves some milliseconds or
-keeps a message from being lost; if a release drops one, the public API is used instead.
+Private attributes of Tornado, Bokeh and Panel, and Panel's undocumented `set_curdoc`, are used in this file only. Each
+saves some milliseconds or keeps a message from being lost; if a release drops one, the public API is used instead.
 """
 
 from __future__ import annotations
@@ -14,8 +14,12 @@ from typing import Any
 import panel as pn
 from bokeh.document import Document
 from bokeh.events import Event
-from panel.io.state import set_curdoc
 from tornado.iostream import IOStream
+
+try:
+    from panel.io.state import set_curdoc
+except ImportError:  # it is not in Panel's documentation
+    set_curdoc = None  # type: ignore[assignment]
 
 
 def _session(document: Document) -> Any:
@@ -30,17 +34,17 @@ def _streams(document: Document) -> list[IOStream]:
     return [stream for stream in streams if isinstance(stream, IOStream) and not stream.closed()]
 
 
-def has_turn(document: Document) -> bool:
-    """Whether this is known to be the document's turn, the only time at which it may be changed.
+def has_document_lock(document: Document) -> bool:
+    """Whether Bokeh is known to hold the document's lock, without which the document may not be changed.
 
-    During a turn Bokeh keeps a list of pending writes. A message can also arrive while answers to an earlier one are
-    still being written; Bokeh then refuses every change.
+    While it holds the lock it keeps a list of pending writes. A message can also arrive while answers to an earlier
+    one are still being written; Bokeh then refuses every change.
     """
     session = _session(document)
     return session is None or getattr(session, "_pending_writes", None) is not None
 
 
-def in_its_turn(document: Document, action: Callable[[], None]) -> None:
+def with_document_lock(document: Document, action: Callable[[], None]) -> None:
     """Run `action` as soon as the document may be changed and the browser will be told of the change.
 
     The browser can send requests before it has reported that all parts are rendered. Until it has, Panel discards
@@ -48,20 +52,20 @@ def in_its_turn(document: Document, action: Callable[[], None]) -> None:
     """
     if not pn.state.loaded:
         pn.state.onload(action)
-    elif has_turn(document):
+    elif has_document_lock(document):
         action()
     else:
         document.add_next_tick_callback(action)
 
 
-def send_at_once(document: Document) -> None:
+def disable_nagle(document: Document) -> None:
     """Turn off Nagle's algorithm, which can delay a message by 40 ms until earlier ones are acknowledged."""
     for stream in _streams(document):
         stream.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
 
 @contextmanager
-def in_one_go(document: Document) -> Iterator[None]:
+def batched_messages(document: Document) -> Iterator[None]:
     """The messages written in this block are handed to the network together when it ends.
 
     A picture is about twenty small messages; sent singly, each costs 0.3 ms here and a wake-up in the browser.
@@ -84,15 +88,16 @@ def _wait() -> None:
     """Replaces a stream's `_handle_write` while a picture is being written."""
 
 
-class PromptEvents:
+class WithoutBusyIndicator:
     """A Panel component whose events skip the busy indicator, which this page does not show: it takes 2 of 5 ms.
 
-    Panel calls `_process_bokeh_event`; with a release that calls another method, the indicator comes back.
+    Panel calls `_process_bokeh_event`; with a release that calls another method or has no `set_curdoc`, the indicator
+    comes back.
     """
 
     def _process_bokeh_event(self, doc: Document, event: Event) -> None:
         handle = getattr(self, "_process_event", None)
-        if handle is None:
+        if handle is None or set_curdoc is None:
             super()._process_bokeh_event(doc, event)  # type: ignore[misc]
             return
         with set_curdoc(doc):

@@ -15,6 +15,8 @@ from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 
+LIVE_SETTING = live(2)
+"""The steps of a live chain."""
 _NOT_ASKED = Regime.unsettled(0)
 
 
@@ -67,7 +69,7 @@ class LiveChain:
             self._index = round(start.phase * samples) % samples
 
     def _new_engine(self, scene: Scene, state: State) -> Engine:
-        engine = Engine(scene, live(2), self.samples, stop=self.stop)
+        engine = Engine(scene, LIVE_SETTING, self.samples, stop=self.stop)
         engine.start(state)
         return engine
 

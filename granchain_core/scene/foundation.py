@@ -1,4 +1,4 @@
-"""What a change of the drive amplitude A₀ does to κ = k/(K√A₀), in words: k stays, so κ moves."""
+"""What a change of the drive amplitude A₀ does to κ = k/(K√A₀), in words: at constant k, κ changes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from .model import Scene
 
 
 def moved_kappa(before: Scene, after: Scene) -> str:
-    """κ before A₀ moved while k stayed, in words; empty where something else moved, or without a foundation."""
+    """κ before A₀ changed at constant k, in words; empty if A₀ did not change, k did, or there is no foundation."""
     if after.A0 == before.A0 or after.k != before.k or after.k == 0.0:
         return ""
-    return f"κ was {before.kappa:.4g}; A₀ moved, not k"
+    return f"κ was {before.kappa:.4g} before A₀ changed at constant k"

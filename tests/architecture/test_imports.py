@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -70,47 +71,38 @@ def test_no_import_goes_in_a_circle() -> None:
     assert circles({module: imports(module) for module in MODULES}) == []
 
 
-#: What the page computes and remembers, without a view; the rest of `app.page` puts the dashboard together.
-RULES = {"active_setting", "message_checks", "energy_residual", "hooks", "host", "activities", "live", "progress", "session", "share", "switches", "task"}
-#: Each layer of `app` with those it may import, besides the core. A page's layer is its folder.
-ALLOWED = {
-    "cli": {"cli", "pictures", "start"},
-    "shared": set(),
-    "serve": {"serve"},
-    "rules": {"rules", "serve", "shared"},
-    "pictures": {"pictures", "shared"},
-    "parts": {"parts", "pictures", "rules", "serve", "shared"},
-    "page": {"page", "pages", "parts", "pictures", "rules", "serve", "shared"},
-    "start": {"page", "rules", "serve"},
-}
+#: The folders of `app` in the map of docs/design.md, dotted, with what its last column says they use.
+USES = {folder.replace("/", "."): re.findall(r"`(\w+)`", uses) for folder, uses in re.findall(
+    r"^\| `app/([\w/]+)` \| [^|]+ \| ([^|]+) \|$", (ROOT / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)}
+#: Modules beside the folders that any folder may use; the others are above all.
+SHARED = {"format", "frames", "scripts"}
 
 
 def layer(module: str) -> str:
-    """The layer of a module of `app`."""
+    """The folder of a module of `app`, with a page's own; of one beside the folders its name."""
     parts = module.split(".")[1:]
-    if module in ("app.main", "app.serve.server"):
-        return "start"
-    if module in ("app.format", "app.frames"):
-        return "shared"
-    if module in ("app", "app.scripts"):
-        return "serve"
-    if parts[0] == "page":
-        return "rules" if parts[-1] in RULES else "page"
-    return ".".join(parts[:2]) if parts[0] == "pages" else parts[0]
+    return ".".join(parts[:2]) if parts[0] == "pages" and len(parts) > 2 else parts[0]
+
+
+def allowed(folder: str) -> set[str]:
+    """The folders that a folder may import: itself, what it uses, and what those use; a page uses what `pages` does."""
+    used = [*USES[folder], *(USES["pages"] if folder.startswith("pages.") else ())]
+    return {folder}.union(*(allowed(one) for one in used))
 
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app.")])
-def test_a_layer_of_the_app_imports_only_what_stands_above_it(module: str) -> None:
-    """Pages know their host and not the controller, parts know no page, the command line knows nothing of a page."""
+def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None:
+    """Pages know their host and not the controller, parts know no page, the command line only pictures and the server."""
     mine = layer(module)
-    for name in sorted(imports(module)):
-        if not name.startswith("app."):
-            continue
+    for name in sorted(one for one in imports(module) if one.startswith("app.")):
         theirs = layer(name)
-        if mine.startswith("pages"):
-            assert theirs == mine or theirs in {"parts", "pictures", "rules", "serve", "shared"}, f"{module} imports {name}"
-        else:
-            assert theirs.split(".")[0] in ALLOWED[mine], f"{module} imports {name}"
+        if mine in SHARED:
+            assert theirs in SHARED, f"{module} imports {name}"
+        elif module == "app.cli.serve":
+            assert name in ("app.server", "app.cli.common", "app.cli.options"), f"{module} imports {name}"
+        elif mine in USES:
+            fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "page" else set())
+            assert theirs in fits | SHARED, f"{module} imports {name}"
 
 
 def test_the_core_imports_nothing_of_the_app() -> None:

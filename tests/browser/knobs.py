@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
-from playwright.sync_api import Page, expect
+from collections.abc import Callable
+
+from playwright.sync_api import Locator, Page, expect
+
+#: The fixture `visit` of conftest.py.
+Visit = Callable[..., Page]
+#: Long enough for a first visit that has to compile kernels, on a machine that runs tests [ms].
+COMPILED = 240_000
+
+
+def field(page: Page, name: str) -> Locator:
+    """The number field of a knob."""
+    return page.locator(f'[data-knob="{name}"] input[type="text"]')
 
 
 def knob(page: Page, name: str) -> str:
     """What stands in the number field of a knob."""
-    return page.locator(f'[data-knob="{name}"] input[type="text"]').input_value()
+    return field(page, name).input_value()
 
 
 def type_into(page: Page, name: str, text: str) -> None:
     """Type a value and press Enter."""
-    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
-    field.fill(text)
-    field.press("Enter")
+    field(page, name).fill(text)
+    field(page, name).press("Enter")
 
 
 def settled(page: Page) -> None:

@@ -62,7 +62,7 @@ class Server:
 
     def start(self) -> None:
         """Start it and wait until it answers."""
-        code = f"from app.serve.server import serve; serve(port={self._port})"
+        code = f"from app.server import serve; serve(port={self._port})"
         with self._log.open("ab") as output:
             self.process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output,
                                             env={**os.environ, **self._environment})

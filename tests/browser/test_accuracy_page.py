@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
-from knobs import type_into
+from drawn import source
+from knobs import COMPILED, Visit, type_into
 from playwright.sync_api import Locator, Page, expect
 
-Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile every method, on a machine that runs tests.
-COMPILED = 120_000
 #: The figure of the page, and how many points each method has in it.
 FIGURE = 'Bokeh.documents.find((one) => one.roots()[0].name === "accuracy" && one.roots()[0].below[0].axis_label)'
 POINTS = f"""() => Object.fromEntries(({FIGURE}?.roots()[0].renderers ?? [])
@@ -20,7 +17,7 @@ POINTS = f"""() => Object.fromEntries(({FIGURE}?.roots()[0].renderers ?? [])
 
 def marked(page: Page, name: str) -> int:
     """How many points the source of this name has."""
-    return int(page.evaluate(f"{FIGURE}.get_model_by_name('{name}').data.ms.length"))
+    return len(source(page, "accuracy", name).get("ms", []))
 
 
 def naive_line(page: Page) -> dict[str, Any]:
@@ -36,7 +33,7 @@ def naive_line(page: Page) -> dict[str, Any]:
 def opened(page: Page) -> Locator:
     """The Accuracy page, opened from the status line, with its first points."""
     page.get_by_role("button", name="asked").click()
-    sheet = page.locator('[data-cover="accuracy"]')
+    sheet = page.locator('[data-overlay="accuracy"]')
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
     expect(sheet.locator(".work canvas").first).to_be_visible()
     return sheet
@@ -144,10 +141,10 @@ def test_its_tab_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
     expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
     expect(page.locator("#tabs")).to_contain_text("The cheapest way to", timeout=COMPILED)
     page.get_by_role("button", name="open the page").click()
-    expect(page.locator("#cover .work canvas").first).to_be_visible()
+    expect(page.locator("#overlay .work canvas").first).to_be_visible()
     assert page.evaluate(POINTS)
     page.keyboard.press("Escape")
-    expect(page.locator("#cover")).to_be_hidden()
+    expect(page.locator("#overlay")).to_be_hidden()
 
 
 def test_the_page_fits(visit: Visit) -> None:

@@ -3,29 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 
 import pytest
 from drawn import place, source, tooltips
+from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
-Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile the kernels for branches, on a machine that runs tests.
-COMPILED = 150_000
 #: A short chain whose branch is followed in seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
 #: The kinds of special points that were found; the orbits of an arm.
 SPECIAL = ("['fold', 'period_doubling', 'neimark_sacker', 'grazing']"
-           ".filter((kind) => granchain.branches.grown.rows[kind]?.x.length)")
-ORBITS = "granchain.branches.grown.rows.orbits"
+           ".filter((kind) => granchain.branches.data.rows[kind]?.x.length)")
+ORBITS = "granchain.branches.data.rows.orbits"
 
 
 def opened(page: Page) -> Locator:
     """The Branches page, opened from its tab."""
     page.get_by_role("tab", name="branches").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-cover="branches"]')
+    sheet = page.locator('[data-overlay="branches"]')
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
     return sheet
 
@@ -56,7 +53,7 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     sheet.get_by_role("button", name="stop").click()
     # the figure holds what the page has been sent piece by piece, and so does the small one in its tab
     for kind in ("stable", "unstable"):
-        assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.branches.grown.lines.{kind}.x.length") > 0
+        assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.branches.data.lines.{kind}.x.length") > 0
     page.keyboard.press("Escape")
     until(page, lambda: source(page, "branches", "orbits", large=False).get("x") == source(page, "branches", "orbits")["x"])
 
@@ -107,13 +104,13 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
         page.mouse.click(*at("orbits", row))
         expect(sheet.locator(".chosen")).to_contain_text(words)
         expect(page.locator("#foot")).to_contain_text(regime, timeout=15_000)
-        shown = page.locator('[data-knob="f"] input[type="text"]').input_value()
+        shown = field(page, "f").input_value()
         assert float(shown) == pytest.approx(frequency, rel=1e-5)  # six figures are written
 
 
 #: The orbit that is farthest from all special points, so that a click means it and no other.
 LONELY = """(stable) => {
-  const { orbits, ...rows } = granchain.branches.grown.rows;
+  const { orbits, ...rows } = granchain.branches.data.rows;
   const special = Object.values(rows).flatMap(({ x }) => x);
   const far = (f) => Math.min(...special.map((one) => Math.abs(one - f)));
   return orbits.x.map((f, row) => [orbits.stable[row] === stable ? far(f) : -1, row]).sort((a, b) => b[0] - a[0])[0][1];
@@ -125,13 +122,13 @@ def test_moved_knobs_grey_the_branch_and_say_so(visit: Visit) -> None:
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached", timeout=20_000)
     sheet = followed(page)
     sheet.get_by_role("button", name="stop").click()
-    field = page.locator('[data-knob="D"] input[type="text"]')
-    field.fill("90")
-    field.press("Enter")
+    damping = field(page, "D")
+    damping.fill("90")
+    damping.press("Enter")
     expect(sheet.locator(".stale")).to_be_visible()
     expect(sheet).to_contain_text("these orbits belong to another chain")
-    field.fill("100")
-    field.press("Enter")
+    damping.fill("100")
+    damping.press("Enter")
     expect(sheet.locator(".stale")).to_have_count(0)
 
 

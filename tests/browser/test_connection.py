@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from knobs import field, knob, type_into
 from playwright.sync_api import Browser, Page, expect
 from started import Server
 
@@ -57,13 +58,7 @@ BELONGS = """(frequency) => {
 
 
 def value(page: Page, name: str = "f") -> str:
-    return page.locator(f'[data-knob="{name}"] input[type="text"]').input_value()
-
-
-def turn(page: Page, name: str, text: str) -> None:
-    field = page.locator(f'[data-knob="{name}"] input[type="text"]')
-    field.fill(text)
-    field.press("Enter")
+    return knob(page, name)
 
 
 def looks_lost(page: Page, within: int = SOON) -> None:
@@ -94,7 +89,7 @@ def drag_slider(page: Page) -> None:
 
 
 def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Server, page: Page) -> None:
-    turn(page, "f", "700")
+    type_into(page, "f", "700")
     page.wait_for_function(BELONGS, arg=700, timeout=30_000)
     page.get_by_role("button", name="Play or pause").click()
     page.locator("select.speed").select_option("5")
@@ -120,7 +115,7 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
     expect(page.get_by_role("button", name="Play or pause")).to_contain_text("play")
     expect(page.get_by_role("alert").filter(has_text="the chain has started again from rest and your uploaded data are gone.")).to_be_visible()
     expect(page.locator("#lost")).to_be_hidden(timeout=30_000)
-    turn(page, "f", "340")
+    type_into(page, "f", "340")
     page.wait_for_function(BELONGS, arg=340, timeout=30_000)
 
 
@@ -132,7 +127,7 @@ def test_a_silent_server_is_seen_and_the_same_page_goes_on(server: Server, page:
     server.process.send_signal(signal.SIGCONT)
     expect(page.locator("#lost")).to_be_hidden()
     assert page.locator("[data-knob] input:disabled").count() == 0 and value(page) == "1130"
-    turn(page, "f", "700")
+    type_into(page, "f", "700")
     page.wait_for_function(BELONGS, arg=700, timeout=30_000)
     assert page.evaluate("window.same")
 
@@ -151,13 +146,13 @@ def test_a_socket_that_stays_silent_while_the_server_answers_is_given_up(page: P
 def test_what_the_server_never_heard_of_comes_back_too(server: Server, page: Page, knob: str) -> None:
     """The knobs are what the visitor saw last, not what the server was told last."""
     moved = {"f": "700", "kappa": "0.002"}[knob]
-    turn(page, "k", "100")
+    type_into(page, "k", "100")
     expect(page.locator("#knobs .aside")).to_contain_text("Hz")
     server.process.send_signal(signal.SIGSTOP)
-    turn(page, knob, moved)
+    type_into(page, knob, moved)
     looks_lost(page, SILENT)
     assert value(page, knob) == moved
     server.kill()
     starts_again(server, page)
-    expect(page.locator(f'[data-knob="{knob}"] input[type="text"]')).to_have_value(moved, timeout=30_000)
+    expect(field(page, knob)).to_have_value(moved, timeout=30_000)
     page.wait_for_function(BELONGS, arg=float(value(page)), timeout=60_000)

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 
+from knobs import COMPILED, Visit
 from playwright.sync_api import Locator, Page, expect
 
-Visit = Callable[..., Page]
 #: A case that has a picture and, once its kernels are compiled, takes a second.
 QUICK = "solitary wave, Hertz collision, cradle, a bead on a chain"
 LONG = "near a bifurcation"
-#: Long enough for a first visit that has to compile the kernels of a case, on a machine that runs tests.
-COMPILED = 150_000
 #: The lines and titles of the picture that is drawn, as the browser has them.
 DRAWN = """() => {
   const figure = Bokeh.documents.map((one) => one.roots()[0]).find((root) => root.name === "check");
@@ -27,7 +24,7 @@ def opened(page: Page) -> Locator:
     """The page, opened from its tab."""
     page.get_by_role("tab", name="hard cases").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-cover="hard"]')
+    sheet = page.locator('[data-overlay="hard"]')
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
     return sheet
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import h5py
-from knobs import knob, settled, type_into
-from playwright.sync_api import Page, expect
-
-Visit = Callable[..., Page]
+from knobs import Visit, field, knob, settled, type_into
+from playwright.sync_api import expect
 
 
 def test_a_shared_link_brings_the_picture_back(visit: Visit) -> None:
@@ -32,7 +29,7 @@ def test_a_bad_field_of_a_link_is_told_and_the_others_count(visit: Visit) -> Non
 def test_another_scene_can_be_opened(visit: Visit) -> None:
     page = visit()
     page.locator("select.scene").select_option("fig3b")
-    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("1130")
+    expect(field(page, "f")).to_have_value("1130")
     expect(page.locator("#foot b")).to_contain_text("period 3", timeout=20_000)
 
 
@@ -59,7 +56,7 @@ def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit
     page.get_by_role("tab", name="map").click()
     page.locator(".maphost").evaluate("host => { host.dataset.same = 1; }")
     page.locator("select.scene").select_option("rig")
-    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("60")
+    expect(field(page, "f")).to_have_value("60")
     page.evaluate("shown()")
     assert page.locator(".maphost").get_attribute("data-same") == "1"
     page.get_by_role("tab", name="data").click()

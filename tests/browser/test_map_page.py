@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from drawn import place, source, tooltips
+from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
-Visit = Callable[..., Page]
-#: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
-COMPILED = 150_000
 #: A short chain far up: its diagram is there in a second or two.
 SMALL = "?v=1&scene=sec2&N=2"
 
@@ -30,11 +26,6 @@ def visible(page: Page, name: str) -> bool:
     """Whether a model of the figure is to be seen."""
     return bool(page.evaluate("""(name) => Bokeh.documents.find((one) => one.roots()[0].name === "map")
       .get_model_by_name(name).visible""", name))
-
-
-def knob(page: Page, name: str) -> Locator:
-    """The field of a knob."""
-    return page.locator(f'[data-knob="{name}"] input[type="text"]')
 
 
 def overflow(page: Page) -> int:
@@ -65,11 +56,11 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     until(page, told)
     for words in ("Hz", "m: ", "N"):
         assert words in cells["tooltip"][row]
-    before = knob(page, "f").input_value(), knob(page, "A0").input_value()
+    before = field(page, "f").input_value(), field(page, "A0").input_value()
     page.mouse.click(*at)
-    expect(knob(page, "f")).not_to_have_value(before[0], timeout=5000)
-    expect(knob(page, "A0")).not_to_have_value(before[1], timeout=5000)
-    assert abs(float(knob(page, "f").input_value()) - cells["x"][row]) < 1.0
+    expect(field(page, "f")).not_to_have_value(before[0], timeout=5000)
+    expect(field(page, "A0")).not_to_have_value(before[1], timeout=5000)
+    assert abs(float(field(page, "f").input_value()) - cells["x"][row]) < 1.0
     until(page, lambda: abs(source(page, "map", "now")["x"][0] - cells["x"][row]) < 1e-3)
 
     tip = page.locator("#tabs .told")
@@ -80,13 +71,13 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     assert tip.inner_text() != first
     assert len(source(page, "map", "cursor")["left"]) == 1
     chosen = float(tip.inner_text().split(" Hz")[0])
-    was = knob(page, "f").input_value()
+    was = field(page, "f").input_value()
     picture.press("Enter")
-    expect(knob(page, "f")).not_to_have_value(was, timeout=5000)
-    assert abs(float(knob(page, "f").input_value()) - chosen) < 1.0
+    expect(field(page, "f")).not_to_have_value(was, timeout=5000)
+    assert abs(float(field(page, "f").input_value()) - chosen) < 1.0
 
-    knob(page, "D").fill("60")  # another chain has another diagram
-    knob(page, "D").press("Enter")
+    field(page, "D").fill("60")  # another chain has another diagram
+    field(page, "D").press("Enter")
     expect(page.locator("#tabs .maphost.stale")).to_be_visible(timeout=5000)
     expect(page.locator("#tabs .maphost.stale")).to_have_count(0, timeout=20_000)
 

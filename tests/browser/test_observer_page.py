@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
+from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
-Visit = Callable[..., Page]
-#: A first visit may have to compile the pair's kernels, on a machine that runs tests.
-COMPILED = 240_000
 #: What the page drew last: period and distance.
 LAST = "granchain.observer?.history.at(-1)"
 
@@ -38,7 +34,7 @@ def opened(page: Page) -> Locator:
     page.get_by_label("scene").first.select_option("fig11-free")
     page.get_by_role("tab", name="observer").click()
     page.get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-cover="observer"]')
+    sheet = page.locator('[data-overlay="observer"]')
     page.wait_for_function(drawn("distance", 8), timeout=COMPILED)
     expect(sheet.locator(".trace canvas").first).to_be_visible()
     return sheet
@@ -58,7 +54,7 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
     expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
     page.wait_for_function(drawn("prediction", 2), timeout=30_000)
     page.wait_for_function(f"{LAST}[1] < 0.1", timeout=30_000)
-    expect(page.locator('[data-knob="kappa"] input[type="text"]')).to_have_value("0.001")
+    expect(field(page, "kappa")).to_have_value("0.001")
 
 
 def test_a_new_start_is_seen_and_nobody_looking_stops_it(visit: Visit) -> None:

@@ -18,7 +18,7 @@ def opened(page: Page) -> Locator:
     """The page, opened from its tab."""
     page.get_by_role("tab", name="paper").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-cover="paper"]')
+    sheet = page.locator('[data-overlay="paper"]')
     expect(sheet).to_contain_text("Choose one")
     return sheet
 

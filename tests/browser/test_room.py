@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
-from playwright.sync_api import Page, expect
+from knobs import Visit
+from playwright.sync_api import expect
 
-Visit = Callable[..., Page]
 WIDTHS = ((1280, 800), (1920, 1080), (390, 844))
 LOOKS = pytest.mark.parametrize("look", ["light", "projector"])
 

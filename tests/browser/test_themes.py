@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
-from playwright.sync_api import Page
-
-Visit = Callable[..., Page]
-
+from knobs import Visit
 
 # Whether a mark of a picture that the server draws has this colour.
 INK = """(ink) => Bokeh.documents.some((one) => [...(one.all_models ?? one._all_models.values())].some(
@@ -22,7 +17,7 @@ def test_a_link_says_how_the_page_looks(visit: Visit, look: str, ink: str) -> No
     assert page.evaluate("localStorage.getItem('granchain-look')") is None  # another page looks as it did
     # the pictures too, which the server draws
     page.wait_for_function(INK, arg=ink)
-    page.get_by_role("button", name="Light, dark, projector").click()
+    page.get_by_role("button", name="Theme: light, dark, projector").click()
     page.locator("select.speed").select_option("5")
     page.wait_for_function("granchain.kept.speed === 5")
     assert page.evaluate("document.documentElement.dataset.theme") != look

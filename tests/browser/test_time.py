@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from knobs import Visit, settled
+from playwright.sync_api import expect
 
-from knobs import settled
-from playwright.sync_api import Page, expect
-
-Visit = Callable[..., Page]
+from app.parts.figure_style import BOTTOM, GAP, TOP
 
 #: A visitor who has not asked for less motion.
 MOVING = {"reduced_motion": "no-preference"}
@@ -66,16 +64,16 @@ def test_a_bead_has_the_colour_of_its_column(visit: Visit) -> None:
     box = page.locator("#map").bounding_box()
     assert box is not None
     # 1.1 ms into the picture the pulse is in the last beads and the first are at rest
-    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 50 + (box["height"] - 102) * 0.095)
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + TOP + (box["height"] - TOP - BOTTOM) * 0.095)
     page.evaluate("shown()")
-    beads, columns = page.evaluate(COLOURS)
+    beads, columns = page.evaluate(COLOURS, GAP)
     for bead, column in zip(beads, columns, strict=True):
         assert max(abs(a - b) for a, b in zip(bead, column, strict=True)) < 60
     assert max(sum(column) for column in columns) > 150 > min(sum(column) for column in columns)
 
 
 # The colour in the lower half of every bead and of its column of the map, at the time of the cursor.
-COLOURS = """() => {
+COLOURS = """(gap) => {
   const pixel = (id, x, y) => {
     const canvas = canvasIn(id), box = canvas.getBoundingClientRect();
     const { data } = canvas.getContext("2d").getImageData(Math.round(x - box.x), Math.round(y - box.y), 1, 1);
@@ -84,9 +82,9 @@ COLOURS = """() => {
   const map = document.getElementById("map").getBoundingClientRect();
   const chain = document.getElementById("chain").getBoundingClientRect();
   const line = document.getElementById("cursor").getBoundingClientRect();
-  const pitch = (map.width - 12) / 11, beads = [], columns = [];
+  const pitch = (map.width - 2 * gap) / 11, beads = [], columns = [];
   for (let i = 0; i < 11; i++) {
-    const x = map.x + 6 + (i + 0.5) * pitch;
+    const x = map.x + gap + (i + 0.5) * pitch;
     beads.push(pixel("chain", x, chain.y + 0.53 * chain.height + 0.12 * pitch));
     columns.push(pixel("map", x, line.y + line.height / 2));
   }

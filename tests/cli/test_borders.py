@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.cli import main
-from app.page.share import decode
+from app.session.share import decode
 from granchain_core import BadInput, NumbersFailed, run, scene
 from granchain_core.experiment import read_measured_csv
 from granchain_core.hdf5 import seal
@@ -73,16 +73,10 @@ def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
     """A million periods of ten thousand beads would be 160 GB of strobes."""
     module = sys.modules["granchain_core.run.run"]
     shown = scene("sec2").evolve(N=2, f=3000.0)
-<<<<<<< HEAD
     engine = module.Engine(shown, module.method_for(1e-3), 4)
     begun = module.Reached(engine, 0, engine.periods(0)[0])
     kept = module._attempt(begun, (3000, 1), None, module.Counts(), None)
-    assert len(kept.strobes) == module._KEPT + 1
-=======
-    setting = module.method_for(1e-3)
-    kept = module._attempt(shown, setting, module.rest(shown), (3000, 1, 4), module.Stop(), None, module.Counts())
     assert len(kept.strobes) == module.REMEMBERED + 1
->>>>>>> 6f5bcdb42412e91d903561863b90cda87f141707
 
 
 def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, capsys):

@@ -12,8 +12,8 @@ from tornado.httpclient import AsyncHTTPClient
 
 from app.cli import main
 from app.page import entry
-from app.page.share import decode
-from app.serve.server import server_at
+from app.server import server_at
+from app.session.share import decode
 from granchain_core import BadInput, Scene, run, scene
 from granchain_core.experiment import read_measured_csv
 from granchain_core.store import load, save

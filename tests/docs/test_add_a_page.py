@@ -20,6 +20,8 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "tests" / "architecture", copy / "tests" / "architecture",
                     ignore=shutil.ignore_patterns("__pycache__"))
+    (copy / "tests" / "page").mkdir()
+    shutil.copy(ROOT / "tests" / "page" / "test_messages.py", copy / "tests" / "page")
     return edited_copy(PAGE, copy)
 
 
@@ -29,35 +31,35 @@ def test_the_page_edits_two_files_and_writes_four() -> None:
     assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 2 files, write 4"
 
 
-def test_the_new_page_has_its_cover_its_tab_and_its_hooks(tree: Path) -> None:
-    """A row makes a cover, a tab, a call with every picture, and an answer to the page's own message."""
+def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
+    """A row makes an overlay, a tab, a call with every picture, and an answer to the page's own message."""
     told = follow(tree, "-c", """
 from types import SimpleNamespace
 from bokeh.document import Document
 from app.page.controller import Controller
-from app.page.session import Session
+from app.session.session import Session
 from app.scripts import FILES
 
 dashboard = Controller(Document(), Session())
 picture = SimpleNamespace(run=SimpleNamespace(max_output_force=1.0, max_input_force=4.0), final=False)
 dashboard.session.picture = picture
 page = next(one for one in dashboard.pages if type(one).__name__ == "TransmissionPage")
-page.arrived(picture)
-print(dashboard.views.covers["transmission"].state["sentence"])
-dashboard.views.covers["transmission"].display(sentence="")
+page.picture_ready(picture)
+print(dashboard.views.overlays["transmission"].state["sentence"])
+dashboard.views.overlays["transmission"].update_state(sentence="")
 dashboard.received({"do": "transmission-say"})
-print(dashboard.views.covers["transmission"].state["sentence"])
+print(dashboard.views.overlays["transmission"].state["sentence"])
 template = dashboard.views.template()
-print(dict(template._render_variables["covers"])["transmission"], "transmission.js" in FILES)
-print([one["words"] for one in dashboard.views.tabs.state["pages"] if one["tab"] == "transmission"])
+print(dict(template._render_variables["overlays"])["transmission"], "transmission.js" in FILES)
+print([one["placeholder"] for one in dashboard.views.tabs.state["pages"] if one["title"] == "transmission"])
 """)
-    first, second, cover, words = told.splitlines()
+    first, second, overlay, words = told.splitlines()
     assert first == second == "25.0 % of the largest input force arrives at the wall."
-    assert (cover, words) == ("Transmission True", "['How much of the input force arrives.']")
+    assert (overlay, words) == ("Transmission True", "['How much of the input force arrives.']")
 
 
 def test_the_new_page_fits_into_the_house(tree: Path) -> None:
-    """Layers, private attributes, docstrings and the map of docs/design.md."""
-    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")), "-k",
-                  "transmission or table or map or circle")
+    """Layers, private attributes, docstrings, the map and the table of messages of docs/design.md."""
+    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
+                  str(Path("tests", "page")), "-k", "transmission or table or map or circle or message")
     assert " passed" in told and "deselected" in told

@@ -73,8 +73,8 @@ print(explanation(one, None, 96))
 def test_the_new_effect_has_a_switch_in_the_panel_a_slider_a_cost_and_axes(tree: Path) -> None:
     """Off and on again by its switch, with its own kernel each time; the knob is under "more", and can be followed."""
     told = follow(tree, "-c", """
-from app.page.session import Session
-from app.page.switches import EFFECTS, present, variants
+from app.session.session import Session
+from app.session.switches import EFFECTS, present, variants
 from app.parts.knobs import knob_state
 from granchain_core import scene
 from granchain_core.diagram.grid import KNOBS

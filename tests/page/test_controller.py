@@ -12,31 +12,35 @@ from typing import Any
 import pytest
 from bokeh.document import Document
 from bokeh.events import Tap
-from turns import Turns
+from host import FakeHost
 
-from app.page import links_and_files, pictures
+from app import server
+from app.page import links_and_files, main_picture
 from app.page.controller import Controller
-from app.page.hooks import all_actions
-from app.page.message_checks import listed, whole
-from app.page.session import Session
-from app.serve import server
+from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
+from app.session.hooks import all_actions
+from app.session.message_checks import listed, whole
+from app.session.session import Session
 from granchain_core import BadInput, run, scene
 from granchain_core.experiment.measured import MOST_BYTES
 
 
-class Dashboard(Turns, Controller):
-    """A dashboard whose next turn comes when the test says so, and whose messages to the browser are kept."""
+class Dashboard(FakeHost, Controller):
+    """A dashboard whose callbacks are called when the test says so, and whose messages to the browser are kept."""
+
+    busy, awaiting_picture, curve_computing = Controller.busy, Controller.awaiting_picture, Controller.curve_computing
+    call_later, failed = Controller.call_later, Controller.failed
 
     def __init__(self) -> None:
-        Turns.__init__(self)
+        FakeHost.__init__(self)
         self.told: list[dict[str, Any]] = []
         Controller.__init__(self, Document(), Session())
-        self.views.header.tell = lambda **message: self.told.append(message)  # type: ignore[method-assign]
+        self.views.header.send = lambda **message: self.told.append(message)  # type: ignore[method-assign]
 
-    def later(self, action: Callable[..., None], *arguments: Any) -> None:
+    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """From any thread."""
-        self.turns.append(lambda: self._guarded(action, *arguments))
+        self.callbacks.append(lambda: self._guarded(action, *arguments))
 
 
 @pytest.mark.parametrize("wrong", [True, False, None, "3", 2.5, 0, 9, float("nan"), [1]])
@@ -75,7 +79,7 @@ def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence() -> N
     ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (MOST_BYTES + 1), "at most 2000000 are read", "")])
 def test_a_measurement_is_read_in_the_background(text: str, sentence: str, understood: str,
                                                  monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reading 2 MB in the document's turn would hold up every visitor."""
+    """Reading 2 MB with the document locked would hold up every visitor."""
     threads = []
     read = links_and_files.read_measured_csv
     monkeypatch.setattr(links_and_files, "read_measured_csv",
@@ -122,8 +126,8 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(m
             waiting.set()
             return Future()
 
-    monkeypatch.setattr(pictures, "COMPILER", Compiling())
-    monkeypatch.setattr(pictures, "settling", lambda *_, **__: settled.append("began") or iter(()))
+    monkeypatch.setattr(main_picture, "COMPILER", Compiling())
+    monkeypatch.setattr(main_picture, "settling", lambda *_, **__: settled.append("began") or iter(()))
     dashboard = Dashboard()
     dashboard.pictures.compute()
     assert waiting.wait(10)
@@ -143,10 +147,32 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
     assert {one["name"]: one["slot"] for one in panel["effects"]}["dashpot"] == "dissipation"
 
 
+def test_a_reconnected_page_has_its_speed_its_pause_and_its_energy_account_back() -> None:
+    dashboard = Dashboard()
+    dashboard.received({"do": "reconnected", "speed": 5, "playing": False, "account": True, "uploaded": True})
+    session = dashboard.session
+    assert (session.speed, session.playing, session.account) == (5.0, False, True)
+    assert dashboard.views.header.state["account"]
+    assert session.sentence.endswith("has started again from rest and your uploaded data are gone.")
+    dashboard.close(None)
+
+
+def test_another_theme_reaches_the_pages_and_their_figures() -> None:
+    dashboard = Dashboard()
+    told: list[Theme] = []
+    for page in dashboard.pages:
+        page.theme_changed = told.append  # type: ignore[method-assign]
+    dashboard.received({"do": "theme", "value": "dark"})
+    dashboard.received({"do": "theme", "value": "none of them"})
+    assert told == [THEMES["dark"]] * len(dashboard.pages)
+    assert dashboard.views.overlays["branches"].theme == THEMES["dark"]  # type: ignore[attr-defined]
+    dashboard.close(None)
+
+
 def test_an_action_of_two_pages_is_refused_with_both_names() -> None:
     """One of them would never be called."""
-    with pytest.raises(TypeError, match="the page 'map' and the page 'branches' both have an action 'stop'"):
-        all_actions({"the page 'map'": {"stop": print, "go": print}, "the page 'branches'": {"stop": print}})
+    with pytest.raises(TypeError, match="page `map` and page `branches` both have an action 'stop'"):
+        all_actions({"page `map`": {"stop": print, "go": print}, "page `branches`": {"stop": print}})
     assert set(all_actions({"one": {"a": print}, "other": {"b": print}})) == {"a", "b"}
 
 

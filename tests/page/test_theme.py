@@ -1,4 +1,4 @@
-"""One set of colours and widths: what page.css says is what the pictures are drawn with."""
+"""One set of colours and widths: the page is styled with what the pictures are drawn with."""
 
 from __future__ import annotations
 
@@ -8,32 +8,47 @@ from pathlib import Path
 
 import pytest
 
-from app.page.share import EXTRAS
+import app
 from app.parts import figure_style
-from app.pictures.theme import THEMES, Theme
+from app.pictures.theme import THEMES, Theme, style_sheet
+from app.session.share import EXTRAS
 
-PAGE = Path(__file__).parents[2] / "app" / "page" / "page.css"
-STYLE = PAGE.read_text(encoding="utf-8")
+SCRIPT = Path(app.__file__).parent / "parts" / "page.js"
 
 
-def properties(selector: str) -> dict[str, str]:
-    """Custom properties of the first rule whose selectors contain this one."""
-    rule = next(body for heads, body in re.findall(r"([^{}]+)\{([^{}]*)\}", STYLE)
-                if selector in [head.strip() for head in heads.split("*/")[-1].split(",")])
-    return {name: value.strip() for name, value in re.findall(r"--([\w-]+):([^;]+);", rule)}
+def properties(name: str) -> dict[str, str]:
+    """Properties that the style sheet gives the root element in a theme."""
+    found: dict[str, str] = {}
+    for selector, body in re.findall(r"(\S+) \{ (.*) \}", style_sheet()):
+        if selector in (":root", f":root[data-theme={name}]"):
+            found |= dict(one.split(": ", 1) for one in body.split("; "))
+    return found
 
 
 @pytest.mark.parametrize("name", THEMES)
 def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
-    style, theme = {**properties(":root"), **properties(f':root[data-theme="{name}"]')}, THEMES[name]
-    assert style["small"] == f"{theme.small}px" and float(style["line"]) == theme.line
-    both = [field.name for field in fields(Theme) if field.name in style and field.name not in ("small", "line")]
-    assert {"ink", "soft", "faint", "card", "accent", "steel", "drive", "input", "output"} == set(both)
-    assert [style[name] for name in both] == [getattr(theme, name) for name in both]
+    style, theme = properties(name), THEMES[name]
+    assert style.pop("color-scheme") == theme.scheme
+    assert (style.pop("--small"), style.pop("--type")) == (f"{theme.small}px", f"{theme.type}px")
+    assert style == {f"--{field.name.replace('_', '-')}": str(getattr(theme, field.name)) for field in fields(Theme)
+                     if field.name not in ("scheme", "small", "type")}
     assert (theme.drive, theme.input, theme.output) == (figure_style.DRIVE, figure_style.INPUT, figure_style.OUTPUT)
 
 
+def test_no_theme_but_the_projectors_fixes_the_size_of_words() -> None:
+    """On a large or small screen page.css gives them another size, in a rule for `:root` alone."""
+    rules = dict(re.findall(r"(\S+) \{ (.*) \}", style_sheet()))
+    assert [selector for selector, body in rules.items() if "--type" in body] == [":root", ":root[data-theme=projector]"]
+
+
+@pytest.mark.parametrize("path", sorted(Path(app.__file__).parent.rglob("*.css")), ids=lambda path: path.name)
+def test_no_style_uses_a_role_that_no_theme_has(path: Path) -> None:
+    own = set(re.findall(r"(--[\w-]+):", "".join(one.read_text(encoding="utf-8") for one in path.parents[1].rglob("*.css"))))
+    own |= {"--frame-top", "--frame-bottom", "--frame-left", "--gap"}
+    assert set(re.findall(r"var\((--[\w-]+)\)", path.read_text(encoding="utf-8"))) <= {*properties("light"), *own, "--font", "--stale"}
+
+
 def test_a_theme_is_known_everywhere() -> None:
-    script = (PAGE.parents[1] / "parts" / "page.js").read_text(encoding="utf-8")
+    script = SCRIPT.read_text(encoding="utf-8")
     (names,) = re.findall(r"const THEMES = \[([^\]]+)\]", script)
     assert tuple(THEMES) == EXTRAS["look"][1:] == tuple(name.strip('" ') for name in names.split(","))

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from app.format import duration, short_error
-from app.page.active_setting import locate, page_setting
 from app.pages.accuracy.page import measured_for
 from app.pages.accuracy.view import described_reference, described_rows, described_ways, naive_message
 from app.pictures.theme import THEMES
+from app.session.active_setting import locate, page_setting
 from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, ways
 from granchain_core.accuracy.naive import lesson
@@ -24,7 +24,7 @@ from granchain_core.stop import Stop
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rule in app/page/active_setting.py is the one of steady/relax.py: the finest engine of a certified picture."""
+    """The rule in app/session/active_setting.py is the one of steady/relax.py: the finest engine of a certified picture."""
     used: list[Setting] = []
     engine = settled_module.Engine
 

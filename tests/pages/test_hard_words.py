@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from app.pages.hard_cases.view import described, described_cases, figure_beside, figures, summary
+from app.pages.hard_cases.view import described, described_cases, digits_of, summary, value_beside
 from app.pages.hard_cases.work import CaseProcess, Ended, case_of
 from granchain_core import Cancelled, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Figure, run_case
@@ -25,20 +25,20 @@ def measured(*found: Figure) -> list[Check]:
     (1.2001, 1.2, "1.2001"), (1.19999, 1.2, "1.2"), (1.0000001e-9, 1e-9, "1.0000001e-9"),
     (math.nan, 1.0, "no number"), (math.inf, 1.0, "infinite")])
 def test_a_figure_is_on_the_true_side_of_its_bar(value: float, bar: float, told: str) -> None:
-    assert figure_beside(value, bar) == told
-    assert figures(1e-13, 3) == "1e-13"
+    assert value_beside(value, bar) == told
+    assert digits_of(1e-13, 3) == "1e-13"
 
 
 def test_a_row_that_fails_keeps_its_figure_and_one_that_is_not_computed_its_sentence() -> None:
     shown = described("touch and graze", measured(Figure("missed", 3.0, 0.0), Figure("moment", 5e-11, 1e-9)))
-    assert [(row["what"], row["figure"], row["bar"], row["passed"]) for row in shown["rows"]] == [
+    assert [(row["what"], row["value"], row["limit"], row["passed"]) for row in shown["rows"]] == [
         ("missed", "3", "0", False), ("moment", "5e-11", "1e-9", True)]
 
     def fails(quick: bool) -> list[Figure]:
         raise NumbersFailed("It gave up.", "chatter")
 
     (row,) = described("x", run_case(Case("x", "h", "n", "o", fails), quick=True))["rows"]
-    assert not row["passed"] and row["figure"] == "no number" and row["note"] == "It gave up."
+    assert not row["passed"] and row["value"] == "no number" and row["note"] == "It gave up."
     json.dumps(shown, allow_nan=False)
 
 
@@ -52,10 +52,10 @@ def test_names_with_a_colon_are_taken_off_as_a_whole() -> None:
 def test_the_summary_names_what_failed() -> None:
     assert summary({}) == ""
     good = measured(Figure("moment", 5e-11, 1e-9))
-    assert summary({"touch and graze": good}) == "1 of 16 cases run: no figure of 1 is above its bar."
+    assert summary({"touch and graze": good}) == "1 of 16 cases run: no value of 1 is above its limit."
     bad = measured(Figure("missed", 3.0, 0.0), Figure("moment", math.nan, 1e-9))
     assert summary({"touch and graze": bad}) == (
-        "1 of 16 cases run: 2 of 2 figures FAILED: touch and graze: missed, 3 against 0, and 1 more.")
+        "1 of 16 cases run: 2 of 2 values FAILED: touch and graze: missed, 3 against 0, and 1 more.")
 
 
 def test_every_case_has_its_lines_and_none_is_too_long_for_one() -> None:

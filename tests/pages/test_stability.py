@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -11,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from host import FakeHost
 
 from app.pages.stability import page as module
 from app.pages.stability import work
@@ -137,43 +137,22 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
         analyse(Target(shown.run.scene, 1, far, True), False, 0, Stop())
 
 
-class Page:
-    """The host of the page: what is asked to be done later is done when the test says so."""
-
-    busy = awaiting_picture = curve_computing = False
+class Page(FakeHost):
+    """The host of the page, with what the page shows and sends."""
 
     def __init__(self, mode: str = "settled") -> None:
-        self.session = SimpleNamespace(mode=mode, began=None, scene=scene("sec2"))
+        super().__init__()
+        self.session = SimpleNamespace(mode=mode, started_from=None, scene=scene("sec2"))
         self.told: list[dict[str, Any]] = []
-        self.queue: list[Any] = []
-        self.failures: list[Exception] = []
         view = SimpleNamespace(
-            state={}, display=lambda **changes: view.state.update(changes),
-            tell=lambda **message: self.told.append(message),
+            state={}, update_state=lambda **changes: view.state.update(changes),
+            send=lambda **message: self.told.append(message),
             need_figures=lambda: None, section=lambda shown: self.told.append(section_message(shown)))
         self.view = view
 
-    def later(self, action: Any, *arguments: Any) -> None:
-        """From any thread."""
-        self.queue.append((action, arguments))
-
-    def after(self, seconds: float, action: Any, *arguments: Any) -> None:
-        """The quiet time passes when the queue is worked off."""
-        self.later(action, *arguments)
-
-    def failed(self, error: Exception) -> None:
-        """Nothing may fail."""
-        self.failures.append(error)
-
     def work(self, until: Any, seconds: float = 60.0) -> None:
-        """Do what is due until something holds."""
-        end = time.monotonic() + seconds
-        while not until():
-            assert time.monotonic() < end, "did not come"
-            while self.queue:
-                action, arguments = self.queue.pop(0)
-                action(*arguments)
-            time.sleep(0.005)
+        """Work off until something holds; nothing may fail."""
+        self.work_off(until, seconds)
         assert self.failures == []
 
     def marks(self, name: str) -> int:
@@ -202,14 +181,14 @@ def opened(page: Page) -> StabilityPage:
 def test_nothing_is_computed_while_nobody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "analyse", lambda *_: pytest.fail("computed"))
     view = StabilityPage(page, page.view)  # type: ignore[arg-type]
-    view.arrived(picture())
-    page.work(lambda: not page.queue)
+    view.picture_ready(picture())
+    page.work(lambda: not page.callbacks)
     assert view.activity[1] == "off" and "plane" not in page.state
 
 
 def test_a_picture_that_stays_is_analysed(page: Page) -> None:
     view = opened(page)
-    view.arrived(picture())
+    view.picture_ready(picture())
     page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.told))
     assert page.state["sentence"].startswith("Stable") and page.marks("within") == 22
     assert not page.state["stale"] and not page.state["searched"] and page.marks("observer within") == 0
@@ -218,27 +197,27 @@ def test_a_picture_that_stays_is_analysed(page: Page) -> None:
     assert view.activity[1] == "ready"
     # the same picture with its energy account changes nothing
     count = len(page.told)
-    view.arrived(replace(picture()))
-    page.work(lambda: not page.queue)
+    view.picture_ready(replace(picture()))
+    page.work(lambda: not page.callbacks)
     assert len(page.told) == count
     view.close()
 
 
 def test_a_moved_knob_gives_up_and_greys(page: Page) -> None:
     view = opened(page)
-    view.arrived(picture())
+    view.picture_ready(picture())
     page.work(lambda: page.state.get("status") == "done")
-    view.arrived(replace(picture(), state=replace(picture().state)))
-    view.moved()
+    view.picture_ready(replace(picture(), state=replace(picture().state)))
+    view.picture_requested()
     assert page.state["stale"]
-    page.work(lambda: not page.queue)
+    page.work(lambda: not page.callbacks)
     assert page.state["stale"], "what was asked for before the knob moved is not computed"
     view.close()
 
 
 def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
     view = opened(page)
-    view.arrived(picture())
+    view.picture_ready(picture())
     page.work(lambda: page.state.get("status") == "done")
     view.actions["stability-observer"]({"value": True})
     page.work(lambda: page.marks("observer within") + page.marks("observer outside") == 22)
@@ -249,7 +228,7 @@ def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
 
 def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
     view = opened(page)
-    view.arrived(picture(f=1576.0))
+    view.picture_ready(picture(f=1576.0))
     page.work(lambda: page.state.get("status") == "done" and any(m["type"] == "section" for m in page.told))
     assert page.state["period"] == 4
     view.actions["stability-search"]({"value": 1})
@@ -264,7 +243,7 @@ def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
 def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> None:
     page.session.scene = picture(tension="cut").run.scene
     view = opened(page)
-    view.arrived(picture(tension="cut"))
+    view.picture_ready(picture(tension="cut"))
     page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.told))
     assert "multipliers are not computed" in page.state["sentence"] and page.marks("within") == 0
     view.close()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bokeh.models import ColumnDataSource
 
-from app.pictures.accuracy import Asked, accuracy, marks, points, styles
+from app.pictures.accuracy import Annotations, accuracy, marks, points, styles
 from app.pictures.naive_forces import naive_columns, naive_forces
 from app.pictures.theme import THEMES
 from granchain_core.accuracy import Row, ways
@@ -31,11 +31,11 @@ def test_what_has_no_finite_error_has_no_point_and_large_errors_stand_at_the_top
 
 
 def test_marks_are_there_only_where_something_is_marked() -> None:
-    nothing = marks(Asked(1e-6), ROWS)
+    nothing = marks(Annotations(1e-6), ROWS)
     assert nothing["good"] == {"top": 1e-6} and nothing["asked"]["data"]["words"] == ["asked 1e-6"]
     assert nothing["cheapest"]["data"]["ms"] == nothing["agreement"]["data"]["ms"] == []
     assert not nothing["agreement line"]["visible"]
-    all_of_it = marks(Asked(1e-6, 1e-11, (0.001, 1e-7), (0.004, 1e-8)), ROWS)
+    all_of_it = marks(Annotations(1e-6, 1e-11, (0.001, 1e-7), (0.004, 1e-8)), ROWS)
     assert all_of_it["agreement line"] == {"location": 1e-11, "visible": True}
     assert all_of_it["cheapest"]["data"] == {"ms": [1.0], "error": [1e-7]}
     assert all_of_it["now"]["data"] == {"ms": [4.0], "error": [1e-8]}
@@ -43,7 +43,7 @@ def test_marks_are_there_only_where_something_is_marked() -> None:
 
 @pytest.mark.parametrize("compact", [False, True])
 def test_everything_that_changes_is_found_by_its_name(compact: bool) -> None:
-    asked = Asked(1e-6, 1e-11, (0.001, 1e-7), (0.004, 1e-8))
+    asked = Annotations(1e-6, 1e-11, (0.001, 1e-7), (0.004, 1e-8))
     plot = accuracy(ROWS, asked, THEMES["projector"], compact)
     for name, columns in points(ROWS).items():
         assert plot.select_one({"name": name, "type": ColumnDataSource}).data == columns

@@ -1,24 +1,24 @@
 // The Accuracy page, over the pictures: what accuracy costs here and now, and what naive steps would have drawn.
 
-import { button, meter, pageHead, part, table } from "../../parts/dom.js";
+import { button, element, meter, pageHead, table } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
-import { fillAccuracy, showAccuracy } from "./accuracytab.js";
-import { NaiveForces } from "./naiveforces.js";
+import { fillAccuracy, showAccuracy } from "./accuracy_tab.js";
+import { NaiveForces } from "./naive_forces.js";
 
 const STALE = "The knobs have moved: this was measured for another chain. Measure again to see it for this one.";
 
 function methodRow(way, failures) {
-  const restrictions = part("td", { className: "soft", textContent: way.restrictions });
+  const restrictions = element("td", { className: "soft", textContent: way.restrictions });
   for (const { setting, failure } of failures)
-    restrictions.append(part("div", { className: "failed", textContent: `failed at ${setting}: ${failure}` }));
-  return part(
+    restrictions.append(element("div", { className: "failed", textContent: `failed at ${setting}: ${failure}` }));
+  return element(
     "tr",
     {},
-    part("td", { textContent: way.name.replace("scipy ", "SciPy ") }),
-    part("td", { textContent: way.title }),
-    part("td", { textContent: way.order }),
+    element("td", { textContent: way.name.replace("scipy ", "SciPy ") }),
+    element("td", { textContent: way.title }),
+    element("td", { textContent: way.order }),
     restrictions,
-    part("td", { className: "soft", textContent: way.reference }),
+    element("td", { className: "soft", textContent: way.reference }),
   );
 }
 
@@ -29,7 +29,7 @@ function methodTable(ways, failures) {
       failures.filter((failure) => failure.way === way.name),
     ),
   );
-  return table(["method", "what it is", "order", "restrictions", "reference"], part("tbody", {}, ...rows));
+  return table(["method", "what it is", "order", "restrictions", "reference"], element("tbody", {}, ...rows));
 }
 
 class AccuracyPage {
@@ -39,21 +39,21 @@ class AccuracyPage {
     this.again = button("measure again", () => model.send_msg({ do: "accuracy-measure" }));
     this.stop = button("stop", () => model.send_msg({ do: "accuracy-stop" }));
     this.meter = meter("progress of the measurement");
-    this.status = part("span", { className: "status" });
-    this.said = part("b");
-    this.agreement = part("span", { className: "soft" });
-    this.machine = part("span", { className: "soft", title: "The processor that the kernels are compiled for" });
-    this.warning = part("span", { className: "warn" });
-    this.picture = part("div", { className: "picture" });
+    this.status = element("span", { className: "status" });
+    this.said = element("b");
+    this.agreement = element("span", { className: "soft" });
+    this.machine = element("span", { className: "soft", title: "The processor that the kernels are compiled for" });
+    this.warning = element("span", { className: "warn" });
+    this.picture = element("div", { className: "picture" });
     this.figure = new Embedded(this.picture, (one) => fillAccuracy(one, window.granchain.accuracy));
     this.naive = new NaiveForces();
-    this.methods = part("div", { className: "table" });
-    this.root = part(
+    this.methods = element("div", { className: "table" });
+    this.root = element(
       "div",
       { className: "part sheet" },
       pageHead("What accuracy costs", this.status, this.meter, this.stop, this.again),
-      part("div", { className: "say" }, this.said, this.agreement, this.machine, this.warning),
-      part("div", { className: "work" }, this.picture),
+      element("div", { className: "say" }, this.said, this.agreement, this.machine, this.warning),
+      element("div", { className: "work" }, this.picture),
       this.naive.root,
       this.methods,
     );
@@ -93,7 +93,7 @@ class AccuracyPage {
     this.said.textContent = asked?.sentence ?? "";
     this.warning.textContent = model.state.failure || (asked?.stale ? STALE : "");
     this.warning.hidden = !this.warning.textContent;
-    if (window.granchain.covered === "accuracy")
+    if (window.granchain.overlay === "accuracy")
       showAccuracy(this.figure, model.figures.page, window.granchain.accuracy);
   }
 
@@ -111,7 +111,7 @@ export function render({ model }) {
   model.on("state", () => page.show());
   model.on("figures", () => page.redraw());
   model.on("msg:custom", (message) => page.receive(message));
-  window.granchain.on("cover", (name) => {
+  window.granchain.on("overlay", (name) => {
     if (name === "accuracy") page.open();
   });
   page.show();

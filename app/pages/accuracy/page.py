@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -15,15 +14,17 @@ from granchain_core.kernels.width import machine
 from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
 
 from ...format import duration, short_error
-from ...page.active_setting import locate, page_setting
-from ...page.activities import Activity
-from ...page.hooks import Page
-from ...page.host import Host
-from ...page.progress import COMPUTING, OFF, READY, progress
-from ...page.task import Job, Task
-from ...pictures.accuracy import Asked
+from ...pictures.accuracy import Annotations
 from ...serve.queues import MEASUREMENTS
+from ...session.active_setting import locate, page_setting
+from ...session.activities import Activity
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.task import Job, Task
 from .view import Accuracy, described_reference, described_ways
+
+WORDS = StatusWords("the kernels of all methods", 20, kept="the measurements so far")
 
 
 def measured_for(scene: Scene) -> str:
@@ -42,9 +43,9 @@ class AccuracyPage(Page):
         self._naive: Lesson | None = None
         self._agreement: float | None = None
         self.rows: list[Row] = []
-        self.status = "none"
+        self.status: Status = "none"
         self.done = 0.0
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "accuracy-open": lambda _: self.open(), "accuracy-measure": lambda _: self._measure(),
             "accuracy-stop": lambda _: self.stop(),
         }
@@ -60,11 +61,11 @@ class AccuracyPage(Page):
         words = f"{len(self.rows)} settings measured" if self.rows or self.running else "its page has not been opened"
         return "accuracy of all methods", COMPUTING if self.running else READY if self.rows else OFF, words
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """A knob moved: another accuracy is asked for, or the rows belong to another chain."""
         self.describe()
 
-    def arrived(self, picture: Settled) -> None:
+    def picture_ready(self, picture: Settled) -> None:
         """Mark the setting of the new picture among the rows."""
         self.describe()
 
@@ -74,7 +75,7 @@ class AccuracyPage(Page):
         now = locate(page_setting(scene, session.picture, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)
         stale = bool(self._measured) and self._measured != measured_for(scene)
-        self._view.mark(self.rows, Asked(
+        self._view.mark(self.rows, Annotations(
             scene.accuracy, self._agreement, None if best is None else (best.wall_s, best.error),
             None if now is None else (now.wall_s, now.error)), stale=stale, sentence=self._sentence(best))
 
@@ -89,7 +90,7 @@ class AccuracyPage(Page):
 
     def open(self) -> None:
         """The page or its tab was opened: measure if nothing has been measured yet."""
-        self._view.display(ways=described_ways(), machine=machine())
+        self._view.update_state(ways=described_ways(), machine=machine())
         if self.status == "none":
             self._measure()
         self.describe()
@@ -108,12 +109,12 @@ class AccuracyPage(Page):
         """In the measuring thread: the kernels first, then one row after the other."""
 
         def report(found: WorkPrecision) -> None:
-            job.later(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
+            job.next_tick(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
 
         job.compile(scene, LIVE, CERTIFIED, ACCURACY)
         job.say("measuring")
         work_precision(scene, job.stop, report=report, pause=job.give_way,
-                       progress=lambda done: job.later(self._progress, done))
+                       progress=lambda done: job.next_tick(self._progress, done))
 
     def _show(self, rows: list[Row], naive: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
         self.rows = rows
@@ -127,11 +128,11 @@ class AccuracyPage(Page):
 
     def _progress(self, done: float) -> None:
         self.done = done
-        self._view.display(done=done)
+        self._view.update_state(done=done)
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._view.display(**progress("accuracy", status), failure=sentence, done=self.done)
+        self._view.update_state(**WORDS.of(status), failure=sentence, done=self.done)
 
     def _sentence(self, best: Row | None) -> str:
         asked = short_error(self._host.session.scene.accuracy)

@@ -15,7 +15,7 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, ways
 from ...format import prefixed, short_error
 from ...parts.component import text
 from ...parts.figure_part import FigurePart, page_and_small
-from ...pictures.accuracy import Asked, accuracy, marks, points
+from ...pictures.accuracy import Annotations, accuracy, marks, points
 from ...pictures.naive_forces import naive_forces
 from ...pictures.theme import Theme
 from ...scripts import module
@@ -27,7 +27,7 @@ _LOST = 1e-4
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
     """Error against time without points, for the page and, small, for its tab."""
-    return page_and_small(lambda compact: accuracy([], Asked(1e-6), theme, compact))
+    return page_and_small(lambda compact: accuracy([], Annotations(1e-6), theme, compact))
 
 
 class Accuracy(FigurePart):
@@ -41,31 +41,31 @@ class Accuracy(FigurePart):
         super().__init__(received, **params)
         self._naive: Lesson | None = None
 
-    def dress(self, theme: Theme) -> None:
+    def apply_theme(self, theme: Theme) -> None:
         """Draw the figures, that of the forces too, in another theme."""
-        super().dress(theme)
+        super().apply_theme(theme)
         if self._naive is not None:
             self.show_naive(self._naive)
 
     def measured(self, rows: list[Row], reference: dict[str, Any]) -> None:
         """Show the rows measured so far and what is known of the reference."""
         self.need_figures()
-        self.display(rows=described_rows(rows), drawn=points(rows), **reference)
+        self.update_state(rows=described_rows(rows), drawn=points(rows), **reference)
 
-    def mark(self, rows: list[Row], asked: Asked, stale: bool, sentence: str) -> None:
+    def mark(self, rows: list[Row], asked: Annotations, stale: bool, sentence: str) -> None:
         """Mark what is asked, cheapest and used now; `stale` if the rows belong to another chain."""
-        self.tell(type="asked", marks=marks(asked, rows), stale=stale, sentence=sentence)
+        self.send(type="asked", marks=marks(asked, rows), stale=stale, sentence=sentence)
 
     def show_naive(self, shown: Lesson) -> None:
         """Show the forces that naive steps would have drawn."""
         self._naive = shown
-        self.tell(**naive_message(shown, self.theme))
+        self.send(**naive_message(shown, self.theme))
 
     def forget(self) -> None:
         """Remove everything that was measured."""
         self._naive = None
-        self.display(rows=[], drawn={}, agreement_words="", reference="", second="")
-        self.tell(type="no-naive")
+        self.update_state(rows=[], drawn={}, agreement_words="", reference="", second="")
+        self.send(type="no-naive")
 
 
 def described_ways() -> list[dict[str, Any]]:

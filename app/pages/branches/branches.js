@@ -1,10 +1,9 @@
 // The Branches page, over the pictures: a branch of periodic orbits grows, and a click loads one of them.
 
-import { button, pageHead, paragraph, part } from "../../parts/dom.js";
-import { Embedded, Grown } from "../../parts/embedded.js";
+import { button, element, pageHead, paragraph } from "../../parts/dom.js";
+import { Embedded, StreamedData } from "../../parts/embedded.js";
 
-const SPECIAL = ["fold", "period_doubling", "neimark_sacker", "grazing"];
-const WORDS = "largest output force of periodic orbits over drive frequency";
+const WORDS = "largest elastic output force of periodic orbits over drive frequency";
 // Below this width in pixels the legend stands in two columns.
 const NARROW = 700;
 const ABOUT =
@@ -15,7 +14,7 @@ const FOLLOW = "Follow the orbit on the screen up and down in frequency, through
 
 function periodChoice(longest) {
   const periods = Array.from({ length: longest }, (_, i) => new Option(`period ${i + 1}`, i + 1));
-  return part(
+  return element(
     "select",
     { title: "period of the orbits, in drive periods", ariaLabel: "period of the orbits" },
     new Option("period as settled", ""),
@@ -27,7 +26,7 @@ function periodChoice(longest) {
 class Choice {
   constructor(send) {
     this.send = send;
-    this.root = part("div", { className: "chosen", hidden: true });
+    this.root = element("div", { className: "chosen", hidden: true });
   }
 
   hide() {
@@ -48,7 +47,7 @@ class Choice {
       `, ${columns.motion[row]}: elastic ${columns.elastic[row]}, output ${columns.output[row]}, input ${columns.input[row]}`,
       stable ? " — shown settled on the main page" : " — running live on the main page: watch it leave this orbit",
       " ",
-      button("show", () => window.granchain.cover(null)),
+      button("show", () => window.granchain.closePage()),
     );
   }
 
@@ -68,18 +67,18 @@ class BranchesPage {
     this.start = button("follow from here", () => send(this.request()), { title: FOLLOW });
     this.stop = button("stop", () => send({ do: "branches-stop" }));
     this.on = button("continue", () => send({ do: "branches-continue" }));
-    this.status = part("span", { className: "status" });
+    this.status = element("span", { className: "status" });
     this.said = paragraph("", "said");
-    this.warning = part("p", { className: "warn", hidden: true });
+    this.warning = element("p", { className: "warn", hidden: true });
     this.choice = new Choice(send);
-    this.picture = part("div", { className: "picture" });
-    this.work = part("div", { className: "work" }, this.picture);
+    this.picture = element("div", { className: "picture" });
+    this.work = element("div", { className: "work" }, this.picture);
     const head = pageHead("Branches of periodic orbits", this.period, this.start, this.stop, this.on, this.status);
-    const say = part("div", { className: "say" }, this.said, this.warning, this.choice.root);
-    this.root = part("div", { className: "part sheet" }, head, say, this.work);
-    this.grown = new Grown();
+    const say = element("div", { className: "say" }, this.said, this.warning, this.choice.root);
+    this.root = element("div", { className: "part sheet" }, head, say, this.work);
+    this.data = new StreamedData();
     this.figure = new Embedded(this.picture, (one) => this.fill(one));
-    window.granchain.branches = { grown: this.grown, figures: [this.figure] };
+    window.granchain.branches = { data: this.data, figures: [this.figure] };
   }
 
   request() {
@@ -88,8 +87,10 @@ class BranchesPage {
   }
 
   fill(figure) {
-    this.grown.fill(figure);
-    figure.taps([...SPECIAL, "orbits"], (source, row) => this.choice.show(source, this.grown.rows[source], row));
+    this.data.fill(figure);
+    figure.taps([...this.model.state.special, "orbits"], (source, row) =>
+      this.choice.show(source, this.data.rows[source], row),
+    );
     this.fit();
   }
 
@@ -106,7 +107,7 @@ class BranchesPage {
     this.status.textContent = state.progress ?? "";
     this.start.hidden = running;
     this.stop.hidden = !running;
-    this.on.hidden = running || !state.unfinished || !this.grown.rows.orbits;
+    this.on.hidden = running || !state.unfinished || !this.data.rows.orbits;
     const ended = (state.ended ?? []).join("; ");
     this.said.textContent = [state.words, ended].filter(Boolean).join(". ") || ABOUT;
     this.warning.textContent = state.failure || (state.stale ? STALE : "");
@@ -119,7 +120,7 @@ class BranchesPage {
   draw() {
     const { figures, state } = this.model;
     const page = window.granchain;
-    if (page.covered === "branches" && this.grown.rows.orbits) this.figure.load(figures.page, WORDS);
+    if (page.overlay === "branches" && this.data.rows.orbits) this.figure.load(figures.page, WORDS);
     Object.assign(page.branches, { words: state.words, small: figures.small });
     page.emit("branches");
   }
@@ -127,11 +128,11 @@ class BranchesPage {
   receive(message) {
     const { figures } = window.granchain.branches;
     if (message.type === "clear") {
-      this.grown.clear();
+      this.data.clear();
       this.choice.hide();
       for (const one of figures) one.remove();
     } else if (message.type === "orbits") {
-      this.grown.add(message, figures);
+      this.data.add(message, figures);
       this.draw();
     }
   }
@@ -142,7 +143,7 @@ export function render({ model }) {
   model.on("state", () => page.show());
   model.on("figures", () => page.draw());
   model.on("msg:custom", (message) => page.receive(message));
-  window.granchain.on("cover", (name) => {
+  window.granchain.on("overlay", (name) => {
     if (name === "branches") requestAnimationFrame(() => page.draw());
   });
   new ResizeObserver(() => page.fit()).observe(page.work);

@@ -13,16 +13,18 @@ from granchain_core import Scene
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
-from ...page.hooks import Page
-from ...page.host import Host
-from ...page.message_checks import listed, whole
-from ...page.progress import progress
-from ...page.session import slider_range, without_frequency
-from ...page.task import Job, Task
-from ...pictures.branches import Growth
+from ...pictures.branches import BranchRows
 from ...serve.delays import BRANCH_EVERY
 from ...serve.queues import LONG, Stop
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import listed, whole
+from ...session.progress import Status, StatusWords
+from ...session.session import slider_range, without_frequency
+from ...session.task import Job, Task
 from .view import LONGEST_PERIOD, Branches
+
+WORDS = StatusWords("the kernels for branches", 40, kept="the orbits found so far")
 
 
 @dataclass
@@ -45,21 +47,21 @@ class BranchesPage(Page):
         self._followed: list[Continuation] = []
         self._drawn: list[_Drawn] = []
         self._special: list[tuple[Branch, Any]] = []
-        self._growth = Growth()
+        self._rows = BranchRows()
         self._sent = 0.0
-        self.status = "none"
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.status: Status = "none"
+        self.actions: Actions = {
             "branches-start": self._start, "branches-stop": lambda _: self.stop(),
             "branches-continue": lambda _: self._continue(), "branches-orbit": self._load_orbit,
             "branches-double": self._double,
         }
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """Tell whether the branches still belong to the chain on the screen."""
         now = self._host.session.scene
         stale = bool(self._followed) and \
             without_frequency(self._followed[0].branch.axis.scene) != without_frequency(now)
-        self._view.display(now=now.f, stale=stale)
+        self._view.update_state(now=now.f, stale=stale)
 
     def stop(self) -> None:
         """Stop; what has been computed stays and can be continued."""
@@ -103,7 +105,7 @@ class BranchesPage(Page):
         """Show an orbit on the main page: a stable one settled, an unstable one live, to be seen leaving."""
         arm: Any = message.get("arm")
         drawn = listed("branch", self._drawn, arm)
-        point = listed("orbit", self._growth.orbits.get(arm, []), message.get("place"))
+        point = listed("orbit", self._rows.orbits.get(arm, []), message.get("place"))
         self._host.show(drawn.branch.axis.scene_at(point.knob), drawn.branch.state(point),
                         "settled" if point.stable else "live")
 
@@ -111,8 +113,8 @@ class BranchesPage(Page):
 
     def _clear(self) -> None:
         self._task.cancel()
-        self._followed, self._drawn, self._special, self._growth = [], [], [], Growth()
-        self._view.tell(type="clear")
+        self._followed, self._drawn, self._special, self._rows = [], [], [], BranchRows()
+        self._view.send(type="clear")
 
     def _submit(self, begin: Callable[[Stop], list[Branch]], scene: Scene) -> None:
         self._task.cancel()
@@ -124,24 +126,24 @@ class BranchesPage(Page):
         job.say("settling")
         for branch in begin(job.stop):
             continuation = Continuation(branch, job.stop)
-            job.later(self._add, continuation)
+            job.next_tick(self._add, continuation)
             for _ in continuation:
                 self._grown(job)
-        job.later(self._draw)
+        job.next_tick(self._draw)
 
     def _grown(self, job: Job) -> None:
-        """After each orbit, update the page now and then, and wait for the picture in front."""
+        """After each orbit: update the page if `BRANCH_EVERY` has passed, and wait while a picture is computed."""
         if time.monotonic() - self._sent > BRANCH_EVERY:
             self._sent = time.monotonic()
-            job.later(self._draw)
+            job.next_tick(self._draw)
         job.give_way()
 
-    # In the document's turn
+    # With the document locked
 
     def _add(self, continuation: Continuation) -> None:
         self._followed.append(continuation)
         self._drawn.extend(_Drawn(continuation.branch, arm) for arm in continuation.branch.arms)
-        self.changed()
+        self.scene_changed()
         self._draw()
 
     def _draw(self) -> None:
@@ -156,16 +158,16 @@ class BranchesPage(Page):
                 drawn.points += len(points)
                 drawn.special += len(special)
                 self._view.need_figures()
-                self._view.tell(type="orbits", **self._growth.add(number, drawn.branch, points, special))
+                self._view.send(type="orbits", **self._rows.add(number, drawn.branch, points, special))
             self._say(self.status if self.status in ("stopped", "done") else "following")
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
         arms = [drawn.arm for drawn in self._drawn]
         orbits, special = sum(len(arm.points) for arm in arms), sum(len(arm.special) for arm in arms)
         words = f"{orbits} orbits, {special} special points" if arms else ""
         if status == "following":
             words += "; now at " + " and ".join(f"{arm.points[-1].knob:.1f} Hz" for arm in arms if not arm.ended)
-        self._view.display(**progress("branches", status), failure=sentence, words=words,
+        self._view.update_state(**WORDS.of(status), failure=sentence, words=words,
                            ended=[arm.reason for arm in arms if arm.ended],
                            unfinished=any(not arm.ended for arm in arms))

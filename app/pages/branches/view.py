@@ -8,7 +8,7 @@ from typing import Any
 
 from ...parts.component import text
 from ...parts.figure_part import FigurePart, page_and_small
-from ...pictures.branches import branches
+from ...pictures.branches import SPECIAL, branches
 from ...pictures.theme import Theme
 from ...scripts import module
 
@@ -30,4 +30,4 @@ class Branches(FigurePart):
     empty_figures = staticmethod(empty_figures)
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"longest_period": LONGEST_PERIOD}, **params)
+        super().__init__(received, state={"longest_period": LONGEST_PERIOD, "special": list(SPECIAL)}, **params)

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from ...parts.component import Component, text
+from ...pictures.curve import LABELS
 from ...scripts import module
+
+_MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency rising, the state carried along.",
+             "down": "Frequency falling, the state carried along."}
+#: What may be shown: name, label and meaning.
+CHOICES = (*((name, label, _MEANINGS[name]) for name, label in LABELS.items()),
+           ("features", "from the paper", "Frequencies the paper states for its rig; it gives no forces."))
 
 
 class CurveBar(Component):
     """Which curves are shown, their progress, and a button that stops them."""
 
-    _esm = module("curvebar.js")
-    _stylesheets = [text("controls.css"), text("curvebar.css")]  # noqa: RUF012
+    _esm = module("curve_bar.js")
+    _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES]}, **params)

@@ -11,21 +11,21 @@ from panel.io import unlocked
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Measured, stated_features
 from granchain_core.steady.curve import draft_curve
-from granchain_core.warm import CERTIFIED, CURVE, LIVE
+from granchain_core.warm import CURVE
 
-from ...page.activities import Activity
-from ...page.host import Host
-from ...page.progress import COMPUTING, OFF, READY
-from ...page.session import rig_beads, slider_range, without_frequency
-from ...page.task import Task
-from ...serve.compiler import COMPILER
+from ...pictures.curve import WORDS
+from ...serve.compiler import COMPILER, PICTURE_PIECES
 from ...serve.delays import CURVE_QUIET
 from ...serve.queues import CURVES, LatestWins, Stop
-from .bar import CurveBar
+from ...session.activities import Activity
+from ...session.debounce import Debounce
+from ...session.host import Host
+from ...session.progress import COMPUTING, OFF, READY
+from ...session.session import rig_beads, slider_range, without_frequency
+from ...session.task import Task
+from .bar import CHOICES, CurveBar
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
 from .view import Curve
-
-_SETTINGS = (*DIRECTIONS, "features")
 
 
 class Curves:
@@ -40,13 +40,13 @@ class Curves:
         self._bar = bar
         self._placed = placed
         self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
-        self._drafts = LatestWins(partial(host.later, self._draw_draft), partial(host.later, host.failed))
+        self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed))
         self._asked: Scene | None = None
         self._begun = 0
-        self._wanted = {name: name == "rest" for name in _SETTINGS}
+        self._wanted = {name: name == "rest" for name, *_ in CHOICES}
         self._visible = True
         self._computed: dict[str, Scene] = {}
-        self._due = 0
+        self._quiet = Debounce(host, CURVE_QUIET)
         self._lock = threading.Lock()
         self._buffer: list[Progress] = []
         self._key: Scene | None = None
@@ -84,16 +84,13 @@ class Curves:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
         self._task.cancel()
         self._asked = without_frequency(scene)
-        self._due += 1
-        self._host.after(CURVE_QUIET, self._begin_if_last, scene, self._due)
+        self._quiet.start(self._begin_when_compiled, scene)
 
-    def _begin_if_last(self, scene: Scene, due: int) -> None:
-        if due != self._due:
-            return
-        if COMPILER.has(scene, LIVE, CERTIFIED, CURVE):
+    def _begin_when_compiled(self, scene: Scene) -> None:
+        if COMPILER.has(scene, *PICTURE_PIECES):
             self._begin(scene)
         else:
-            self._host.after(CURVE_QUIET, self._begin_if_last, scene, due)
+            self._quiet.start(self._begin_when_compiled, scene)
 
     def visible(self, visible: bool, scene: Scene) -> None:
         """The figure came on the screen or left it."""
@@ -108,7 +105,7 @@ class Curves:
         if name not in self._wanted:
             return
         self._wanted[name] = wanted
-        self._bar.display(**self._wanted)
+        self._bar.update_state(**self._wanted)
         if name == "features":
             self._show_features(scene)
         else:
@@ -118,7 +115,7 @@ class Curves:
         """Stop computing; the points computed so far stay."""
         self._task.cancel()
         self._done = -1.0
-        self._bar.display(done=-1.0)
+        self._bar.update_state(done=-1.0)
 
     @property
     def computing(self) -> bool:
@@ -129,7 +126,7 @@ class Curves:
         """Name, state and detail of every direction, as it is at this moment."""
         found = []
         for name in DIRECTIONS:
-            title = "resonance curve " + ("from rest" if name == "rest" else f"sweeping {name}")
+            title = f"resonance curve, {WORDS[name]}"
             if not self._wanted[name]:
                 found.append((title, OFF, "not selected"))
             elif self._computed.get(name) is not None and self._computed.get(name) == self._key:
@@ -163,7 +160,7 @@ class Curves:
         with unlocked():
             self._figure.show_directions(shown)
             self._figure.begin(missing)
-            self._bar.display(**self._wanted, done=0.0 if missing else -1.0)
+            self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
         self._begun += bool(missing)
         self._remaining, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
@@ -172,7 +169,7 @@ class Curves:
             self._task.cancel()
 
     def _show_features(self, scene: Scene) -> None:
-        self._bar.display(**self._wanted)
+        self._bar.update_state(**self._wanted)
         self._figure.features(stated_features() if self._wanted["features"] else [])
 
     def _report(self, progress: Progress) -> None:
@@ -181,7 +178,7 @@ class Curves:
             self._buffer.append(progress)
             first = len(self._buffer) == 1
         if first:
-            self._host.later(self._draw)
+            self._host.next_tick(self._draw)
 
     def _draw(self) -> None:
         with self._lock:
@@ -199,7 +196,7 @@ class Curves:
                     self._figure.finished(progress.direction)
                     self._placed()
             self._done = self._overall(buffer[-1])
-            self._bar.display(done=self._done)
+            self._bar.update_state(done=self._done)
 
     def _overall(self, progress: Progress) -> float:
         """Progress over all directions of this request."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from granchain_core import Cancelled, CurvePoint, Scene, iter_curve
 
-from ...page.session import slider_range
-from ...page.task import Job
+from ...session.session import slider_range
+from ...session.task import Job
 
 DIRECTIONS = ("rest", "up", "down")
 COARSE, _SWEEP = 75, 150

@@ -18,11 +18,9 @@ from ...format import prefixed
 from ...frames import round_up
 from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
 from ...pictures.axes import in_words
-from ...pictures.curve import DASHES, FORCES, WORDS, forces_in_words
-from ...pictures.regimes import REGIMES, regime_key
+from ...pictures.curve import DASHES, curve_columns, curve_tooltips
+from ...pictures.theme import GREY
 
-_MARK = "#8a8f98"
-_COLUMNS = ("frequency", "force", "marker", "colour", "size", "regime", "total", "elastic", "input")
 _MEASURED = ("frequency", "force", "value", "low", "high")
 
 
@@ -45,7 +43,7 @@ class Curve:
         self._old = {name: self._line(name, grey=True) for name in DASHES}
         self._new = {name: self._line(name, grey=False) for name in DASHES}
         # In the overlay, so that moving f repaints a line and a dot and not the whole curve.
-        self._current = Span(dimension="height", line_color=_MARK, line_width=1, level="overlay")
+        self._current = Span(dimension="height", line_color=GREY, line_width=1, level="overlay")
         self.figure.add_layout(self._current)
         self._marks()
 
@@ -61,28 +59,27 @@ class Curve:
         return plot
 
     def _line(self, direction: str, grey: bool) -> ColumnDataSource:
-        source = ColumnDataSource({name: [] for name in _COLUMNS})
+        source = ColumnDataSource(curve_columns([], 1.0))
         line = self.figure.line(
             "frequency", "force", source=source, line_dash=DASHES[direction] or "solid",
-            line_color=_MARK if grey else OUTPUT, line_width=1.5, line_alpha=0.45 if grey else 0.9)
+            line_color=GREY if grey else OUTPUT, line_width=1.5, line_alpha=0.45 if grey else 0.9)
         self._renderers[direction].append(line)
         if not grey:
             marks = self.figure.scatter(
                 "frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
                 line_color="colour", line_width=1.5)
             self._renderers[direction].append(marks)
-            self.figure.add_tools(HoverTool(renderers=[marks], tooltips=[
-                ("f", "@frequency{0.0} Hz"), *FORCES, ("regime", "@regime"), ("start", WORDS[direction])]))
+            self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(direction)))
         return source
 
     def _marks(self) -> None:
         """Stated features, the visitor's data and the current point, in front of the curves."""
         plot = self.figure
-        feature = plot.segment("frequency", 0, "frequency", "top", source=self._features, line_color=_MARK,
+        feature = plot.segment("frequency", 0, "frequency", "top", source=self._features, line_color=GREY,
                                line_width=3, line_dash=[1, 5], line_cap="round")
         self._labels = plot.text("frequency", "top", "label", source=self._features, angle=np.pi / 2,
                                  text_align="right", text_baseline="bottom", text_font_size="12px",
-                                 text_color=_MARK, x_offset=-3)
+                                 text_color=GREY, x_offset=-3)
         plot.add_tools(HoverTool(renderers=[feature], line_policy="interp",
                                  tooltips=[("stated", "@label"), ("source", "@source")]))
         self._bars = plot.segment("frequency", "low", "frequency", "high", source=self._measured,
@@ -220,14 +217,4 @@ class Curve:
         self._old[direction].data = self._columns(self._before[direction])
 
     def _columns(self, points: list[CurvePoint]) -> dict[str, Any]:
-        points = sorted(points, key=lambda point: point.frequency)
-        styles = [REGIMES[regime_key(point.regime.name, point.regime.period)] for point in points]
-        return {
-            "frequency": [point.frequency for point in points],
-            "force": [point.max_output_force / self._scale[0] for point in points],
-            "marker": [style[0] for style in styles],
-            "colour": [style[1] for style in styles],
-            "size": [style[2] for style in styles],
-            "regime": [point.regime.sentence for point in points],
-            **forces_in_words(points),
-        }
+        return curve_columns(sorted(points, key=lambda point: point.frequency), self._scale[0])

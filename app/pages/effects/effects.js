@@ -1,6 +1,6 @@
 // The effects panel: a switch for every effect, its slot in the compiled kernel, what it costs, and what is being computed.
 
-import { paragraph, part } from "../../parts/dom.js";
+import { element, paragraph } from "../../parts/dom.js";
 
 // The columns of the costs, with their hints.
 const COLUMNS = [
@@ -19,18 +19,18 @@ const signed = (value) =>
 const cost = (measured) => {
   if (!measured) return null;
   const { difference, percent, spread } = measured;
-  const cell = part(
+  const cell = element(
     "span",
     { className: "cost" },
     `${signed(difference)} ns`,
-    part("small", { textContent: ` ± ${spread.toFixed(0)} · ${signed(percent)} %` }),
+    element("small", { textContent: ` ± ${spread.toFixed(0)} · ${signed(percent)} %` }),
   );
   cell.title = `${measured.with.toFixed(1)} ns a step with it, ${measured.without.toFixed(1)} ns without; medians of alternating runs, spread ± ${spread.toFixed(1)} ns`;
   return cell;
 };
 
 function effectRow(model, effect, slot) {
-  const box = part("input", {
+  const box = element("input", {
     type: "checkbox",
     role: "switch",
     checked: effect.on,
@@ -39,12 +39,12 @@ function effectRow(model, effect, slot) {
   box.dataset.name = effect.name;
   box.setAttribute("aria-label", effect.title);
   box.addEventListener("change", () => model.send_msg({ do: "switch", name: effect.name, value: box.checked }));
-  const kind = part("code", { textContent: slot?.type ?? "absent", className: slot?.type ? "" : "absent" });
-  const name = part("td", { title: effect.meaning }, part("label", {}, box, effect.title), kind);
-  const row = part("tr", {}, name);
+  const kind = element("code", { textContent: slot?.type ?? "absent", className: slot?.type ? "" : "absent" });
+  const name = element("td", { title: effect.meaning }, element("label", {}, box, effect.title), kind);
+  const row = element("tr", {}, name);
   row.dataset.effect = effect.name;
-  if (effect.code) row.append(part("td", {}, cost(effect.code)), part("td", {}, cost(effect.motion) ?? "…"));
-  else row.append(part("td", { colSpan: 2, className: "soft", textContent: effect.state }));
+  if (effect.code) row.append(element("td", {}, cost(effect.code)), element("td", {}, cost(effect.motion) ?? "…"));
+  else row.append(element("td", { colSpan: 2, className: "soft", textContent: effect.state }));
   return row;
 }
 
@@ -52,30 +52,30 @@ function effectRow(model, effect, slot) {
 function costTable(model, { effects, slots, step }) {
   const slotOf = new Map(slots.map((one) => [one.slot, one]));
   const ns = (value) => (value ? `${value.toFixed(0)} ns` : "–");
-  const whole = part(
+  const whole = element(
     "tr",
     { className: "whole" },
-    part("td", { textContent: "one whole step" }),
-    part("td", { textContent: ns(step.rk4) }),
-    part("td", { textContent: ns(step["rk4-split"]) }),
+    element("td", { textContent: "one whole step" }),
+    element("td", { textContent: ns(step.rk4) }),
+    element("td", { textContent: ns(step["rk4-split"]) }),
   );
   const rows = effects.map((effect) => effectRow(model, effect, slotOf.get(effect.slot)));
-  const head = COLUMNS.map(([textContent, title]) => part("th", { textContent, title }));
-  return part(
+  const head = COLUMNS.map(([textContent, title]) => element("th", { textContent, title }));
+  return element(
     "table",
     { className: "costs" },
-    part("thead", {}, part("tr", {}, ...head)),
-    part("tbody", {}, ...rows, whole),
+    element("thead", {}, element("tr", {}, ...head)),
+    element("tbody", {}, ...rows, whole),
   );
 }
 
 function activityRow({ name, state, detail }) {
-  const row = part(
+  const row = element(
     "tr",
     { className: state },
-    part("td", { textContent: name }),
-    part("td", {}, part("b", { textContent: state })),
-    part("td", { className: "soft", textContent: detail }),
+    element("td", { textContent: name }),
+    element("td", {}, element("b", { textContent: state })),
+    element("td", { className: "soft", textContent: detail }),
   );
   row.dataset.activity = name;
   return row;
@@ -91,8 +91,8 @@ export function effectsTab(model) {
   const content = [
     costTable(model, panel),
     paragraph(`Always compiled in: ${always}. Kernel: ${panel.structure}.`, "soft"),
-    part("h3", { textContent: "being computed now" }),
-    part("table", { className: "doing" }, ...panel.activities.map(activityRow)),
+    element("h3", { textContent: "being computed now" }),
+    element("table", { className: "doing" }, ...panel.activities.map(activityRow)),
     ...(validity ?? []).map((sentence) => paragraph(sentence, "soft")),
   ];
   return { content };

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -11,21 +9,23 @@ from granchain_core import BadInput, Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
 from granchain_core.lower import slots_of
 from granchain_core.scene.effects import ALWAYS
-from granchain_core.warm import CERTIFIED, COST, COST_ACCOUNT, CURVE, LIVE, structure
+from granchain_core.warm import COST, COST_ACCOUNT, structure
 
-from ...page.activities import Activity
-from ...page.hooks import Page
-from ...page.host import Host
-from ...page.progress import COMPUTING, READY, UNDER_WAY
-from ...page.switches import EFFECTS, present, refusal, variants
-from ...page.task import Job, Task
 from ...parts.component import Component
-from ...serve.compiler import COMPILER
+from ...serve.compiler import COMPILER, PICTURE_PIECES
 from ...serve.delays import ACTIVITIES_EVERY, COST_QUIET
 from ...serve.queues import MEASUREMENTS
+from ...session.activities import Activity
+from ...session.debounce import Debounce
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import quoted
+from ...session.progress import COMPUTING, READY, UNDER_WAY
+from ...session.switches import EFFECTS, present, refusal, variants
+from ...session.task import Job, Task
 
 
-class EffectsPanel(Page):
+class EffectsPage(Page):
     """Lists what is being computed and measures the cost of one effect after the other, while it is on the screen."""
 
     def __init__(self, host: Host, view: Component) -> None:
@@ -33,14 +33,14 @@ class EffectsPanel(Page):
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
         self._open = False
-        self._turn = 0
-        self._moved = 0.0
+        self._round = 0
+        self._quiet = Debounce(host, COST_QUIET)
         self._key: tuple[object, ...] = ()
         self._costs: dict[str, dict[str, EffectCost]] = {}
         self._failed: dict[str, str] = {}
         self._compiling = ""
         self.measuring = ""
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "effects-visible": self._visible, "switch": self._switch,
         }
 
@@ -58,9 +58,9 @@ class EffectsPanel(Page):
         possible = sum(variants(name, self._host.session.scene) is not None for name in EFFECTS)
         return f"{len(self._costs)} of {possible} effects measured"
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """A knob has moved: nothing is measured for a while, and what belongs to another kernel is forgotten."""
-        self._moved = time.monotonic()
+        self._quiet.start(self._next)
         scene = self._host.session.scene
         key = (structure(scene), scene.knobs["N"])
         if key != self._key:
@@ -77,14 +77,14 @@ class EffectsPanel(Page):
 
     def _visible(self, message: dict[str, Any]) -> None:
         self._open = bool(message.get("value"))
-        self._turn += 1
+        self._round += 1
         if self._open:
-            self._poll(self._turn)
+            self._poll(self._round)
 
     def _switch(self, message: dict[str, Any]) -> None:
         name, on = message.get("name"), message.get("value")
         if not isinstance(name, str) or name not in EFFECTS or not isinstance(on, bool):
-            raise BadInput(f"There is no effect {str(name)[:40]!r} to switch.")
+            raise BadInput(f"There is no effect {quoted(name)} to switch.")
         try:
             session = self._host.session
             session.switch(name, on)
@@ -92,21 +92,21 @@ class EffectsPanel(Page):
         finally:
             self._show()
 
-    def _poll(self, turn: int) -> None:
+    def _poll(self, number: int) -> None:
         """Repeat while the panel is open: begin what is next, and show everything."""
-        if not self._open or turn != self._turn:
+        if not self._open or number != self._round:
             return
         self._next()
         self._show()
-        self._host.after(ACTIVITIES_EVERY, self._poll, turn)
+        self._host.call_later(ACTIVITIES_EVERY, self._poll, number)
 
     def _next(self) -> None:
         """Begin the next thing to do: compile the kernels of one effect, or measure it."""
         scene = self._host.session.scene
         busy = self.measuring or self._host.awaiting_picture or self._host.curve_computing
-        if busy or time.monotonic() - self._moved < COST_QUIET:
+        if busy or self._quiet.pending or not self._open:
             return
-        if not COMPILER.has(scene, LIVE, CERTIFIED, CURVE):  # the picture's own kernels come first
+        if not COMPILER.has(scene, *PICTURE_PIECES):  # the picture's own kernels come first
             return
         self._compiling = ""
         for name in EFFECTS:
@@ -138,7 +138,7 @@ class EffectsPanel(Page):
         """In the measuring thread: measure both costs, waiting while a knob moves."""
         for method in (CODE, MOTION):
             cost = effect_cost(*pair, method, job.stop, job.give_way)
-            job.later(self._measured, name, method, cost)
+            job.next_tick(self._measured, name, method, cost)
 
     def _measured(self, name: str, method: str, cost: EffectCost) -> None:
         self._costs.setdefault(name, {})[method] = cost
@@ -152,7 +152,7 @@ class EffectsPanel(Page):
 
     def _show(self) -> None:
         session = self._host.session
-        self._view.display(panel={
+        self._view.update_state(panel={
             "effects": [self._effect(name, session.scene) for name in EFFECTS],
             "slots": [{"slot": name, "title": title, "type": kind}
                       for name, title, kind in slots_of(session.scene, session.account)],

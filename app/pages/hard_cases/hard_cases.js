@@ -1,58 +1,56 @@
 // The page "Hard cases", over the pictures: a card for each case, none of which runs before the visitor asks.
 
-import { button, meter, pageHead, part, table } from "../../parts/dom.js";
+import { button, element, meter, pageHead, table } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
 // Text with its powers, "10^5" and "F^{1/6}", raised.
 const raised = (text) =>
   text
     .split(/(\^\{[^}]+\}|\^-?\d+)/)
-    .map((piece) => (piece.startsWith("^") ? part("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
+    .map((piece) => (piece.startsWith("^") ? element("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
 const PATIENCE = 20; // seconds after which the card says why the first run on a computer takes long
-const ABOUT =
-  "Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and must stay below its bar.";
 
 function rowTable(rows) {
-  const body = part("tbody");
-  for (const { what, figure, bar, passed, note } of rows) {
-    const cell = part("td", {}, ...raised(what));
-    if (note) cell.append(part("div", { className: "soft", textContent: note }));
+  const body = element("tbody");
+  for (const { what, value, limit, passed, note } of rows) {
+    const cell = element("td", {}, ...raised(what));
+    if (note) cell.append(element("div", { className: "soft", textContent: note }));
     body.append(
-      part(
+      element(
         "tr",
         { className: passed ? "held" : "missed" },
-        part("td", { className: "verdict", textContent: passed ? "✓ holds" : "✕ FAILED" }),
+        element("td", { className: "verdict", textContent: passed ? "✓ holds" : "✕ FAILED" }),
         cell,
-        part("td", { className: "number", textContent: figure }),
-        part("td", { className: "number", textContent: `≤ ${bar}` }),
+        element("td", { className: "number", textContent: value }),
+        element("td", { className: "number", textContent: `≤ ${limit}` }),
       ),
     );
   }
-  return table(["", "what must hold", "figure", "bar"], body);
+  return table(["", "what must hold", "value", "limit"], body);
 }
 
 class Card {
   constructor(one, run) {
     this.run = button("run", run, { ariaLabel: `run: ${one.name}` });
-    this.status = part("span", { className: "status" });
-    this.warning = part("p", { className: "warn", hidden: true });
-    this.rows = part("div", { className: "rows" });
-    this.drawn = part("div", { className: "drawn", hidden: true });
+    this.status = element("span", { className: "status" });
+    this.warning = element("p", { className: "warn", hidden: true });
+    this.rows = element("div", { className: "rows" });
+    this.drawn = element("div", { className: "drawn", hidden: true });
     this.figure = new Embedded(this.drawn);
-    const line = (label, text) => part("p", {}, part("b", { textContent: label }), " ", ...raised(text));
-    this.root = part(
+    const line = (label, text) => element("p", {}, element("b", { textContent: label }), " ", ...raised(text));
+    this.root = element(
       "article",
       { className: "case" },
-      part("div", { className: "title" }, part("h3", {}, ...raised(one.name)), this.status, this.run),
-      part(
+      element("div", { className: "title" }, element("h3", {}, ...raised(one.name)), this.status, this.run),
+      element(
         "div",
         { className: "lines" },
         line("Hard:", one.hard),
         line("Naive:", one.naive),
-        part("p", { className: "soft" }, "Known from: ", ...raised(one.oracle), "."),
+        element("p", { className: "soft" }, "Known from: ", ...raised(one.oracle), "."),
       ),
       this.warning,
-      part("div", { className: "found" }, this.rows, this.drawn),
+      element("div", { className: "found" }, this.rows, this.drawn),
     );
     this.root.dataset.case = one.name;
     this.began = null;
@@ -99,10 +97,10 @@ class HardCases {
     });
     this.stop = button("stop", () => send({ do: "hard-stop" }), { title: "What was found stays" });
     this.meter = meter("progress of the hard cases");
-    this.said = part("p", { className: "say", ariaLive: "polite" });
+    this.said = element("p", { className: "say", ariaLive: "polite" });
     const head = pageHead("Hard cases", this.meter, this.stop, this.all);
-    const list = part("div", { className: "cases" }, ...[...this.cards.values()].map(({ root }) => root));
-    this.root = part("div", { className: "part sheet" }, head, this.said, list);
+    const list = element("div", { className: "cases" }, ...[...this.cards.values()].map(({ root }) => root));
+    this.root = element("div", { className: "part sheet" }, head, this.said, list);
   }
 
   show() {
@@ -110,7 +108,7 @@ class HardCases {
     this.meter.hidden = this.stop.hidden = !running;
     this.all.hidden = Boolean(running);
     this.meter.value = done ?? 0;
-    this.said.textContent = summary || ABOUT;
+    this.said.textContent = summary || this.model.state.about;
     for (const [name, card] of this.cards) card.show(results[name]);
     window.granchain.hard = { sentence: summary };
     window.granchain.emit("hard");

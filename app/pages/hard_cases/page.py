@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Picture
 
-from ...page.activities import Activity
-from ...page.hooks import Page
-from ...page.host import Host
-from ...page.progress import COMPUTING, OFF, READY, progress
-from ...page.task import Job, Task
 from ...serve.queues import MEASUREMENTS
-from .view import Hard, described, summary
+from ...session.activities import Activity
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import quoted
+from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.task import Job, Task
+from .view import HardCases, described, summary
 from .work import CaseProcess, Ended, case_of
 
 _FAULT = "The process that ran this case ended unexpectedly; run it again, and please report it."
 
+WORDS = StatusWords()
 
-class HardPage(Page):
+
+class HardCasesPage(Page):
     """Runs the requested cases one after the other; results stay until a case is run again."""
 
-    def __init__(self, host: Host, view: Hard) -> None:
+    def __init__(self, host: Host, view: HardCases) -> None:
         self._view = view
         self._process = CaseProcess()
         self._task = Task(host, MEASUREMENTS, self._end, "The case")
@@ -32,7 +34,7 @@ class HardPage(Page):
         self._asked = 0
         self.rows: dict[str, list[Check]] = {}
         self.waiting: list[str] = []
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "hard-run": self._run_one, "hard-all": lambda _: self._run(CASES),
             "hard-stop": lambda _: self.stop(),
         }
@@ -48,7 +50,7 @@ class HardPage(Page):
         """Stop the case under way and forget those that wait; the results found so far stay."""
         self._give_up()
         for name in self.waiting:
-            self._put(name, **progress("hard", "stopped"))
+            self._put(name, **WORDS.of("stopped"))
         self.waiting = []
         self._show()
 
@@ -66,7 +68,7 @@ class HardPage(Page):
     def _run_one(self, message: dict[str, Any]) -> None:
         case = case_of(message.get("case"))
         if case is None:
-            raise BadInput(f"There is no hard case {str(message.get('case'))[:40]!r}; reload the page.")
+            raise BadInput(f"There is no hard case {quoted(message.get('case'))}; reload the page.")
         self._run((case,))
 
     def _run(self, cases: tuple[Case, ...]) -> None:
@@ -77,7 +79,7 @@ class HardPage(Page):
             if case.name not in self.waiting:
                 self.waiting.append(case.name)
                 self._asked += 1
-                self._put(case.name, **progress("hard", "waiting"), failure="")
+                self._put(case.name, **WORDS.of("waiting"), failure="")
         if idle:
             self._begin_next()
         self._show()
@@ -91,25 +93,25 @@ class HardPage(Page):
     # In the measuring thread
 
     def _work(self, case: Case, process: CaseProcess, job: Job) -> None:
-        job.later(self._change, case.name, **progress("hard", "computing"))
+        job.next_tick(self._change, case.name, **WORDS.of("computing"))
         try:
             answers = process.measure(case, job.stop)
-            job.later(self._measured, case.name, next(answers))
-            job.later(self._draw, case.name, next(answers))
+            job.next_tick(self._measured, case.name, next(answers))
+            job.next_tick(self._draw, case.name, next(answers))
         except Ended:
             raise NumbersFailed(_FAULT, "worker-failed") from None
 
-    # In the document's turn
+    # With the document locked
 
     def _measured(self, name: str, rows: list[Check]) -> None:
         self.rows[name] = rows
-        self._change(name, **progress("hard", "drawing"), **described(name, rows))
+        self._change(name, **WORDS.of("drawing"), **described(name, rows))
 
     def _draw(self, name: str, picture: Picture | None) -> None:
         if picture is not None:
             self._view.draw(name, picture)
 
-    def _end(self, status: str, sentence: str) -> None:
+    def _end(self, status: Status, sentence: str) -> None:
         """The first waiting case has ended or failed: begin the next one."""
         name = self.waiting.pop(0)
         if self.waiting:
@@ -117,7 +119,7 @@ class HardPage(Page):
         else:
             self._process.close()
             self._process = CaseProcess()
-        self._change(name, **progress("hard", status), failure=sentence)
+        self._change(name, **WORDS.of(status), failure=sentence)
 
     def _put(self, name: str, **changes: Any) -> None:
         self._shown = {**self._shown, name: {**self._shown.get(name, {}), **changes}}
@@ -127,5 +129,5 @@ class HardPage(Page):
         self._show()
 
     def _show(self) -> None:
-        self._view.display(results=self._shown, summary=summary(self.rows), running=bool(self.waiting),
+        self._view.update_state(results=self._shown, summary=summary(self.rows), running=bool(self.waiting),
                            done=1.0 - len(self.waiting) / max(1, self._asked))

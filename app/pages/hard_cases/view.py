@@ -1,4 +1,4 @@
-"""The page "Hard cases": a card for each, with figures beside their bars and a picture beside a naive solver's."""
+"""The page "Hard cases": a card for each, with values beside their limits and a picture beside a naive solver's."""
 
 from __future__ import annotations
 
@@ -16,29 +16,32 @@ from ...pictures.check import check
 from ...pictures.theme import THEMES, Theme
 from ...scripts import module
 
+ABOUT = ("Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and "
+         "must stay below its limit.")
 
-class Hard(Component):
+
+class HardCases(Component):
     """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
 
     _esm = module("hard_cases.js")
     _stylesheets = [text("controls.css"), text("hard_cases.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"cases": described_cases()}, **params)
+        super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)
         self._theme = THEMES["light"]
         self._drawn: dict[str, Picture] = {}
 
     def draw(self, name: str, picture: Picture) -> None:
         """Show the picture of a case in place of an earlier one."""
         self._drawn[name] = picture
-        self.tell(**picture_message(name, picture, self._theme))
+        self.send(**picture_message(name, picture, self._theme))
 
-    def dress(self, theme: Theme) -> None:
+    def apply_theme(self, theme: Theme) -> None:
         """Draw all pictures anew in another theme."""
         if theme != self._theme:
             self._theme = theme
             for name, picture in self._drawn.items():
-                self.tell(**picture_message(name, picture, theme))
+                self.send(**picture_message(name, picture, theme))
 
 
 def described_cases() -> list[dict[str, Any]]:
@@ -47,44 +50,44 @@ def described_cases() -> list[dict[str, Any]]:
             for case in CASES]
 
 
-def figures(value: float, digits: int) -> str:
+def digits_of(value: float, digits: int) -> str:
     """A number to so many significant digits, "7.1e-13"; exponents without leading zeros."""
     mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
     return f"{mantissa}e{int(exponent)}" if exponent else mantissa
 
 
-def figure_beside(value: float, bar: float) -> str:
-    """A figure to two digits, or to as many as it takes to see on which side of its bar it is."""
+def value_beside(value: float, limit: float) -> str:
+    """A value to two digits, or to as many as it takes to see on which side of its limit it is."""
     if not math.isfinite(value):
         return "no number" if math.isnan(value) else "infinite"
     for digits in range(2, 17):
-        told = figures(value, digits)
-        if (float(told) <= bar) == (value <= bar):
+        told = digits_of(value, digits)
+        if (float(told) <= limit) == (value <= limit):
             return told
     return repr(value)
 
 
 def described(name: str, rows: list[Check]) -> dict[str, Any]:
-    """The rows of one case as the browser shows them, and its time; a figure that could not be computed has its
+    """The rows of one case as the browser shows them, and its time; a value that could not be computed has its
     sentence as note."""
     return {"time": duration(rows[0].seconds), "rows": [
-        {"what": row.case.removeprefix(f"{name}: "), "figure": figure_beside(row.figure, row.bar),
-         "bar": figures(row.bar, 3), "passed": row.passed, "note": row.note} for row in rows]}
+        {"what": row.case.removeprefix(f"{name}: "), "value": value_beside(row.figure, row.bar),
+         "limit": digits_of(row.bar, 3), "passed": row.passed, "note": row.note} for row in rows]}
 
 
 def summary(found: dict[str, list[Check]]) -> str:
-    """One sentence about everything that was run; a failed row is named with its figure."""
+    """One sentence about everything that was run; a failed row is named with its value."""
     every = [row for case in CASES for row in found.get(case.name, ())]
     if not every:
         return ""
     missed = [row for row in every if not row.passed]
     run = f"{len(found)} of {len(CASES)} cases run"
     if not missed:
-        return f"{run}: no figure of {len(every)} is above its bar."
+        return f"{run}: no value of {len(every)} is above its limit."
     first = missed[0]
     more = f", and {len(missed) - 1} more" if len(missed) > 1 else ""
-    return (f"{run}: {len(missed)} of {len(every)} figures FAILED: "
-            f"{first.case}, {figure_beside(first.figure, first.bar)} against {figures(first.bar, 3)}{more}.")
+    return (f"{run}: {len(missed)} of {len(every)} values FAILED: "
+            f"{first.case}, {value_beside(first.figure, first.bar)} against {digits_of(first.bar, 3)}{more}.")
 
 
 def picture_message(name: str, picture: Picture, theme: Theme) -> dict[str, Any]:

@@ -1,10 +1,10 @@
 // What the browser knows of the map: its figure and cells, its state and the attractors.
 
-import { Grown } from "../../parts/embedded.js";
+import { StreamedData } from "../../parts/embedded.js";
 
 export const MAP = {
   head: null,
-  cells: new Grown(),
+  cells: new StreamedData(),
   figure: null, // the one on the screen
   now: { x: [], y: [] },
   done: 0,
@@ -16,7 +16,7 @@ export const MAP = {
   search: "none",
   searched: "",
   shown: "force",
-  // Redraws what is on the screen; set while the tab is open.
+  // Redraws the tab; set when it is first opened, and without effect while it is closed.
   redraw: () => {},
 };
 

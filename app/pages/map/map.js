@@ -1,8 +1,8 @@
 // The map: regime or largest force over f and A0, coarse first, and all attractors of the present setting.
 
-import { button, meter, paragraph, part } from "../../parts/dom.js";
+import { button, element, meter, paragraph } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
-import { attractorList } from "./attractorlist.js";
+import { attractorList } from "./attractor_list.js";
 import { cellAt, finest, MAP, valuesOf } from "./cells.js";
 
 const WORDS = "regime and largest force over drive frequency and amplitude; arrow keys move, Enter chooses";
@@ -11,10 +11,6 @@ const SHOWN = [
   ["regime", "regime"],
 ];
 const ARROWS = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
-
-// Sends the theme of the page, whose colours the figure has; set while the tab is open.
-let sendTheme = () => {};
-window.granchain.on("theme", () => sendTheme());
 
 const within = (value, count) => Math.max(0, Math.min(count - 1, value));
 
@@ -26,20 +22,20 @@ class MapTab {
     this.meter = meter("progress of the map");
     this.stop = button("stop", () => this.send("map-stop"));
     this.again = button("continue", () => this.send("map-compute"));
-    this.status = part("span", { className: "soft" });
+    this.status = element("span", { className: "soft" });
     this.said = paragraph("", "soft told");
-    this.host = part("div", { className: "maphost", tabIndex: 0 });
+    this.host = element("div", { className: "maphost", tabIndex: 0 });
     this.host.addEventListener("keydown", (event) => this.key(event));
     this.host.addEventListener("blur", () => this.moveCursor(null));
-    this.found = part("div");
+    this.found = element("div");
     this.figure = new Embedded(this.host, (one) => this.fill(one));
-    const segments = part("span", { className: "segments" }, ...this.choices);
+    const segments = element("span", { className: "segments" }, ...this.choices);
     const find = button("all attractors at this setting", () => this.send("map-attractors"));
     this.content = [
-      part("div", { className: "row top" }, segments, this.meter, this.stop, this.again, this.status),
-      part("div", { className: "mapbox" }, this.host),
+      element("div", { className: "row top" }, segments, this.meter, this.stop, this.again, this.status),
+      element("div", { className: "mapbox" }, this.host),
       this.said,
-      part("div", { className: "row" }, find),
+      element("div", { className: "row" }, find),
       this.found,
     ];
   }
@@ -116,8 +112,6 @@ export function mapTab(model) {
   MAP.redraw = (what) => {
     if (tab.host.isConnected) tab.redraw(what);
   };
-  sendTheme = () => tab.send("map-theme", { value: window.granchain.theme() });
-  sendTheme();
   requestAnimationFrame(() => tab.redraw());
-  return { content: tab.content };
+  return { content: tab.content, updatesItself: true };
 }

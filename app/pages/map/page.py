@@ -13,19 +13,21 @@ from panel.io import unlocked
 from granchain_core import Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
 from granchain_core.diagram.cells import cell_of, empty_cells
-from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
+from granchain_core.warm import ORBIT
 
-from ...page.hooks import Page
-from ...page.host import Host
-from ...page.message_checks import listed
-from ...page.progress import progress
-from ...page.session import slider_range
-from ...page.task import Job, Task
 from ...parts.component import Component
 from ...pictures.diagram import now_row
-from ...pictures.theme import THEMES
+from ...pictures.theme import THEMES, Theme
+from ...serve.compiler import PICTURE_PIECES
 from ...serve.delays import CELLS_EVERY, MAP_QUIET
 from ...serve.queues import LONG, Stop
+from ...session.debounce import Debounce
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import listed
+from ...session.progress import Status, StatusWords
+from ...session.session import slider_range
+from ...session.task import Job, Task
 from .view import cells_message, described, head_message
 
 #: Cells along f and A0: few enough to be computed in about ten seconds on one core.
@@ -35,6 +37,9 @@ _RANDOM_STATES = 64
 #: The same for a scene that cannot be computed in SIMD lanes.
 _FEW_RANDOM_STATES = 12
 
+WORDS = StatusWords(kept="the cells computed so far", instead={"waiting": "waiting for the curve …"})
+SEARCH_WORDS = StatusWords(instead={"searching": "searching from rest, from both sweeps and from random states …"})
+
 
 def page_grid(scene: Scene) -> Grid:
     """The diagram of a scene over the ranges of its sliders; it is the same wherever f and A0 stand."""
@@ -43,7 +48,7 @@ def page_grid(scene: Scene) -> Grid:
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
 
 
-class MapTab(Page):
+class MapPage(Page):
     """Computes its diagram while the tab is on the screen."""
 
     def __init__(self, host: Host, view: Component) -> None:
@@ -55,14 +60,14 @@ class MapTab(Page):
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
         self._shown: list[dict[str, Any]] = []
-        self._due = 0
+        self._quiet = Debounce(host, MAP_QUIET)
         self._theme = THEMES["light"]
         self._scale: dict[str, Any] = {}
         self._found: list[Attractor] = []
         self._found_at = ""
-        self.status = "none"
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
-            "map-visible": self._set_visible, "map-theme": self._dress, "map-stop": lambda _: self._stop(),
+        self.status: Status = "none"
+        self.actions: Actions = {
+            "map-visible": self._set_visible, "map-stop": lambda _: self._stop(),
             "map-compute": lambda _: self._begin(), "map-choose": self._choose,
             "map-attractors": lambda _: self._find(), "map-load": self._load,
         }
@@ -73,18 +78,17 @@ class MapTab(Page):
         self._diagram.cancel()
         self._search.cancel()
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """A knob has moved: any but f and A0 changes the diagram, and any at all changes the attractors."""
         if not self._visible:
             return
-        self._tell_now()
+        self._send_now()
         if self._found and self._found_at != self._host.session.scene.digest:
             self._forget_attractors()
         if self._stale():
             self._give_up()
-            self._tell(type="map-stale")
-            self._due += 1
-            self._host.after(MAP_QUIET, self._begin_if_last, self._due)
+            self._send(type="map-stale")
+            self._quiet.start(self._begin_if_visible)
 
     def _stale(self) -> bool:
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
@@ -100,19 +104,17 @@ class MapTab(Page):
                 self._begin()
         else:
             self._begin()
-        self._tell_now()
-        self._show_attractors("" if self._found else "none")
+        self._send_now()
+        self._show_attractors("done" if self._found else "none")
 
-    def _dress(self, message: dict[str, Any]) -> None:
-        """The theme of the page, which the figure follows."""
-        theme = THEMES.get(str(message.get("value")), self._theme)
-        if theme != self._theme:
-            self._theme = theme
-            if self._visible and self._grid is not None:
-                self._send_all()
+    def theme_changed(self, theme: Theme) -> None:
+        """Another theme: the figure has its colours from here."""
+        changed, self._theme = theme != self._theme, theme
+        if changed and self._visible and self._grid is not None:
+            self._send_all()
 
-    def _begin_if_last(self, due: int) -> None:
-        if due == self._due and self._visible:
+    def _begin_if_visible(self) -> None:
+        if self._visible:
             self._begin()
 
     def _begin(self) -> None:
@@ -141,10 +143,10 @@ class MapTab(Page):
 
     def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
         """In a worker thread: compute the missing cells, waiting while a knob moves."""
-        job.compile(grid.scene, LIVE, CERTIFIED, CURVE)
+        job.compile(grid.scene, *PICTURE_PIECES)
         job.say("computing")
         for rows in _batches(grid, missing, job.stop, partial(job.give_way, self._in_front)):
-            job.later(self._show, rows)
+            job.next_tick(self._show, rows)
 
     def _in_front(self) -> bool:
         """Whether the picture or the curve, which come first, is being computed."""
@@ -152,23 +154,23 @@ class MapTab(Page):
 
     # To the browser
 
-    def _tell(self, **message: Any) -> None:
-        self._view.tell(**message)
+    def _send(self, **message: Any) -> None:
+        self._view.send(**message)
 
-    def _tell_now(self) -> None:
+    def _send_now(self) -> None:
         scene = self._host.session.scene
         if self._grid is not None:
-            self._tell(type="map-now", now=now_row(self._grid, scene.f, scene.A0))
+            self._send(type="map-now", now=now_row(self._grid, scene.f, scene.A0))
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._tell(type="map-status", **progress("map", status), sentence=sentence)
+        self._send(type="map-status", **WORDS.of(status), sentence=sentence)
 
     def _send_all(self) -> None:
         assert self._grid is not None
         self._scale = {}
-        self._tell(**head_message(self._grid, self._theme))
-        self._tell_now()
+        self._send(**head_message(self._grid, self._theme))
+        self._send_now()
         self._show(self._cells[self._cells["regime"] >= 0])
 
     def _show(self, rows: np.ndarray) -> None:
@@ -180,7 +182,7 @@ class MapTab(Page):
         else:
             self._scale = message["models"]
         with unlocked():
-            self._tell(**message)
+            self._send(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
         """A place of the diagram was clicked: set f and A0 to its values."""
@@ -196,21 +198,21 @@ class MapTab(Page):
         self._search.start(partial(self._search_work, self._host.session.scene))
 
     def _search_work(self, scene: Scene, job: Job) -> None:
-        job.compile(scene, LIVE, CERTIFIED, CURVE, *(() if scene.cuts_tension else (ORBIT,)))
+        job.compile(scene, *PICTURE_PIECES, *(() if scene.cuts_tension else (ORBIT,)))
         job.say("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
         found = attractors(scene, starts, stop=job.stop)
-        job.later(self._arrived, scene, found, [described(one) for one in found])
+        job.next_tick(self._arrived, scene, found, [described(one) for one in found])
 
-    def _say_search(self, status: str, sentence: str) -> None:
-        self._show_attractors("" if status == "done" else status, sentence)
+    def _say_search(self, status: Status, sentence: str) -> None:
+        self._show_attractors(status, sentence)
 
     def _arrived(self, scene: Scene, found: list[Attractor], shown: list[dict[str, Any]]) -> None:
         self._found, self._found_at, self._shown = found, scene.digest, shown
 
-    def _show_attractors(self, status: str, sentence: str = "") -> None:
+    def _show_attractors(self, status: Status, sentence: str = "") -> None:
         shown = self._shown if self._found else []
-        self._tell(type="map-attractors", **progress("attractors", status), sentence=sentence, attractors=shown)
+        self._send(type="map-attractors", **SEARCH_WORDS.of(status), sentence=sentence, attractors=shown)
 
     def _forget_attractors(self) -> None:
         self._search.cancel()

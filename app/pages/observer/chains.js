@@ -1,7 +1,7 @@
 // The drawings of the Observer page: the chain, its observer, and between them the force that goes from one to the other.
 
-import { ChainDrawing } from "../../parts/chaindrawing.js";
-import { part } from "../../parts/dom.js";
+import { ChainDrawing } from "../../parts/chain_drawing.js";
+import { element } from "../../parts/dom.js";
 
 // A chain that fills its own canvas, without the words of the main picture.
 class WholeChain extends ChainDrawing {
@@ -86,23 +86,25 @@ function drawForce(canvas, { message, chain }, row) {
 }
 
 const label = (text, detail) =>
-  part("div", { className: "label" }, part("b", { textContent: text }), part("span", { textContent: detail }));
+  element("div", { className: "label" }, element("b", { textContent: text }), element("span", { textContent: detail }));
 
 // The three drawings, one above the other.
 export class Chains {
   constructor(palette) {
-    const [above, between, below] = ["chain", "force", "observer"].map((name) => part("canvas", { className: name }));
+    const [above, between, below] = ["chain", "force", "observer"].map((name) =>
+      element("canvas", { className: name }),
+    );
     this.force = between;
     this.chain = new WholeChain(above, palette);
     this.observer = new PushedChain(below, palette);
-    this.push = part("span");
-    const forceLabel = part("div", { className: "label force" }, part("b", { textContent: "F_in" }), this.push);
-    this.root = part(
+    this.push = element("span");
+    const forceLabel = element("div", { className: "label force" }, element("b", { textContent: "F_in" }), this.push);
+    this.root = element(
       "div",
       { className: "chains" },
-      part("div", {}, label("chain x", "driven, as in the main picture"), above),
-      part("div", { className: "between" }, forceLabel, between),
-      part("div", {}, label("observer y", "feels F_in and nothing else of x"), below),
+      element("div", {}, label("chain x", "driven, as in the main picture"), above),
+      element("div", { className: "between" }, forceLabel, between),
+      element("div", {}, label("observer y", "feels F_in and nothing else of x"), below),
     );
   }
 

@@ -1,9 +1,9 @@
 // The Observer page: the chain above, its observer below, between them the force that couples them, and their distance.
 
-import { button, pageHead, part } from "../../parts/dom.js";
+import { button, element, pageHead } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 import { Chains } from "./chains.js";
-import { fillDistance, showDistance } from "./observertab.js";
+import { fillDistance, showDistance } from "./observer_tab.js";
 import { Replay } from "./replay.js";
 
 const KEPT_A_PERIOD = 8; // points of the distance
@@ -11,17 +11,17 @@ const KEPT_PERIODS = 80;
 
 // The foundation's stiffness: a slider, and a button for each of the paper's two values.
 class KappaControl {
-  constructor(set) {
-    this.slider = part("input", { type: "range", min: 0, max: 0.002, step: 0.00001, ariaLabel: "foundation κ" });
+  constructor(set, paper) {
+    this.slider = element("input", { type: "range", min: 0, max: 0.002, step: 0.00001, ariaLabel: "foundation κ" });
     this.slider.addEventListener("change", () => set(Number(this.slider.value)));
-    this.shown = part("output");
-    this.root = part(
+    this.shown = element("output");
+    this.root = element(
       "span",
       { className: "kappa", title: "Stiffness of the flexures under every bead of both chains" },
       "κ",
       button("0", () => set(0), { title: "No foundation" }),
       this.slider,
-      button("0.001", () => set(0.001), { title: "The paper's foundation" }),
+      button(String(paper), () => set(paper), { title: "The paper's foundation" }),
       this.shown,
     );
   }
@@ -52,30 +52,30 @@ class ObserverPage {
     const control = (words, name, title) => button(words, () => send(name), { title });
     this.model = model;
     this.history = [];
-    this.kappa = new KappaControl((value) => send("set", { name: "kappa", value }));
-    this.said = part("b");
-    this.rates = part("span", { className: "soft" });
-    this.status = part("span", { className: "soft" });
+    this.kappa = new KappaControl((value) => send("set", { name: "kappa", value }), model.state.paper_kappa);
+    this.said = element("b");
+    this.rates = element("span", { className: "soft" });
+    this.status = element("span", { className: "soft" });
     this.chains = new Chains(model.state.palette);
     this.replay = new Replay(
       () => send("observer-more"),
       (step) => this.begin(step),
     );
-    const picture = part("div", { className: "fill" });
+    const picture = element("div", { className: "fill" });
     this.figure = new Embedded(picture, (one) => fillDistance(one, window.granchain.observer));
-    this.root = part(
+    this.root = element(
       "div",
       { className: "part sheet" },
       pageHead(
         "Observer",
         this.kappa.root,
-        control("nudge", "observer-nudge", "Move the observer's beads by a thousandth of A₀"),
+        control("nudge", "observer-nudge", `Move the observer's beads by ${model.state.nudge} A₀`),
         control("from rest", "observer-rest", "Start the observer at rest, with no knowledge of the chain"),
         control("start again", "observer-again", "Start both on the orbit, with the observer nudged"),
       ),
-      part("div", { className: "say" }, this.said, this.rates, this.status),
+      element("div", { className: "say" }, this.said, this.rates, this.status),
       this.chains.root,
-      part("div", { className: "trace" }, picture),
+      element("div", { className: "trace" }, picture),
     );
   }
 
@@ -95,7 +95,7 @@ class ObserverPage {
     const prediction = this.replay.now?.message.prediction ?? [];
     page.observer = { history: this.history, prediction, sentence: state.sentence, small: figures.small };
     page.emit("observer");
-    if (page.covered === "observer") showDistance(this.figure, figures.page, page.observer);
+    if (page.overlay === "observer") showDistance(this.figure, figures.page, page.observer);
   }
 
   // A period begins to play; one with a lower number begins another history.
@@ -109,10 +109,10 @@ class ObserverPage {
 
   // In every frame of the browser, while the page or its tab is on the screen.
   tick(time) {
-    const { covered, observerTab } = window.granchain;
+    const { overlay, observerTab } = window.granchain;
     const seconds = this.replay.seconds(time);
-    if (covered === "observer" || observerTab?.isConnected) this.replay.advance(seconds);
-    if (covered === "observer" && this.replay.now) this.chains.draw(this.replay.now, this.replay.row);
+    if (overlay === "observer" || observerTab?.isConnected) this.replay.advance(seconds);
+    if (overlay === "observer" && this.replay.now) this.chains.draw(this.replay.now, this.replay.row);
     requestAnimationFrame((later) => this.tick(later));
   }
 
@@ -135,7 +135,7 @@ export function render({ model }) {
   window.granchain.on("play", (value) => {
     replay.playing = value;
   });
-  window.granchain.on("cover", (name) => {
+  window.granchain.on("overlay", (name) => {
     if (name === "observer") requestAnimationFrame(() => page.open());
   });
   page.show();

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 from granchain_core import Scene, Settled
 from granchain_core.warm import CERTIFIED, OBSERVER
 
-from ...page.hooks import Page
-from ...page.host import Host
-from ...page.progress import progress
-from ...page.task import Job, Task
 from ...serve.queues import PICTURES
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.progress import Status, StatusWords
+from ...session.task import Job, Task
 from .view import Observer
 from .work import ObserverRun, Step
+
+WORDS = StatusWords("the observer's kernels", 10)
 
 
 @dataclass(frozen=True)
@@ -38,18 +38,18 @@ class ObserverPage(Page):
         self._run: ObserverRun | None = None
         self._asked = False
         self._wishes: list[str] = []
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "observer-more": lambda _: self._more(),
             "observer-nudge": lambda _: self._wish("nudge"), "observer-rest": lambda _: self._wish("rest"),
             "observer-again": lambda _: self._wish("again"),
         }
 
-    def changed(self) -> None:
+    def scene_changed(self) -> None:
         """A knob moved: the page's own control follows, and the next period belongs to the new chain."""
         scene = self._host.session.scene
-        self._view.display(kappa=scene.kappa)
+        self._view.update_state(kappa=scene.kappa)
         if self._run is not None and self._run.scene.digest != scene.digest:
-            self._view.display(sentence="", predicted=None, measured=None)
+            self._view.update_state(sentence="", predicted=None, measured=None)
 
     def close(self) -> None:
         """The visitor left."""
@@ -67,9 +67,9 @@ class ObserverPage(Page):
         session = self._host.session
         self._task.start(partial(self._work, session.scene, session.picture))
 
-    def _said(self, status: str, _: str) -> None:
+    def _said(self, status: Status, _: str) -> None:
         if status == "compiling":
-            self._view.display(**progress("observer", status))
+            self._view.update_state(**WORDS.of(status))
         elif self._asked:
             self._more()
 
@@ -91,10 +91,10 @@ class ObserverPage(Page):
                 (run.nudge if wish == "nudge" else run.from_rest)()
         self._run = run
         if not run.in_step or began:
-            job.later(self._show, _Moved(run, run.step(), began))
+            job.next_tick(self._show, _Moved(run, run.step(), began))
 
     def _show(self, moved: _Moved) -> None:
         run = moved.run
-        self._view.display(**progress("observer", "done"), sentence=run.sentence, predicted=run.predicted,
+        self._view.update_state(**WORDS.of("done"), sentence=run.sentence, predicted=run.predicted,
                            measured=run.measured)
         self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

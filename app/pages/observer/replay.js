@@ -1,26 +1,18 @@
 // The periods that the server computes for the Observer page: asked for in time, kept in a queue, replayed one by one.
 
+import { unpack } from "../../parts/chain_drawing.js";
+
 const PERIODS_A_SECOND = 4;
 const AHEAD = 2; // periods that wait in the queue
 const ASK_AGAIN = 2000; // ms until it asks again: an observer in step sends nothing, until it is nudged elsewhere
 
 // One message's array as the frames of both chains and their distance.
 function parted(message) {
-  const { rows, beads, values } = message;
-  let at = 0;
-  const take = (width) => {
-    const taken = new Float32Array(values.buffer, values.byteOffset + 4 * at, rows * width);
-    at += rows * width;
-    return taken;
-  };
-  const chain = () => ({
-    ...message,
-    displacement: take(beads),
-    force: take(beads + 1),
-    energy: take(beads),
-    drive: take(1),
-  });
-  return { chain: chain(), observer: chain(), distance: take(1), message };
+  const { rows, values } = message;
+  const first = unpack(message);
+  const second = unpack(message, first.end);
+  const distance = new Float32Array(values.buffer, values.byteOffset + 4 * second.end, rows);
+  return { chain: { ...message, ...first.series }, observer: { ...message, ...second.series }, distance, message };
 }
 
 export class Replay {

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from granchain_core import Scene
+from granchain_core import Scene, scene
 
 from ...format import prefixed
-from ...parts.chain import PALETTE
+from ...parts.chain import PALETTE, chain_series, drawn_chain
 from ...parts.component import text
 from ...parts.figure_part import FigurePart, page_and_small
 from ...pictures.observer import observer, prediction
 from ...pictures.theme import Theme
 from ...scripts import module
-from .work import Step
+from .work import NUDGE, Step
 
 _TRANSIENT = 2
 """Drive periods after a start during which no multiplier describes the distance."""
@@ -48,23 +48,24 @@ class Observer(FigurePart):
         if self._anchor is None and step.number >= since + _TRANSIENT:
             self._anchor = float(step.number), float(step.distance[0])
         line = prediction(*self._anchor, factor) if self._anchor else []
-        self.tell(**step_message(step, scene, began), prediction=line)
+        self.send(**step_message(step, scene, began), prediction=line)
 
 
 def first_state() -> dict[str, Any]:
     """The state of the page before anything is computed."""
-    return {"palette": PALETTE, "kappa": 0.0, "progress": "", "sentence": ""}
+    return {"palette": PALETTE, "kappa": 0.0, "nudge": NUDGE, "paper_kappa": scene("fig11-founded").kappa,
+            "progress": "", "sentence": ""}
 
 
 def step_message(step: Step, scene: Scene, began: bool) -> dict[str, Any]:
     """One drive period for the browser, all series in one array: rows of the chain's, then of the observer's."""
     push = float(np.abs(step.chain_force[:, 0]).max())
     factor, letter = prefixed(push)
-    series = (step.chain, step.chain_force, step.chain_energy, step.drive, step.observer, step.observer_force,
-              step.observer_energy, step.drive, step.distance)
+    series = [*chain_series(step.chain, step.chain_force, step.chain_energy, step.drive),
+              *chain_series(step.observer, step.observer_force, step.observer_energy, step.drive), step.distance]
     return {
-        "type": "step", "number": step.number, "began": began, "rows": len(step.distance), "beads": scene.N,
-        "samples": step.samples, "radii": [bead.radius for bead in scene.beads], "foundation": scene.k > 0.0,
+        "type": "step", "number": step.number, "began": began, "rows": len(step.distance),
+        "samples": step.samples, **drawn_chain(scene),
         "energy_high": max(float(step.chain_energy.max()), 1e-300), "push": f"{push / factor:.3g} {letter}N",
-        "values": np.concatenate([one.ravel() for one in series], dtype=np.float32),
+        "values": np.concatenate(series, dtype=np.float32),
     }

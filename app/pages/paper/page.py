@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from granchain_core import scene
 from granchain_core.paper import PaperFigure, Result, compute, figure_of
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, OBSERVER, ORBIT
 
-from ...page.hooks import Page
-from ...page.host import Host
-from ...page.progress import progress
-from ...page.task import Job, Task
 from ...serve.queues import LONG
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.progress import Status, StatusWords
+from ...session.task import Job, Task
 from .view import Paper
 
 _MOTION = (LIVE, CERTIFIED)
@@ -28,6 +27,8 @@ _KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
 #: Parts of a computation between two reports of how far it is.
 _STEPS = 50
 
+WORDS = StatusWords("the figure's kernels", 20)
+
 
 class PaperPage(Page):
     """The figures that were computed stay until the visitor leaves the dashboard."""
@@ -36,7 +37,7 @@ class PaperPage(Page):
         self._view = view
         self._task = Task(host, LONG, self._say, "The figure")
         self._found: dict[str, Result] = {}
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.actions: Actions = {
             "paper-show": self._show, "paper-leave": lambda _: self.leave()}
 
     def leave(self) -> None:
@@ -71,15 +72,15 @@ class PaperPage(Page):
                 job.give_way()
             if int(_STEPS * done) > told[0]:
                 told[0] = int(_STEPS * done)
-                job.later(self._view.display, done=done)
+                job.next_tick(self._view.update_state, done=done)
 
-        job.later(self._arrived, figure, compute(figure.number, stop=job.stop, progress=report))
+        job.next_tick(self._arrived, figure, compute(figure.number, stop=job.stop, progress=report))
 
     def _arrived(self, figure: PaperFigure, result: Result) -> None:
         self._found[figure.number] = result
         self._view.draw(figure, result)
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         if status == "waiting":
-            self._view.display(done=0.0)
-        self._view.display(**progress("paper", status), failure=sentence)
+            self._view.update_state(done=0.0)
+        self._view.update_state(**WORDS.of(status), failure=sentence)

@@ -1,6 +1,6 @@
 // The page "The paper", over the pictures: figures are computed when they are chosen, with caption and rows of the table.
 
-import { button, meter, pageHead, paragraph, part, table } from "../../parts/dom.js";
+import { button, element, meter, pageHead, paragraph, table } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
 const ABOUT =
@@ -8,14 +8,14 @@ const ABOUT =
 const TITLES = ["the paper states", "we get", "do they differ?", "command"];
 
 // Text with what is between two stars in bold.
-const bold = (text) => text.split("**").map((piece, i) => (i % 2 ? part("b", { textContent: piece }) : piece));
+const bold = (text) => text.split("**").map((piece, i) => (i % 2 ? element("b", { textContent: piece }) : piece));
 
 function statedTable(rows) {
   const cells = ({ paper, ours, differs, command }) =>
-    [[paper], bold(ours), [differs], [part("code", { textContent: command })]].map((content) =>
-      part("td", {}, ...content),
+    [[paper], bold(ours), [differs], [element("code", { textContent: command })]].map((content) =>
+      element("td", {}, ...content),
     );
-  return table(TITLES, part("tbody", {}, ...rows.map((row) => part("tr", {}, ...cells(row)))));
+  return table(TITLES, element("tbody", {}, ...rows.map((row) => element("tr", {}, ...cells(row)))));
 }
 
 class PaperPage {
@@ -32,15 +32,15 @@ class PaperPage {
     this.numbers = figures.map(({ number }) => number);
     this.stop = button("stop", () => send({ do: "paper-leave" }));
     this.meter = meter("progress of the figure");
-    this.status = part("span", { className: "status" });
-    const choice = part("div", { className: "choice" }, "figure ", ...this.buttons);
+    this.status = element("span", { className: "status" });
+    const choice = element("div", { className: "choice" }, "figure ", ...this.buttons);
     const head = pageHead("The paper", this.meter, this.stop, this.status);
-    this.warning = part("p", { className: "warn", hidden: true });
-    this.picture = part("div", { className: "picture", hidden: true });
-    this.caption = part("p", { className: "caption", ariaLive: "polite" });
-    this.rows = part("div", { className: "rows" });
-    const found = part("div", { className: "found" }, this.picture, this.caption, this.rows);
-    this.root = part("div", { className: "part sheet" }, head, choice, this.warning, found);
+    this.warning = element("p", { className: "warn", hidden: true });
+    this.picture = element("div", { className: "picture", hidden: true });
+    this.caption = element("p", { className: "caption", ariaLive: "polite" });
+    this.rows = element("div", { className: "rows" });
+    const found = element("div", { className: "found" }, this.picture, this.caption, this.rows);
+    this.root = element("div", { className: "part sheet" }, head, choice, this.warning, found);
     this.figure = new Embedded(this.picture);
     this.leave = () => model.state.running && send({ do: "paper-leave" });
   }
@@ -56,7 +56,7 @@ class PaperPage {
     this.warning.textContent = failure ?? "";
     this.warning.hidden = !failure;
     this.caption.replaceChildren(
-      ...(chosen ? [part("b", { textContent: `Figure ${chosen}: ${title}. ` }), caption] : [ABOUT]),
+      ...(chosen ? [element("b", { textContent: `Figure ${chosen}: ${title}. ` }), caption] : [ABOUT]),
     );
     if (rows !== this.stated) this.rows.replaceChildren(...(rows.length ? [statedTable(rows)] : [paragraph()]));
     this.stated = rows;
@@ -66,7 +66,7 @@ class PaperPage {
 
   // A figure is drawn where it is seen: hidden, it would have no size.
   draw() {
-    if (window.granchain.covered !== "paper" || !this.item) return;
+    if (window.granchain.overlay !== "paper" || !this.item) return;
     this.picture.hidden = false;
     this.picture.style.aspectRatio = this.item.shape;
     this.figure.load(this.item.figure, this.item.words);
@@ -88,7 +88,7 @@ export function render({ model }) {
   const page = new PaperPage(model);
   model.on("state", () => page.show());
   model.on("msg:custom", (message) => page.receive(message));
-  window.granchain.on("cover", (name) => {
+  window.granchain.on("overlay", (name) => {
     if (name === "paper") requestAnimationFrame(() => page.draw());
     else page.leave();
   });

@@ -30,17 +30,17 @@ class Paper(Component):
     def choose(self, figure: PaperFigure) -> None:
         """Show what is said of a figure, and nothing drawn."""
         self._drawn = None
-        self.tell(type="clear")
-        self.display(chosen=figure.number, title=figure.title, caption=figure.caption, rows=rows_of(figure.number))
+        self.send(type="clear")
+        self.update_state(chosen=figure.number, title=figure.title, caption=figure.caption, rows=rows_of(figure.number))
 
     def draw(self, figure: PaperFigure, result: Result) -> None:
         """Show the figure itself."""
         self._drawn = figure, result
         width, height = size_of(result)
-        self.tell(type="figure", figure=json_item(paper_figure(result, self._theme)), shape=width / height,
+        self.send(type="figure", figure=json_item(paper_figure(result, self._theme)), shape=width / height,
                   words=f"Figure {figure.number}: {figure.title}")
 
-    def dress(self, theme: Theme) -> None:
+    def apply_theme(self, theme: Theme) -> None:
         """Draw the figure anew in another theme."""
         if theme != self._theme:
             self._theme = theme

@@ -1,7 +1,7 @@
 // One Floquet mode as a motion of the chain: where a small disturbance of the orbit moves every bead.
 
-import { ChainDrawing } from "../../parts/chaindrawing.js";
-import { part } from "../../parts/dom.js";
+import { ChainDrawing } from "../../parts/chain_drawing.js";
+import { element } from "../../parts/dom.js";
 import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
 
 class DisturbedChain extends ChainDrawing {
@@ -48,18 +48,18 @@ class DisturbedChain extends ChainDrawing {
 export class ModeView {
   constructor() {
     this.mode = null;
-    this.canvas = part("canvas");
+    this.canvas = element("canvas");
     this.drawing = new DisturbedChain(this.canvas);
-    this.host = part("div", { className: "picture" });
+    this.host = element("div", { className: "picture" });
     this.hosts = [this.canvas, this.host]; // what is drawn anew when its size changes
-    this.title = part("h3");
-    this.told = part("span", { className: "soft" });
-    this.root = part(
+    this.title = element("h3");
+    this.told = element("span", { className: "soft" });
+    this.root = element(
       "section",
       { className: "motion" },
-      part("div", { className: "row" }, this.title),
-      part("div", { className: "beads" }, this.canvas),
-      part("div", { className: "draw" }, this.host),
+      element("div", { className: "row" }, this.title),
+      element("div", { className: "beads" }, this.canvas),
+      element("div", { className: "draw" }, this.host),
       this.told,
     );
   }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -14,15 +13,16 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
-from ...page.activities import Activity
-from ...page.hooks import Page
-from ...page.host import Host
-from ...page.message_checks import whole
-from ...page.progress import COMPUTING, OFF, READY, progress
-from ...page.task import Job, Task
 from ...pictures.multipliers import plane_state
 from ...serve.delays import ANALYSIS_QUIET
 from ...serve.queues import ANALYSES
+from ...session.activities import Activity
+from ...session.debounce import Debounce
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import whole
+from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
+from ...session.task import Job, Task
 from .trail import Trail
 from .view import (
     Stability,
@@ -37,6 +37,8 @@ from .work import PHASES, Analysis, Target, analyse, search, section_of, transie
 
 _LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
+WORDS = StatusWords("the tangent flow", 20)
+
 
 class StabilityPage(Page):
     """While it is on the screen, it analyses every picture that stays; a moving knob cancels the analysis."""
@@ -46,7 +48,7 @@ class StabilityPage(Page):
         self._view = view
         self._orbits = Task(host, ANALYSES, self._ended, "The analysis")
         self._sections = Task(host, ANALYSES, self._ended, "The section")
-        self._due = 0
+        self._quiet = Debounce(host, ANALYSIS_QUIET)
         self._open = False
         self._observer = False
         self._rank, self._bead, self._phase = 0, 1, 0
@@ -57,8 +59,8 @@ class StabilityPage(Page):
         self._analysis: Analysis | None = None
         self._section: Section | None = None
         self._trail = Trail()
-        self.status = "none"
-        self.actions: dict[str, Callable[[dict[str, Any]], None]] = {
+        self.status: Status = "none"
+        self.actions: Actions = {
             "stability-visible": self._visible, "stability-observer": self._choose_observer,
             "stability-mode": self._choose_mode, "stability-section": self._choose_section,
             "stability-search": self._search, "stability-back": self._back,
@@ -77,25 +79,24 @@ class StabilityPage(Page):
 
     # The picture in front
 
-    def moved(self) -> None:
+    def picture_requested(self) -> None:
         """Another picture is being computed: cancel the analysis, and grey what is shown."""
         self._give_up()
         self._picture = None
         if self._open and self._host.session.mode == "live":
             self._clear(_LIVE)
         elif self._open:
-            self._view.display(stale=True)
+            self._view.update_state(stale=True)
 
-    def arrived(self, picture: Settled) -> None:
+    def picture_ready(self, picture: Settled) -> None:
         """A picture has arrived: if it is the final one for these knobs, analyse it if it stays."""
         if not picture.final:
             return
         again = self._picture is not None and picture.state is self._picture.state  # with its energy account
         self._picture = picture
         if not again:
-            self._start, self._rank = self._host.session.began, 0
-            self._due += 1
-            self._host.after(ANALYSIS_QUIET, self._begin, self._due)
+            self._start, self._rank = self._host.session.started_from, 0
+            self._quiet.start(self._begin)
 
     def close(self) -> None:
         """The visitor left."""
@@ -105,7 +106,7 @@ class StabilityPage(Page):
     def _give_up(self) -> None:
         self._orbits.cancel()
         self._sections.cancel()
-        self._due += 1
+        self._quiet.cancel()
         self._analysed = None
         self.status = "none"
 
@@ -116,16 +117,16 @@ class StabilityPage(Page):
         elif self._host.session.mode == "live":
             self._clear(_LIVE)
         else:
-            self._begin(self._due)
+            self._begin()
 
-    def _begin(self, due: int) -> None:
-        """Analyse the picture, unless that was done, a newer one is awaited, or nobody looks."""
+    def _begin(self) -> None:
+        """Analyse the picture, unless there is none, that was done, or nobody looks."""
         picture = self._picture
-        if due != self._due or not self._open or picture is None or self._analysed is picture.state:
+        if not self._open or picture is None or self._analysed is picture.state:
             return
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
-        self._view.display(stale=True, beads=picture.run.scene.N)
+        self._view.update_state(stale=True, beads=picture.run.scene.N)
         if picture.regime.name == "periodic" and picture.regime.period is not None:
             self._follow(Target(picture.run.scene, picture.regime.period, picture.state, followed=True))
         else:
@@ -142,15 +143,15 @@ class StabilityPage(Page):
 
     def _analyse(self, target: Target, observer: bool, rank: int, job: Job) -> None:
         self._compile(target.scene, job)
-        job.later(self._arrived, analyse(target, observer, rank, job.stop))
+        job.next_tick(self._arrived, analyse(target, observer, rank, job.stop))
 
     def _make_section(self, picture: Settled, start: State | None, job: Job) -> None:
         for section in section_of(picture, start, job.stop):
-            job.later(self._arrived, section)
+            job.next_tick(self._arrived, section)
 
     def _find(self, picture: Settled, section: Section | None, period: int, job: Job) -> None:
         self._compile(picture.run.scene, job)
-        job.later(self._arrived, search(picture, section, period, job.stop))
+        job.next_tick(self._arrived, search(picture, section, period, job.stop))
 
     @staticmethod
     def _compile(scene: Scene, job: Job) -> None:
@@ -173,7 +174,7 @@ class StabilityPage(Page):
                 self._show_section()
             self._show_evidence()
 
-    def _ended(self, status: str, sentence: str) -> None:
+    def _ended(self, status: Status, sentence: str) -> None:
         """Report a failure or a state such as "compiling"; results have arrived by themselves."""
         if status != "done":
             with unlocked():
@@ -187,12 +188,12 @@ class StabilityPage(Page):
             self._trail.follow(orbit.multipliers, orbit.period, orbit.scene.name)
         before = self._trail.before(orbit.period) if analysis.target.followed else []
         self._view.need_figures()
-        self._view.display(
-            **progress("stability", "done"), failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
+        self._view.update_state(
+            **WORDS.of("done"), failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
             searched=not analysis.target.followed, rank=self._rank, period=orbit.period,
             count=len(orbit.multipliers), told=multiplier_sentence(orbit, self._rank),
             plane=plane_state(orbit, self._observer, self._rank, before))
-        self._view.tell(**mode_message(analysis.mode, orbit))
+        self._view.send(**mode_message(analysis.mode, orbit))
         self._show_section()
 
     def _show_section(self) -> None:
@@ -207,32 +208,32 @@ class StabilityPage(Page):
 
     def _show_evidence(self) -> None:
         if self._picture is not None:
-            self._view.display(evidence=evidence(self._picture, self._analysis, self._section))
+            self._view.update_state(evidence=evidence(self._picture, self._analysis, self._section))
 
     def _clear(self, sentence: str) -> None:
         """Show no multipliers, and a sentence that says why."""
         self._analysis, self.status = None, "none"
-        self._view.display(**progress("stability", "none"), failure="", stale=False, sentence=sentence,
+        self._view.update_state(**WORDS.of("none"), failure="", stale=False, sentence=sentence,
                            plane=plane_state(None), count=0, told="", searched=False, evidence=[],
                            observer=self._observer)
-        self._view.tell(type="no-mode")
+        self._view.send(type="no-mode")
         if self._host.session.mode == "live":
-            self._view.tell(type="no-section")
+            self._view.send(type="no-section")
         self._show_evidence()
 
-    def _say(self, status: str, sentence: str = "") -> None:
+    def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._view.display(**progress("stability", status), failure=sentence)
+        self._view.update_state(**WORDS.of(status), failure=sentence)
         if status == "failed" and self._analysis is None and self._target is not None:
-            self._view.display(sentence=sentence, failure="", plane=plane_state(None), count=0, told="",
+            self._view.update_state(sentence=sentence, failure="", plane=plane_state(None), count=0, told="",
                                stale=False)
-            self._view.tell(type="no-mode")
+            self._view.send(type="no-mode")
 
     # What the visitor does
 
     def _choose_observer(self, message: dict[str, Any]) -> None:
         self._observer = bool(message.get("value"))
-        self._view.display(observer=self._observer)
+        self._view.update_state(observer=self._observer)
         self._again()
 
     def _choose_mode(self, message: dict[str, Any]) -> None:
@@ -260,4 +261,4 @@ class StabilityPage(Page):
     def _back(self, _: dict[str, Any]) -> None:
         """Go back from a search, or from the orbit it found, to the settled motion."""
         self._give_up()
-        self._begin(self._due)
+        self._begin()

@@ -1,42 +1,42 @@
 // The Stability page, over the pictures: whether a disturbance dies out, which way it leaves, and on what evidence.
 
-import { pageHead, part } from "../../parts/dom.js";
+import { element, pageHead } from "../../parts/dom.js";
 import { ModeView } from "./mode.js";
-import { MultiplierPlane } from "./multiplierplane.js";
-import { OrbitSearch } from "./orbitsearch.js";
-import { SectionView } from "./sectionview.js";
+import { MultiplierPlane } from "./multiplier_plane.js";
+import { OrbitSearch } from "./orbit_search.js";
+import { SectionView } from "./section_view.js";
 
 function evidenceTable(rows) {
-  const body = part("tbody");
+  const body = element("tbody");
   for (const { name, value, meaning } of rows)
     body.append(
-      part(
+      element(
         "tr",
         { title: meaning },
-        part("th", { textContent: name, scope: "row" }),
-        part("td", { textContent: value }),
+        element("th", { textContent: name, scope: "row" }),
+        element("td", { textContent: value }),
       ),
     );
-  return part("table", { className: "evidence" }, body);
+  return element("table", { className: "evidence" }, body);
 }
 
 class StabilityPage {
   constructor(model) {
     const send = (message) => model.send_msg(message);
     this.model = model;
-    this.status = part("span", { className: "status" });
-    this.said = part("b");
-    this.searched = part("span", { className: "searched" });
+    this.status = element("span", { className: "status" });
+    this.said = element("b");
+    this.searched = element("span", { className: "searched" });
     this.plane = new MultiplierPlane(model, send);
     this.mode = new ModeView();
     this.section = new SectionView(send, model.state.phases);
     this.search = new OrbitSearch(send, model.state.longest_period);
-    this.evidence = part("div", { className: "table" });
-    this.root = part(
+    this.evidence = element("div", { className: "table" });
+    this.root = element(
       "div",
       { className: "part sheet" },
       pageHead("Stability", this.status),
-      part("div", { className: "say" }, this.searched, this.said),
+      element("div", { className: "say" }, this.searched, this.said),
       this.plane.root,
       this.mode.root,
       this.section.root,
@@ -62,7 +62,7 @@ class StabilityPage {
 
   redraw() {
     const page = window.granchain;
-    if (page.covered === "stability") {
+    if (page.overlay === "stability") {
       this.plane.draw();
       this.section.draw(this.model.state, this.model.figures.section);
       this.mode.measure();
@@ -76,7 +76,7 @@ class StabilityPage {
     else this.section.load(message.type === "section" ? message : null);
     this.mode.showTitle(this.model.state.rank);
     this.root.classList.toggle("irregular", !this.mode.mode);
-    if (window.granchain.covered === "stability") this.redraw();
+    if (window.granchain.overlay === "stability") this.redraw();
   }
 
   themeChanged() {
@@ -91,8 +91,8 @@ class StabilityPage {
 
   // The chosen disturbance moves while the page is open.
   loop() {
-    const { covered, phase } = window.granchain;
-    if (covered !== "stability") return;
+    const { overlay, phase } = window.granchain;
+    if (overlay !== "stability") return;
     this.mode.draw(phase ?? 0);
     requestAnimationFrame(() => this.loop());
   }
@@ -105,8 +105,8 @@ function watchVisibility(tell) {
     tabsSeen = true,
     told = false;
   const check = () => {
-    const inTab = tab === "stability" && !page.covered && tabsSeen;
-    const visible = !document.hidden && (page.covered === "stability" || inTab);
+    const inTab = tab === "stability" && !page.overlay && tabsSeen;
+    const visible = !document.hidden && (page.overlay === "stability" || inTab);
     if (visible === told) return;
     told = visible;
     tell(visible);
@@ -116,7 +116,7 @@ function watchVisibility(tell) {
     tabsSeen = entry.isIntersecting;
     check();
   }).observe(document.getElementById("tabs"));
-  page.on("cover", check);
+  page.on("overlay", check);
   page.on("tab", (name) => {
     tab = name;
     check();
@@ -129,12 +129,12 @@ export function render({ model }) {
   model.on("state", () => page.show());
   model.on("figures", () => page.show());
   model.on("msg:custom", (message) => page.receive(message));
-  window.granchain.on("cover", (name) => {
+  window.granchain.on("overlay", (name) => {
     if (name === "stability") requestAnimationFrame(() => page.open());
   });
   window.granchain.on("theme", () => page.themeChanged());
   const sized = new ResizeObserver(() => {
-    if (window.granchain.covered === "stability") page.redraw();
+    if (window.granchain.overlay === "stability") page.redraw();
   });
   for (const host of page.mode.hosts) sized.observe(host);
   page.show();

@@ -19,6 +19,7 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime import LONGEST_PERIOD
 
 from ...format import duration, prefixed, short_error
+from ...parts.chain import drawn_chain
 from ...parts.component import text
 from ...parts.figure_part import FigurePart
 from ...pictures.multipliers import multiplier_words, plane, plane_state
@@ -50,7 +51,7 @@ class Stability(FigurePart):
     def section(self, shown: SectionPoints) -> None:
         """Show a section in place of an earlier one."""
         self.need_figures()
-        self.tell(**section_message(shown))
+        self.send(**section_message(shown))
 
 
 def period_words(orbit: Orbit) -> str:
@@ -126,7 +127,8 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
     if analysis is not None:
         _orbit_rows(row, picture, analysis)
     cost = picture.run.cost
-    row("settled by", f"{cost.method}, {cost.steps} steps, {duration(cost.wall_s)}", "What the settled picture took.")
+    row("settled by", f"{cost.method}, {cost.steps} steps, {duration(cost.wall_s)}",
+        "Method, steps and computing time of the settled picture.")
     if section is not None:
         row("section", f"{section.periods} periods at {section.samples} phases, {LIVE}",
             "Computed once more from the same start by the live method.")
@@ -149,11 +151,13 @@ def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
     why = ("the smallest multipliers are below rounding" if len(orbit.multipliers) == 2 * orbit.scene.N
            else f"only the {len(orbit.multipliers)} leading multipliers are computed")
     row("Liouville", why if orbit.liouville is None else short_error(orbit.liouville),
-        "Relative difference of log |product of multipliers| and the integral of the equations' trace.")
+        "Liouville's theorem: the logarithm of the multipliers' product against the integral of the equations' trace, "
+        "relative difference.")
     row("disturbance carried", f"{short_error(max(analysis.mode.closure, 1e-16))} off",
-        "A small disturbance along the eigenvector was run for one orbit: how far it ended from μ times itself.")
+        "A small disturbance along the eigenvector, integrated over one orbit: the relative distance of its end from "
+        "μ times its start.")
     row("multipliers by", f"tangent flow on dop853, {duration(analysis.wall_s)}",
-        "What orbit, multipliers and mode took.")
+        "Method and computing time of orbit, multipliers and mode.")
 
 
 def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:
@@ -161,8 +165,7 @@ def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:
     turn = mode.multiplier / abs(mode.multiplier) if mode.multiplier else 1.0
     factor, letter = prefixed(orbit.period * orbit.scene.period)
     return {
-        "type": "mode", "beads": orbit.scene.N, "samples": mode.samples, "period": mode.period,
-        "radii": [bead.radius for bead in orbit.scene.beads], "foundation": orbit.scene.k > 0.0,
+        "type": "mode", **drawn_chain(orbit.scene), "samples": mode.samples, "period": mode.period,
         "turn_re": float(turn.real), "turn_im": float(turn.imag), "size": abs(mode.multiplier),
         "time": orbit.period * orbit.scene.period / factor, "time_unit": f"{letter}s",
         "values": np.concatenate([np.real(mode.displacement).ravel(), np.imag(mode.displacement).ravel()],

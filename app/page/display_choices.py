@@ -1,0 +1,43 @@
+"""The visitor's display choices: theme, locked colour scale, and which curves are drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ..pages.curve.page import Curves
+from ..pictures.theme import THEMES, Theme
+from ..session.hooks import Actions
+from ..session.session import Session
+from .layout import Views
+
+
+class DisplayChoices:
+    """Display choices, which start no computation except, perhaps, another curve."""
+
+    def __init__(self, session: Session, views: Views, curves: Curves,
+                 theme_changed: Callable[[Theme], None]) -> None:
+        self._session = session
+        self._views = views
+        self._curves = curves
+        self._theme_changed = theme_changed
+        self.actions: Actions = {
+            "theme": self.choose, "lock-scale": self._lock_scale,
+            "curve": self._curve, "curve-stop": lambda _: curves.stop(),
+            "curve-visible": lambda m: curves.visible(bool(m.get("value")), session.scene),
+        }
+
+    def choose(self, message: dict[str, Any]) -> None:
+        """Take the colours and line widths of a theme; the name of no theme changes nothing."""
+        theme = THEMES.get(str(message.get("value")))
+        if theme is not None:
+            self._views.curve.ink(theme.ink, theme.line)
+            self._views.trains.thicken(theme.line)
+            self._views.apply_theme(theme)
+            self._theme_changed(theme)
+
+    def _lock_scale(self, message: dict[str, Any]) -> None:
+        self._views.energy.locked = bool(message.get("value"))
+
+    def _curve(self, message: dict[str, Any]) -> None:
+        self._curves.choose(str(message.get("name")), bool(message.get("value")), self._session.scene)

@@ -1,0 +1,38 @@
+// The Accuracy tab: error against time in small, and the way to the page. What fills the figure serves the page as well.
+
+import { element, openButton, paragraph } from "../../parts/dom.js";
+import { Embedded, fillModels } from "../../parts/embedded.js";
+
+const STALE = "The knobs have moved; open the page to measure again.";
+
+// Error against time as it is known now: points by method, then what is asked, cheapest and used.
+export function fillAccuracy(figure, { drawn, asked }) {
+  for (const [name, data] of Object.entries(drawn)) figure.set(name, { data });
+  fillModels(figure, asked?.marks);
+}
+
+export function showAccuracy(figure, item, known) {
+  if (!Object.values(known.drawn).some(({ ms }) => ms.length)) return;
+  if (figure.item !== item) figure.load(item, "error against computing time");
+  else fillAccuracy(figure, known);
+}
+
+function sentence({ running, progress, done, asked }) {
+  if (running) return done ? `${progress} ${Math.round(100 * done)} %` : progress;
+  return asked?.stale ? STALE : (asked?.sentence ?? "");
+}
+
+export function accuracyTab(model) {
+  const host = element("div", { className: "small" });
+  const figure = new Embedded(host, (one) => fillAccuracy(one, window.granchain.accuracy));
+  const said = paragraph();
+  const show = () => {
+    const known = window.granchain.accuracy ?? { drawn: {} };
+    said.textContent = sentence(known);
+    host.classList.toggle("stale", Boolean(known.asked?.stale));
+    if (host.isConnected) showAccuracy(figure, known.small, known);
+  };
+  model.send_msg({ do: "accuracy-open" });
+  requestAnimationFrame(show);
+  return { content: [element("div", { className: "row top" }, said, openButton("accuracy")), host], show };
+}

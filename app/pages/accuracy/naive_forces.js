@@ -1,0 +1,92 @@
+// The certified output force, and over it the one that a naive method with few steps would have drawn.
+
+import { element } from "../../parts/dom.js";
+import { Embedded } from "../../parts/embedded.js";
+
+// The naive steps in a drive period that are chosen at first.
+const USUAL_STEPS = 200;
+
+const percent = (error) =>
+  error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`;
+
+// What the choice would have drawn, in a sentence.
+function verdict(chosen) {
+  if (!chosen) return "";
+  return chosen.failure
+    ? `With ${chosen.steps} steps a period nothing would have been drawn: ${chosen.failure}`
+    : `With ${chosen.steps} steps a period the force is off by ${percent(chosen.error)} of the largest, and nothing in the picture says so.`;
+}
+
+export class NaiveForces {
+  constructor() {
+    this.methods = this.choice("the naive method");
+    this.steps = this.choice("its steps in a drive period");
+    this.said = element("p");
+    this.host = element("div", { className: "picture" });
+    this.figure = new Embedded(this.host, () => this.show());
+    this.root = element(
+      "div",
+      { className: "naive" },
+      element("div", { className: "row" }, this.methods, this.steps),
+      this.said,
+      element("div", { className: "draw" }, this.host),
+    );
+    this.show();
+  }
+
+  choice(label) {
+    const select = element("select", { title: label, ariaLabel: label });
+    select.addEventListener("change", () => this.show());
+    return select;
+  }
+
+  load(message) {
+    const { buffer, byteOffset, length } = message.values;
+    // A plain array of numbers, whatever kind of buffer it came in.
+    this.data = { ...message, values: new Float32Array(buffer, byteOffset, length) };
+    this.offer(message.drawn);
+    this.root.hidden = false;
+    this.figure.load(message.figure, "output force, certified and naive");
+  }
+
+  // Fills both choices and keeps what was chosen. The first time it chooses the usual steps and the method whose
+  // error is largest with them.
+  offer(drawn) {
+    const before = [this.methods.value, this.steps.value];
+    const names = [...new Set(drawn.map((one) => one.method))];
+    const counts = [...new Set(drawn.map((one) => one.steps))];
+    this.methods.replaceChildren(...names.map((name) => new Option(name, name)));
+    this.steps.replaceChildren(...counts.map((n) => new Option(`${n} steps a period`, n)));
+    if (this.known) [this.methods.value, this.steps.value] = before;
+    else {
+      const usual = drawn.filter((one) => one.steps === USUAL_STEPS && one.row >= 0);
+      this.methods.value = usual.sort((a, b) => b.error - a.error)[0]?.method ?? names[0];
+      this.steps.value = String(USUAL_STEPS);
+    }
+    this.known = true;
+  }
+
+  forget() {
+    this.data = null;
+    this.known = false;
+    this.show();
+  }
+
+  show() {
+    this.root.hidden = !this.data;
+    if (!this.data) return;
+    const [method, steps] = [this.methods.value, this.steps.value];
+    const chosen = this.data.drawn.find((one) => one.method === method && String(one.steps) === steps);
+    this.said.textContent = verdict(chosen);
+    this.fill(chosen);
+  }
+
+  fill(chosen) {
+    const { columns, values } = this.data;
+    const row = (number) => Array.from(values.subarray(number * columns, (number + 1) * columns));
+    const naive = chosen && chosen.row >= 0 ? row(chosen.row) : [],
+      force = row(1);
+    const difference = naive.map((v, i) => v - force[i]);
+    this.figure.set("naive", { data: { time: naive.length ? row(0) : [], force: naive, difference } });
+  }
+}

@@ -1,0 +1,38 @@
+// Which curves are shown, how far they are, and a button to stop them.
+
+import { button, element, meter } from "../../parts/dom.js";
+
+// Tells the server whether the curve is on the screen; one that nobody looks at is not computed.
+function watchVisibility(tell) {
+  let onScreen = true;
+  const check = () => tell(onScreen && !window.granchain.overlay);
+  new IntersectionObserver(([entry]) => {
+    onScreen = entry.isIntersecting;
+    check();
+  }).observe(document.getElementById("curve"));
+  window.granchain.on("overlay", check);
+}
+
+function choiceBox(model, name) {
+  const box = element("input", { type: "checkbox" });
+  box.addEventListener("change", () => model.send_msg({ do: "curve", name, value: box.checked }));
+  return box;
+}
+
+export function render({ model }) {
+  const { choices } = model.state;
+  const boxes = new Map(choices.map(([name]) => [name, choiceBox(model, name)]));
+  const labels = choices.map(([name, text, title]) => element("label", { title }, boxes.get(name), text));
+  const done = meter("progress of the curve");
+  const stop = button("✕", () => model.send_msg({ do: "curve-stop" }), { title: "Stop the curve" });
+  const progress = element("span", { className: "progress" }, done, stop);
+  const show = () => {
+    for (const [name, box] of boxes) box.checked = Boolean(model.state[name]);
+    progress.hidden = !(model.state.done >= 0 && model.state.done < 1);
+    done.value = model.state.done ?? 0;
+  };
+  model.on("state", show);
+  show();
+  watchVisibility((value) => model.send_msg({ do: "curve-visible", value }));
+  return element("div", { className: "part row" }, ...labels, progress);
+}

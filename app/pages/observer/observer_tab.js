@@ -1,0 +1,35 @@
+// The Observer tab: the distance in small, and the way to the page. What fills the figure serves the page as well.
+
+import { element, openButton, paragraph } from "../../parts/dom.js";
+import { Embedded } from "../../parts/embedded.js";
+
+// The distance over time, and what the multipliers predict of it; each point is [drive period, distance].
+export function fillDistance(figure, { history, prediction }) {
+  const data = (points) => ({
+    period: points.map(([period]) => period),
+    distance: points.map(([, distance]) => distance),
+  });
+  figure.set("distance", { data: data(history) });
+  figure.set("prediction", { data: data(prediction) });
+}
+
+// The figure comes with its first points: an axis without data has no range.
+export function showDistance(figure, item, known) {
+  if (!known.history.length) return;
+  if (figure.item !== item) figure.load(item, "distance between observer and chain over time");
+  else fillDistance(figure, known);
+}
+
+export function observerTab(_, { placeholder }) {
+  const page = window.granchain;
+  const host = element("div", { className: "small" });
+  const figure = new Embedded(host, (one) => fillDistance(one, page.observer));
+  const said = paragraph();
+  const show = () => {
+    said.textContent = page.observer?.sentence || placeholder;
+    if (host.isConnected && page.observer) showDistance(figure, page.observer.small, page.observer);
+  };
+  page.observerTab = host; // while it is on the screen the observer runs
+  requestAnimationFrame(show);
+  return { content: [element("div", { className: "row top" }, said, openButton("observer")), host], show };
+}

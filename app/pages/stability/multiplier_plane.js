@@ -1,0 +1,49 @@
+// The multipliers in the complex plane; a click on one, or an arrow key, chooses the disturbance that is shown.
+
+import { element } from "../../parts/dom.js";
+import { Embedded, fillModels } from "../../parts/embedded.js";
+
+const OBSERVER = "the observer: a second chain pushed by this one's input force";
+
+export class MultiplierPlane {
+  constructor(model, send) {
+    this.model = model;
+    this.choose = (rank) => send({ do: "stability-mode", value: rank });
+    this.watch = element("input", { type: "checkbox" });
+    this.watch.addEventListener("change", () => send({ do: "stability-observer", value: this.watch.checked }));
+    this.host = element("div", { className: "picture", tabIndex: 0, title: "Arrow keys choose another multiplier" });
+    this.host.addEventListener("keydown", ({ key }) => this.step({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0));
+    this.figure = new Embedded(this.host, (one) => this.fill(one));
+    this.told = element("span", { className: "soft told" });
+    const label = element("label", { className: "watch", title: OBSERVER }, this.watch, "observer");
+    this.root = element(
+      "section",
+      { className: "plane" },
+      element("div", { className: "row" }, element("h3", { textContent: "multipliers" }), label),
+      element("div", { className: "draw" }, this.host),
+      this.told,
+    );
+  }
+
+  fill(figure) {
+    fillModels(figure, this.model.state.plane);
+    figure.taps(["within", "outside"], (name, row) => this.choose(this.model.state.plane[name].data.rank[row]));
+  }
+
+  step(by) {
+    const { rank: now = 0, count } = this.model.state;
+    const rank = now + by;
+    if (by && rank >= 0 && rank < count) this.choose(rank);
+  }
+
+  show() {
+    const { plane, told, observer } = this.model.state;
+    fillModels(this.figure, plane);
+    this.told.textContent = told ?? "";
+    this.watch.checked = Boolean(observer);
+  }
+
+  draw() {
+    this.figure.load(this.model.figures.plane, "multipliers in the complex plane with the unit circle");
+  }
+}

@@ -1,0 +1,36 @@
+// The row that searches for an unstable orbit nearby, and leads back from one that was found.
+
+import { button, element } from "../../parts/dom.js";
+
+export class OrbitSearch {
+  constructor(send, longest) {
+    this.period = element("input", {
+      type: "number",
+      min: 1,
+      max: longest,
+      value: 1,
+      title: "period of the orbit in drive periods",
+      ariaLabel: "period of the orbit that is searched",
+    });
+    this.find = button("search", () => send({ do: "stability-search", value: Number(this.period.value) }), {
+      title: "Newton's method from the present state, the middle of the section and its close returns",
+    });
+    this.back = button("", () => send({ do: "stability-back" }), { className: "back" });
+    this.said = element("span", { className: "soft" });
+    this.root = element(
+      "div",
+      { className: "search row" },
+      element("label", {}, "search for an unstable orbit nearby, of period ", this.period),
+      this.find,
+      this.back,
+      this.said,
+    );
+  }
+
+  show({ status, searched, failure }) {
+    this.find.disabled = status === "searching" || status === "compiling";
+    this.back.hidden = !(status === "searching" || searched);
+    this.back.textContent = status === "searching" ? "stop" : "back to the settled motion";
+    this.said.textContent = failure ?? "";
+  }
+}

@@ -1,0 +1,77 @@
+// The Poincaré section on the page: its picture, and the choice of bead and drive phase.
+
+import { element } from "../../parts/dom.js";
+import { Embedded } from "../../parts/embedded.js";
+
+export class SectionView {
+  constructor(send, phases) {
+    this.phases = phases;
+    this.beads = element("select", { title: "the bead whose section is shown" });
+    this.beads.setAttribute("aria-label", "bead of the section");
+    this.phase = element("input", { type: "range", min: 0, max: phases - 1, value: 0, step: 1 });
+    this.phase.setAttribute("aria-label", "drive phase of the section");
+    this.said = element("output");
+    this.close = element("input", { type: "checkbox" });
+    this.close.addEventListener("change", () => this.showRanges());
+    this.told = element("span", { className: "soft" });
+    this.host = element("div", { className: "picture" });
+    this.figure = new Embedded(this.host, () => this.fill());
+    const tell = () => {
+      this.say();
+      send({ do: "stability-section", bead: Number(this.beads.value), phase: Number(this.phase.value) });
+    };
+    this.beads.addEventListener("change", tell);
+    this.phase.addEventListener("input", tell);
+    this.root = element(
+      "section",
+      { className: "poincare" },
+      element("div", { className: "row" }, element("h3", { textContent: "Poincaré section" }), this.beads),
+      element(
+        "div",
+        { className: "row" },
+        element("label", {}, "drive phase ", this.phase),
+        this.said,
+        element("label", { title: "the second half of the points only" }, this.close, "close up"),
+      ),
+      element("div", { className: "draw" }, this.host),
+      this.told,
+    );
+    this.say();
+  }
+
+  choose(count) {
+    if (this.beads.length === count) return;
+    const kept = Math.min(Number(this.beads.value) || 1, count);
+    this.beads.replaceChildren(...Array.from({ length: count }, (_, i) => new Option(`bead ${i + 1}`, i + 1)));
+    this.beads.value = String(kept);
+  }
+
+  say() {
+    this.said.textContent = `${(Number(this.phase.value) / this.phases).toFixed(2)} T`;
+  }
+
+  load(message) {
+    this.data = message;
+    if (message) this.fill();
+    else this.figure.remove();
+  }
+
+  // Which part of the plane: all of it, or that of the second half of the points.
+  showRanges() {
+    const ranges = this.close.checked ? this.data?.near : this.data?.drawn;
+    if (ranges) for (const name of ["displacements", "velocities"]) this.figure.set(name, ranges[name]);
+  }
+
+  fill() {
+    for (const [name, properties] of Object.entries(this.data?.drawn ?? {})) this.figure.set(name, properties);
+    this.showRanges();
+  }
+
+  draw(state, item) {
+    this.told.textContent = !this.data
+      ? ""
+      : `${this.data.count} drive periods, one point each` +
+        (this.data.own ? `; ${state.searched ? "diamonds: the unstable orbit" : "rings: the orbit"}` : "");
+    if (this.data) this.figure.load(item, "Poincaré section");
+  }
+}

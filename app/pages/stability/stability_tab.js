@@ -1,0 +1,24 @@
+// The Stability tab: the unit circle and the sentence; it draws what the Stability page holds.
+
+import { element, openButton, paragraph } from "../../parts/dom.js";
+import { Embedded, fillModels } from "../../parts/embedded.js";
+
+export function stabilityTab() {
+  const page = window.granchain;
+  const host = element("div", { className: "circle" });
+  const said = paragraph("", "verdict");
+  const more = paragraph("", "soft");
+  const figure = new Embedded(host, (one) => fillModels(one, page.stability?.state.plane));
+  const show = () => {
+    const { state = {}, small } = page.stability ?? {};
+    said.textContent = state.sentence || "Follows the settled picture.";
+    more.textContent = state.failure || state.progress || "";
+    host.classList.toggle("stale", Boolean(state.stale));
+    if (!host.isConnected) return;
+    if (figure.item !== small) figure.load(small, "multipliers and the unit circle");
+    else fillModels(figure, state.plane);
+  };
+  requestAnimationFrame(show);
+  const words = element("div", {}, said, more, openButton("stability"));
+  return { content: [element("div", { className: "beside" }, host, words)], show };
+}

@@ -1,0 +1,49 @@
+"""The method and setting with which the main page computes now, and their place among measured rows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from granchain_core import Scene, Settled
+from granchain_core.accuracy import Row
+from granchain_core.accuracy.ways import label
+from granchain_core.integrate import METHODS, Setting, method_for
+from granchain_core.run.live import LIVE_SETTING
+from granchain_core.steady.relax import orbit_setting
+
+
+@dataclass(frozen=True)
+class PlacedSetting:
+    """A setting in words, with its error and time [s], interpolated between measured neighbours."""
+
+    method: str
+    label: str
+    error: float
+    wall_s: float
+
+
+def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
+    """The setting of the last computation behind the picture, by the rule of `granchain_core.steady.relax`."""
+    if live:
+        return LIVE_SETTING
+    if picture is None:
+        return method_for(scene.accuracy, scene.cuts_tension)
+    if picture.preview or picture.regime.name != "periodic":
+        return Setting(picture.run.cost.method)
+    return orbit_setting(scene, scene.accuracy, picture.regime.contraction).finer()
+
+
+def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:
+    """Where `setting` lies on its method's measured line; None until that has two points."""
+    value = setting.tolerance if METHODS[setting.method].adaptive else float(setting.refine)
+    known = sorted((row.value, row.error, row.wall_s) for row in rows
+                   if row.method == setting.method and not row.failure and 0.0 < row.error < np.inf)
+    if len(known) < 2:
+        return None
+    values, errors, seconds = np.log(np.array(known)).T
+    at = np.log(value)
+    return PlacedSetting(setting.method, label(setting), float(np.exp(np.interp(at, values, errors))),
+               float(np.exp(np.interp(at, values, seconds))))

@@ -1,0 +1,34 @@
+"""Work that begins when nothing has moved for a while."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from .host import Host
+
+
+class Debounce:
+    """Calls an action when so many seconds have passed since the last `start`, with the document locked."""
+
+    def __init__(self, host: Host, seconds: float) -> None:
+        self._host = host
+        self._seconds = seconds
+        self._last = 0
+        self.pending = False
+
+    def start(self, action: Callable[..., None], *arguments: Any) -> None:
+        """Call `action` after the quiet time, in place of what was started before."""
+        self._last += 1
+        self.pending = True
+        self._host.call_later(self._seconds, self._run, self._last, action, arguments)
+
+    def cancel(self) -> None:
+        """Call nothing."""
+        self._last += 1
+        self.pending = False
+
+    def _run(self, number: int, action: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+        if number == self._last:
+            self.pending = False
+            action(*arguments)

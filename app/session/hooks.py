@@ -1,0 +1,53 @@
+"""The hooks through which the dashboard informs each page, and what it asks of a page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from granchain_core import Settled
+
+from ..pictures.theme import Theme
+from .activities import Activity
+
+Actions = Mapping[str, Callable[[dict[str, Any]], None]]
+
+
+class Page:
+    """One page of one visitor. Hooks are called with the document locked; by default they do nothing.
+
+    `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
+    """
+
+    actions: Actions
+
+    @property
+    def activity(self) -> Activity | None:
+        """Name, state and detail for the list of what is computed now; None where the page has no line in it."""
+        return None
+
+    def picture_requested(self) -> None:
+        """A new picture was requested: what belongs to the old one is out of date."""
+
+    def scene_changed(self) -> None:
+        """The knobs have changed, or another scene was opened."""
+
+    def picture_ready(self, picture: Settled) -> None:
+        """A settled picture is ready; a better one for these knobs may follow unless `picture.final`."""
+
+    def theme_changed(self, theme: Theme) -> None:
+        """The page is shown in another theme; a view's own figures follow by themselves."""
+
+    def close(self) -> None:
+        """The visitor left."""
+
+
+def all_actions(owners: Mapping[str, Actions]) -> Actions:
+    """The actions of all owners in one table. Raises `TypeError` if two of them use one name."""
+    owner_of: dict[str, str] = {}
+    for owner, actions in owners.items():
+        for name in actions:
+            if name in owner_of:
+                raise TypeError(f"{owner_of[name]} and {owner} both have an action {name!r}; rename one of them.")
+            owner_of[name] = owner
+    return {name: action for actions in owners.values() for name, action in actions.items()}

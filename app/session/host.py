@@ -1,0 +1,48 @@
+"""What a page may ask of its dashboard. `Controller` implements it; tests have their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from granchain_core import Scene, State
+
+from .activities import Activity
+from .session import Session
+
+
+class Host(Protocol):
+    """One visitor's dashboard, as its pages see it. Only `next_tick` may be called from any thread."""
+
+    session: Session
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture is being computed."""
+
+    @property
+    def awaiting_picture(self) -> bool:
+        """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
+
+    @property
+    def curve_computing(self) -> bool:
+        """Whether a resonance curve is being computed."""
+
+    def activities(self) -> list[Activity]:
+        """Everything that is computed for this visitor, or could be."""
+
+    def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` with the document locked, as soon as that is possible; this may be called from any thread."""
+
+    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` with the document locked, so many seconds from now."""
+
+    def failed(self, error: Exception) -> None:
+        """Tell the visitor about a failure that has no place on its own page."""
+
+    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+        """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.
+
+        In live mode the run goes on with the new knobs, unless a state is given. Raises `BadInput` for a mode other
+        than "settled" and "live".
+        """

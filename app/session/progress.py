@@ -1,0 +1,51 @@
+"""How computations stand, in words: the one vocabulary of all pages and of the list of what is computed now."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from ..serve.compiler import compiling_words
+
+#: In the list of what is computed now: nobody asks for it, nothing is left to do, it is under way.
+OFF, READY, COMPUTING = "off", "ready", "computing"
+
+#: How a computation stands.
+Status = Literal["none", "waiting", "compiling", "settling", "computing", "measuring", "following", "searching",
+                 "drawing", "done", "stopped", "failed"]
+
+#: What a page says of a computation that is under way or waits for its turn.
+UNDER_WAY: dict[Status, str] = {
+    "waiting": "waiting for its turn …", "compiling": "compiling …", "settling": "looking for the first orbit …",
+    "computing": "computing …", "measuring": "measuring …", "following": "following …", "searching": "searching …",
+    "drawing": "drawing …",
+}
+
+
+@dataclass(frozen=True)
+class StatusWords:
+    """The words of one computation of a page.
+
+    compiles, seconds : what has to be compiled for it, and how long that takes on two cores [s].
+    kept : what stays when the visitor stops it, empty if nothing does. instead : words in place of `UNDER_WAY`.
+    """
+
+    compiles: str = "the kernels"
+    seconds: int = 10
+    kept: str = ""
+    instead: Mapping[Status, str] = field(default_factory=dict)
+
+    def of(self, status: Status) -> dict[str, Any]:
+        """What the page's part in the browser shows.
+
+        `status` itself, `progress` in words (empty where there is nothing to say), and whether it is `running`.
+        """
+        return {"status": status, "progress": self._words(status), "running": status in UNDER_WAY}
+
+    def _words(self, status: Status) -> str:
+        if status == "compiling":
+            return f"{compiling_words(self.compiles, self.seconds)} …"
+        if status == "stopped":
+            return f"stopped; {self.kept} are kept" if self.kept else "stopped"
+        return self.instead.get(status, UNDER_WAY.get(status, ""))

@@ -1,0 +1,121 @@
+"""The state of one visitor's page: scene, mode, start, the last good picture, and a sentence if something failed.
+
+No Panel and no Bokeh in here, so that every rule of the page can be tested without a browser.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
+from granchain_core.quantities import QUANTITIES
+from granchain_core.scene import Bead
+
+from .message_checks import is_number, quoted
+from .share import EXTRAS, encode
+from .switches import ACCOUNT, changes
+
+MODES, STARTS = EXTRAS["mode"], EXTRAS["start"]
+SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0)
+
+
+@dataclass
+class Session:
+    """The state of one page; methods change it or raise `BadInput` and leave it as it was."""
+
+    scene: Scene = field(default_factory=lambda: scene("sec2"))
+    mode: str = "settled"
+    start: str = "rest"
+    theme: str = "auto"
+    speed: float = 1.0
+    playing: bool = True
+    picture: Settled | None = None
+    started_from: State | None = None
+    sentence: str = ""
+    notice: str = ""
+    account: bool = False
+    remembered: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def link(self) -> str:
+        """The query string that brings back scene, knobs, mode and start."""
+        return encode(self.scene, {"mode": self.mode, "start": self.start})
+
+    def change(self, name: str, value: object) -> None:
+        """Turn knob `name` to `value`."""
+        self.scene = self.scene.evolve(**{name: value})
+
+    def switch(self, name: str, on: bool) -> None:
+        """Switch an effect on or off; the values of its knobs are kept until it is switched on again."""
+        if name == ACCOUNT:
+            self.account = on
+            return
+        moved = changes(name, on, self.scene, self.remembered)
+        before = {knob: self.scene.knobs[knob] for knob in moved if knob != "kappa"}
+        self.scene = self.scene.evolve(**moved)
+        if not on:
+            self.remembered.update(before)
+
+    def restore(self, name: str) -> None:
+        """Turn knob `name` back to its value in the preset."""
+        preset = scene(self.scene.name).knobs
+        if name not in preset:
+            raise BadInput(f"There is no knob {quoted(name)} to put back.")
+        self.change(name, preset[name])
+
+    def choose(self, name: object) -> None:
+        """Open another preset, in the same mode."""
+        self.scene = scene(name if isinstance(name, str) else str(name)[:60])
+        self.picture = None
+        self.remembered.clear()
+
+    def set_mode(self, mode: object) -> None:
+        """`settled` or `live`."""
+        self.mode = _one_of("mode", mode, MODES)
+
+    def set_start(self, start: object) -> None:
+        """Where settled pictures start: from rest or from where the chain was."""
+        self.start = _one_of("start", start, STARTS)
+
+    def set_speed(self, speed: object) -> None:
+        """Drive periods shown in a second, limited to what a page can show."""
+        if not is_number(speed) or not 0.01 <= speed <= 1000.0:
+            raise BadInput("speed must be from 0.01 to 1000 drive periods a second; 1 is a good start.")
+        self.speed = float(speed)
+
+    def previous_state(self) -> State | None:
+        """The state the next settled picture starts from; None is rest."""
+        if self.start == "rest" or self.picture is None:
+            return None
+        state = self.picture.state
+        return state if len(state.displacement) == self.scene.knobs["N"] else None
+
+
+def slider_range(current: Scene, name: str) -> tuple[float, float]:
+    """The scene's range of a slider, or all values that granchain accepts if the scene has none."""
+    for knob, low, high in current.ranges:
+        if knob == name:
+            return low, high
+    return QUANTITIES[name].low, QUANTITIES[name].high
+
+
+def without_frequency(current: Scene) -> Scene:
+    """The scene with f at a fixed value. It identifies a curve or branch over f, whatever the knob f is set to."""
+    return current.evolve(f=slider_range(current, "f")[0])
+
+
+def rig_beads() -> tuple[Bead, ...]:
+    """The beads of the paper's rig: its stated features are drawn for scenes with these beads."""
+    return scene("rig").pattern
+
+
+def _one_of(what: str, value: object, known: tuple[str, ...]) -> str:
+    if value in known:
+        return str(value)
+    raise BadInput(f"{what} {quoted(value)} is not one of {', '.join(known)}.")
+
+
+def presets() -> list[dict[str, str]]:
+    """Name and title of every scene."""
+    return [{"name": name, "title": scene(name).title} for name in scene_names()]

@@ -1,0 +1,86 @@
+"""Share links: scene name, knobs that differ from its preset, mode, start and look, as one versioned
+query string.
+
+A link stores differences only: a changed preset changes what old links mean (tests/session/test_share.py).
+Each field is checked by itself: a bad one is refused with a sentence, and the others are still used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import parse_qsl, urlencode
+
+from granchain_core import BadInput, Scene, scene, scene_names
+from granchain_core.quantities import QUANTITIES
+
+VERSION = "1"
+#: View settings a link may carry; the first value is the default. "look" is the theme; at "auto" the browser chooses.
+EXTRAS: dict[str, tuple[str, ...]] = {
+    "mode": ("settled", "live"),
+    "start": ("rest", "previous"),
+    "look": ("auto", "light", "dark", "projector"),
+}
+_LONGEST = 2000
+
+
+def encode(shown: Scene, extras: Mapping[str, str]) -> str:
+    """The query string (without "?") that brings back this scene and view."""
+    fields: dict[str, Any] = {"v": VERSION, "scene": shown.name}
+    for name, value in shown.differences().items():
+        fields[name] = value if isinstance(value, str) else repr(value)
+    for name, value in extras.items():
+        if name in EXTRAS and value in EXTRAS[name] and value != EXTRAS[name][0]:
+            fields[name] = value
+    return urlencode(fields)
+
+
+def decode(query: str) -> tuple[Scene, dict[str, str], list[str]]:
+    """Scene, view settings, and one sentence for every field that was refused."""
+    if len(query) > _LONGEST:
+        return scene(scene_names()[0]), {}, [f"The link is longer than {_LONGEST} characters and was not read."]
+    refused: list[str] = []
+    fields = _fields(query, refused)
+    if fields.pop("v", VERSION) != VERSION:
+        refused.append(f"The link's format is not version {VERSION}; only the fields that are understood were used.")
+    shown = _scene(fields.pop("scene", scene_names()[0]), refused)
+    extras: dict[str, str] = {}
+    # kappa last: it is converted with the link's own A0, and replaces k only if it is valid
+    for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
+        if name in EXTRAS:
+            if text in EXTRAS[name]:
+                extras[name] = text
+            else:
+                refused.append(f"{name} = {text[:40]!r} in the link is not one of {', '.join(EXTRAS[name])}.")
+            continue
+        try:
+            shown = shown.evolve(**{name: text})
+        except BadInput as problem:
+            refused.append(f"In the link: {problem}")
+            continue
+        if name == "kappa" and "k" in fields:
+            refused.append("The link sets both k and kappa, which are the same quantity; kappa was used.")
+    return shown, extras, refused
+
+
+def _fields(query: str, refused: list[str]) -> dict[str, str]:
+    """The fields of a query string; of one that comes twice the first counts."""
+    fields: dict[str, str] = {}
+    for name, text in parse_qsl(query.lstrip("?"), keep_blank_values=True):
+        if name in fields:
+            refused.append(f"{name[:40]} occurs twice in the link; the first value, {fields[name][:40]!r}, was used.")
+        else:
+            fields[name] = text
+    return fields
+
+
+def _scene(name: str, refused: list[str]) -> Scene:
+    try:
+        return scene(name)
+    except BadInput as problem:
+        refused.append(f"In the link: {problem}")
+        return scene(scene_names()[0])
+
+
+if set(EXTRAS) & set(QUANTITIES):
+    raise RuntimeError("a view setting has the name of a knob")

@@ -1,0 +1,59 @@
+"""Switchable effects: the knobs each switch sets, and the two kernels whose times give an effect's cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from granchain_core import BadInput, Scene, scene
+from granchain_core.accuracy.effect_cost import Variant
+from granchain_core.scene import effects as table
+from granchain_core.scene.effects import Effect
+
+from .message_checks import quoted
+
+ACCOUNT = table.ACCOUNT.name
+"""The one effect that is no knob of the scene: it changes nothing in the motion."""
+
+EFFECTS: dict[str, Effect] = {effect.name: effect for effect in (*table.EFFECTS, table.ACCOUNT)}
+"""The effects in the order in which the page lists them."""
+
+
+def present(name: str, shown: Scene, account: bool) -> bool:
+    """Whether the effect is in the kernels of this scene."""
+    return account if name == ACCOUNT else EFFECTS[name].present(shown)
+
+
+def refusal(name: str, shown: Scene) -> str:
+    """Why the effect cannot be switched for this scene; empty where it can."""
+    return "" if EFFECTS[name].possible(shown) else EFFECTS[name].refusal
+
+
+def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
+    """Knob values that a switch sets; on: those the visitor had, else the preset's, else the usual ones."""
+    if name not in EFFECTS or name == ACCOUNT:
+        raise BadInput(f"There is no switchable effect {quoted(name)}.")
+    if refused := refusal(name, shown):
+        raise BadInput(refused)
+    effect = EFFECTS[name]
+    if not on:
+        return dict(effect.off)
+    before = {**scene(shown.name).knobs, **remembered}
+    found: dict[str, Any] = {}
+    for knob in effect.knobs:
+        # switching off changed only the knobs in `off`; the others still have their value
+        values = [before[knob]] if knob in effect.off else [shown.knobs[knob], before[knob]]
+        found.update([(knob, value) for value in values if value != effect.off.get(knob, 0.0)][:1])
+    missing = set(effect.knobs) - set(found)
+    return found | {knob: value for knob, value in effect.usual.items() if missing and knob not in found}
+
+
+def variants(name: str, shown: Scene) -> tuple[Variant, Variant] | None:
+    """The scene with the effect and without it, everything else the same; None where it cannot be switched."""
+    if name == ACCOUNT:
+        return Variant(shown, balance=True), Variant(shown)
+    if refusal(name, shown):
+        return None
+    on = present(name, shown, account=False)
+    other = shown.evolve(**changes(name, not on, shown, {}))
+    return (Variant(shown), Variant(other)) if on else (Variant(other), Variant(shown))

@@ -1,0 +1,112 @@
+"""A page's background work: starting it, cancelling it, and the one place for its failures."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
+
+from ..serve.compiler import COMPILER
+from ..serve.delays import PICTURE_POLL
+from ..serve.queues import Queue, Stop
+from .host import Host
+from .progress import Status
+
+#: Called with a status and a sentence, which is empty unless the status is "failed".
+Say = Callable[[Status, str], None]
+
+
+class Job:
+    """One run of a task, as its work sees it from a worker thread."""
+
+    def __init__(self, host: Host, say: Say) -> None:
+        self.stop: Stop = Stop()
+        self._host = host
+        self._say = say
+
+    def next_tick(self, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
+        """Call `action` with the document locked, unless the job is cancelled by then."""
+
+        def act() -> None:
+            if not self.stop:
+                action(*arguments, **named)
+
+        self._host.next_tick(act)
+
+    def say(self, status: Status) -> None:
+        """Report the state of the work."""
+        self.next_tick(self._say, status, "")
+
+    def compile(self, scene: Scene, *pieces: str) -> None:
+        """Wait until these kernels are compiled and loaded, and report "compiling" meanwhile. Raises `Cancelled`."""
+        for piece in pieces:
+            if not COMPILER.has(scene, piece):
+                self.say("compiling")
+            if not COMPILER.await_piece(scene, piece, self.stop):
+                raise Cancelled
+            COMPILER.load(scene, piece)
+
+    def give_way(self, to: Callable[[], bool] | None = None) -> None:
+        """Wait while the picture for a moved knob is being computed, or while `to` returns True."""
+        waits = to or (lambda: self._host.awaiting_picture)
+        while waits() and not self.stop:
+            time.sleep(PICTURE_POLL)
+
+
+class Task:
+    """One kind of background work of a page; a new start replaces the last.
+
+    `say` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the work
+    reports. `title` begins the sentence about a fault. `failed` takes errors that the page itself does not show.
+    """
+
+    def __init__(self, host: Host, queue: Queue, say: Say, title: str = "The computation",
+                 failed: Callable[[Exception], None] | None = None) -> None:
+        self._host = host
+        self._queue = queue
+        self._say = say
+        self._title = title
+        self._failed = failed
+        self._job: Job | None = None
+
+    @property
+    def running(self) -> bool:
+        """Whether the work is under way or waits for its turn."""
+        return self._job is not None
+
+    def start(self, work: Callable[[Job], None]) -> None:
+        """Queue `work`, in place of what was started before."""
+        self.cancel()
+        self._job = job = Job(self._host, self._say)
+        self._queue.submit(self._run, work, job)
+
+    def cancel(self) -> bool:
+        """Cancel the work under way, so that nothing more of it arrives; return whether there was any."""
+        job, self._job = self._job, None
+        if job is not None:
+            job.stop.set()
+        return job is not None
+
+    def _run(self, work: Callable[[Job], None], job: Job) -> None:
+        """In a thread of the queue."""
+        if job.stop:
+            return
+        try:
+            work(job)
+        except Cancelled:
+            return
+        except (NumbersFailed, BadInput) as problem:
+            job.next_tick(self._end, "failed", str(problem), problem)
+        except Exception as error:
+            job.next_tick(self._end, "failed", f"{self._title} failed because of an error in granchain.")
+            self._host.next_tick(self._host.failed, error)
+        else:
+            job.next_tick(self._end, "done")
+
+    def _end(self, status: Status, sentence: str = "", problem: Exception | None = None) -> None:
+        self._job = None
+        self._say(status, sentence)
+        if problem is not None and self._failed is not None:
+            self._failed(problem)

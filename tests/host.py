@@ -1,0 +1,44 @@
+"""A dashboard's host in tests: what it is asked to call is called when the test says so."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+
+class FakeHost:
+    """What a page, a task or a `Debounce` asks of its dashboard; `callbacks` waits, in order, and may be added to from any thread."""
+
+    busy = awaiting_picture = curve_computing = False
+
+    def __init__(self) -> None:
+        self.callbacks: list[Callable[[], None]] = []
+        self.failures: list[Exception] = []
+
+    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
+        """From any thread."""
+        self.callbacks.append(lambda: action(*arguments))
+
+    def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
+        """The time passes when the callbacks are worked off."""
+        self.next_tick(action, *arguments)
+
+    def failed(self, error: Exception) -> None:
+        """What has no place on a page."""
+        self.failures.append(error)
+
+    def call_waiting(self) -> None:
+        """Call what waits now; what that asks for waits."""
+        waiting, self.callbacks = self.callbacks, []
+        for callback in waiting:
+            callback()
+
+    def work_off(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
+        """Call what waits until something holds."""
+        end = time.monotonic() + seconds
+        while not until():
+            assert time.monotonic() < end, "did not come"
+            while self.callbacks:
+                self.callbacks.pop(0)()
+            time.sleep(0.002)

@@ -1,0 +1,91 @@
+"""Switching effects, their slots, and the energy account: the rules of the panel, without a browser."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.session.energy_residual import with_account
+from app.session.session import Session
+from app.session.switches import ACCOUNT, EFFECTS, changes, present, variants
+from granchain_core import BadInput, scene, scene_names, settled
+from granchain_core.lower import slots_of
+from granchain_core.stop import Stop
+from granchain_core.warm import structure
+
+
+@pytest.mark.parametrize("name", [name for name in EFFECTS if name != ACCOUNT])
+@pytest.mark.parametrize("shown", scene_names())
+def test_a_switch_changes_what_is_compiled_and_comes_back(name: str, shown: str) -> None:
+    session = Session(scene=scene(shown))
+    before = structure(session.scene)
+    was = present(name, session.scene, account=False)
+    session.switch(name, not was)
+    assert present(name, session.scene, account=False) is not was
+    assert structure(session.scene) != before
+    session.switch(name, was)
+    assert structure(session.scene) == before
+
+
+def test_what_the_visitor_had_comes_back() -> None:
+    session = Session(scene=scene("rig").evolve(k=12345.0, dissipation="tsuji", D=40.0, F0=3.0))
+    for name in ("dashpot", "foundation", "preload"):
+        session.switch(name, False)
+    assert (session.scene.k, session.scene.F0, session.scene.has_dissipation) == (0.0, 0.0, False)
+    for name in ("dashpot", "foundation", "preload"):
+        session.switch(name, True)
+    assert (session.scene.k, session.scene.F0) == (12345.0, 3.0)
+    assert (session.scene.dissipation, session.scene.D) == ("tsuji", 40.0)
+
+
+def test_another_scene_forgets_what_was_remembered() -> None:
+    session = Session(scene=scene("sec2").evolve(F0=7.0))
+    session.switch("preload", False)
+    session.choose("sec2")
+    session.switch("preload", True)
+    assert session.scene.F0 == 1.0
+
+
+def test_damping_with_no_strength_gets_one() -> None:
+    session = Session(scene=scene("sec2").evolve(D=0.0))
+    session.switch("dashpot", True)
+    assert session.scene.has_dissipation and session.scene.D == 100.0
+
+
+def test_without_damping_there_is_no_tension_to_cut() -> None:
+    bare = scene("sec2").evolve(dissipation="none")
+    with pytest.raises(BadInput, match="no contact can pull"):
+        changes("tension", True, bare, {})
+    assert variants("tension", bare) is None
+
+
+@pytest.mark.parametrize("name", ["wall", "", ACCOUNT, "D"])
+def test_what_is_no_effect_of_a_knob_is_refused(name: str) -> None:
+    with pytest.raises(BadInput):
+        changes(name, True, scene("sec2"), {})
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_the_two_kernels_differ_in_that_effect_only(name: str) -> None:
+    shown = scene("sec2").evolve(F0=0.5, k=1000.0)
+    pair = variants(name, shown)
+    assert pair is not None
+    slots = [{slot: kind for slot, _, kind in slots_of(one.scene, one.balance)} for one in pair]
+    differing = {slot for slot in slots[0] if slots[0][slot] != slots[1][slot]}
+    assert len(differing) == 1
+    assert slots[1][differing.pop()] is None
+
+
+def test_slots_name_types_and_absences() -> None:
+    found = {name: kind for name, _, kind in slots_of(scene("sec2"), balance=False)}
+    assert found == {"chain": "Chain", "dissipation": "LinearDashpot", "tension": None, "foundation": None,
+                     "preload": None, "driver": "Harmonic", "balance": None}
+    assert {name: kind for name, _, kind in slots_of(scene("rig"), balance=True)}["balance"] == "Balance"
+
+
+def test_the_account_of_a_picture_closes() -> None:
+    picture = settled(scene("sec2").evolve(N=3, f=1000.0))
+    assert picture.run.energy_residual is None
+    counted = with_account(picture, Stop())
+    # the account is as good as the motion it is integrated with: a hundredth of the 1e-6 asked for
+    assert counted.run.energy_residual is not None and counted.run.energy_residual < 1e-6
+    assert counted.run.displacement is picture.run.displacement

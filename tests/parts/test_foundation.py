@@ -1,0 +1,64 @@
+"""k and κ at another amplitude: what changes is said, where it changes and only there."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from app.cli import main
+from app.cli.foundation import kept_along, kept_spring
+from app.parts.foundation import beside_kappa
+from granchain_core import scene, settled
+
+RIG = scene("rig")
+
+
+def said(*settings: str, capsys: pytest.CaptureFixture[str]) -> str:
+    """What a run with these settings says on stderr; its stdout is one JSON object and nothing else."""
+    words = [word for setting in settings for word in ("--set", setting)]
+    assert main(["run", "rig", "--periods", "0", "--record", "1", "--json", *words]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("{") and out.count("\n") == 1
+    return err
+
+
+def test_an_amplitude_set_alone_is_said_with_both_kappas(capsys: pytest.CaptureFixture[str]) -> None:
+    told = said("A0=6e-6", capsys=capsys)
+    # κ = k/(K√A0): 0.001·√(7/6)
+    assert told == "κ was 0.001 before A₀ changed at constant k. It is 0.00108012 now; --set kappa=0.001 keeps it.\n"
+
+
+@pytest.mark.parametrize("settings", [("A0=6e-6", "kappa=0.001"), ("k=30000", "A0=6e-6"), ("A0=7e-6",), ("D=30",)])
+def test_nothing_is_said_where_kappa_did_not_follow_unasked(settings: tuple[str, ...],
+                                                            capsys: pytest.CaptureFixture[str]) -> None:
+    assert "κ" not in said(*settings, capsys=capsys)
+
+
+def test_without_a_foundation_there_is_nothing_to_say() -> None:
+    sec2 = scene("sec2")
+    assert kept_spring(sec2, sec2.evolve(A0=1e-6), {"A0"}) == ""
+    assert kept_along(sec2, "A0", "f") == beside_kappa(sec2.evolve(A0=1e-6)) == ""
+
+
+def test_a_branch_or_map_in_the_amplitude_is_said() -> None:
+    assert "constant k = 32435.6 N/m" in kept_along(RIG, "f", "A0")
+    assert kept_along(RIG, "f", "D") == kept_along(RIG, "kappa", "A0") == ""
+
+
+def test_the_page_says_beside_kappa_what_it_was() -> None:
+    assert beside_kappa(RIG.evolve(A0=6e-6)) == "κ was 0.001 before A₀ changed at constant k"
+    assert beside_kappa(RIG) == beside_kappa(RIG.evolve(A0=6e-6, kappa=0.001)) == ""
+
+
+def test_the_presets_of_figure_12_are_peak_valley_peak_in_period_1() -> None:
+    """Amplitudes within the paper's 6 to 13 µm, κ = 0.001 each; the forces themselves stand in docs/model.md."""
+    found = [scene(name) for name in ("fig12-60", "fig12-90", "fig12-100")]
+    assert [(one.f, one.A0) for one in found] == [(60.0, 11e-6), (90.0, 6e-6), (50.0, 13e-6)]
+    for one in found:
+        assert one.k == pytest.approx(0.001 * one.K * math.sqrt(one.A0), rel=1e-14)
+        assert one.reference_overlap == RIG.reference_overlap
+    pictures = [settled(one) for one in found]
+    assert [(p.regime.name, p.regime.period) for p in pictures] == [("periodic", 1)] * 3
+    first, valley, second = (p.run.max_output_force_elastic for p in pictures)
+    assert min(first, second) > 2 * valley

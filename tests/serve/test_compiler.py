@@ -1,0 +1,40 @@
+"""Compiling in other processes: what fails there is in the log, and the kernels are compiled here instead."""
+
+from __future__ import annotations
+
+import logging
+import time
+
+import pytest
+
+from app.serve import compiler
+from app.serve.compiler import Compiler
+from granchain_core import scene
+
+
+def test_a_compiler_that_fails_is_reported_with_what_it_said(monkeypatch: pytest.MonkeyPatch,
+                                                            caplog: pytest.LogCaptureFixture) -> None:
+    compiled: list[str] = []
+    monkeypatch.setattr(compiler, "compile_piece", lambda _, piece: compiled.append(piece))
+    with caplog.at_level(logging.WARNING, logger="granchain"):
+        compiler._compile(scene("sec2"), "no such piece")
+    assert compiled == ["no such piece"]
+    assert "compiling no such piece in another process failed" in caplog.text
+    assert "Error" in caplog.text  # the end of the other process's messages
+
+
+def test_a_failure_ahead_of_time_is_in_the_log(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    """Nobody waits for it: the first visitor would only find it slow."""
+    one = Compiler()
+
+    def fails(*_: object) -> None:
+        raise ZeroDivisionError("a kernel that cannot be loaded")
+
+    monkeypatch.setattr(one, "has", lambda *_: True)
+    monkeypatch.setattr(one, "load", fails)
+    with caplog.at_level(logging.ERROR, logger="granchain"):
+        one.prepare(scene("sec2"))
+        end = time.monotonic() + 20
+        while "a kernel that cannot be loaded" not in caplog.text:
+            assert time.monotonic() < end, "was not reported"
+            time.sleep(0.01)

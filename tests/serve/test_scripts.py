@@ -1,0 +1,80 @@
+"""The JavaScript modules: what each imports is there, pages and parts keep their layers, and nothing else is served."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from pathlib import Path
+
+import pytest
+from panel.io.server import ComponentResourceHandler
+from tornado.web import HTTPError
+
+from app import scripts
+from app.page.layout import Views
+from app.parts.component import Component
+from app.parts.figure_part import FigurePart
+from app.scripts import FILES, address, module
+
+APP = Path(scripts.__file__).parent
+IMPORT = re.compile(r'^import \{ ([^}]+) \} from "(\./[^"]+|\.\./[^"]+)";$', re.MULTILINE)
+EXPORT = re.compile(r"^export (?:async )?(?:const|let|function|class) (\w+)", re.MULTILINE)
+
+
+def served(url: str) -> Path:
+    """The file that Panel would send."""
+    return Path(ComponentResourceHandler.parse_url_path(ComponentResourceHandler, url.removeprefix("components/")))  # type: ignore[arg-type]
+
+
+def imports(name: str) -> dict[str, set[str]]:
+    """The addresses a module imports from, with what it takes from each."""
+    found = IMPORT.findall(FILES[name].read_text(encoding="utf-8"))
+    here = posixpath.dirname(address(name))
+    return {posixpath.normpath(posixpath.join(here, path)): set(names.split(", ")) for names, path in found}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_what_a_module_imports_is_served_and_exported_there(name: str) -> None:
+    source = FILES[name].read_text(encoding="utf-8")
+    assert len(imports(name)) == len(re.findall(r"^import\b", source, re.MULTILINE)), "an import of another form"
+    for url, names in imports(name).items():
+        exported = set(EXPORT.findall(served(url).read_text(encoding="utf-8")))
+        assert names <= exported, f"{url} has no {names - exported}"
+
+
+def test_every_name_that_is_exported_is_used() -> None:
+    used = {(served(url), one) for name in FILES for url, names in imports(name).items() for one in names}
+    exported = {(path, one) for path in FILES.values() for one in EXPORT.findall(path.read_text(encoding="utf-8"))}
+    assert {one for one in exported - used if one[1] != "render"} == set()
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_modules_keep_the_layers_of_the_app(name: str) -> None:
+    """Parts import parts, a page its own folder and parts; what puts the dashboard together may import both."""
+    mine = FILES[name].relative_to(APP).parent.as_posix()
+    theirs = {served(url).resolve().relative_to(APP).parent.as_posix() for url in imports(name)}
+    if mine != "page":
+        assert theirs <= {mine, "parts"}
+
+
+def test_names_are_unique() -> None:
+    assert sorted(path.name for path in APP.rglob("*.js")) == sorted(FILES)
+
+
+def test_every_component_renders_a_module_of_its_own() -> None:
+    assert Views.__name__  # importing it makes every component known
+    parts = {*Component.__subclasses__(), *FigurePart.__subclasses__()} - {FigurePart}
+    rendered = {part._esm for part in parts if part.__module__.startswith("app.")}
+    assert rendered == {module(name) for name, path in FILES.items() if "render" in EXPORT.findall(path.read_text(encoding="utf-8"))}
+
+
+@pytest.mark.parametrize("path", ["scripts.py", "page/controller.py", "../pyproject.toml", "page/page.html"])
+def test_no_other_file_is_served(path: str) -> None:
+    root = address("page.js").removesuffix("parts/page.js")
+    with pytest.raises(HTTPError):
+        served(root + path)
+
+
+def test_an_address_changes_with_what_is_served() -> None:
+    """Whatever the browser kept of an earlier version has another address."""
+    assert re.fullmatch(r"components/app\.scripts/Scripts_[0-9a-f]{12}/__javascript_modules__/parts/plot\.js", address("plot.js"))

@@ -1,0 +1,97 @@
+"""Share links: everything that differs comes back, and every bad field is refused by itself."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.session.share import EXTRAS, decode, encode
+from granchain_core import scene, scene_names
+
+
+@given(name=st.sampled_from(scene_names()), f=st.floats(0.1, 1e6), amplitude=st.floats(1e-12, 1e-4),
+       damping=st.floats(0.0, 1e6), stiffness=st.floats(0.0, 1e10), beads=st.integers(1, 10_000),
+       law=st.sampled_from(["linear", "tsuji", "kuwabara-kono", "none"]), mode=st.sampled_from(EXTRAS["mode"]))
+def test_a_link_brings_back_exactly_what_was_shared(name: str, f: float, amplitude: float, damping: float,
+                                                    stiffness: float, beads: int, law: str, mode: str) -> None:
+    shown = scene(name).evolve(f=f, A0=amplitude, D=damping, k=stiffness, N=beads, dissipation=law)
+    back, extras, refused = decode(encode(shown, {"mode": mode}))
+    assert back == shown and refused == []
+    assert extras.get("mode", EXTRAS["mode"][0]) == mode
+
+
+def test_a_link_that_was_sent_once_means_today_what_it_meant() -> None:
+    """Literal on purpose: if a preset, a default or a name changes, links that are out there change with it."""
+    shown, extras, refused = decode(
+        "v=1&scene=rig&f=72.5&A0=6e-06&D=12.5&k=1500.0&N=9&F0=0.25&wall=rigid&dissipation=tsuji&tension=cut"
+        "&accuracy=1e-08&mode=live&start=previous&look=dark")
+    assert refused == []
+    assert extras == {"mode": "live", "start": "previous", "look": "dark"}
+    assert shown.name == "rig"
+    assert {name: value for name, value in shown.knobs.items() if name != "kappa"} == {
+        "f": 72.5, "A0": 6e-6, "D": 12.5, "k": 1500.0, "N": 9, "F0": 0.25, "wall": "rigid", "dissipation": "tsuji",
+        "tension": "cut", "accuracy": 1e-8}
+    bead = shown.bead(1)  # what the link leaves to the preset
+    assert (bead.mass, bead.radius, bead.young, bead.poisson) == (0.067355, 0.0127, 210e9, 0.3)
+
+
+#: What a link with nothing but the name of a scene means as of version 0.1.0: f, A0, D, k, kappa, wall, and
+#: mass, radius and Young's modulus of a bead.
+_PAPER, _RIG = (0.02884, 0.009525, 193e9), (0.067355, 0.0127, 210e9)
+_BARE = {
+    "sec2": (340.0, 5e-7, 100.0, 0.0, 0.0, "bead", _PAPER),
+    "fig3a": (340.0, 5e-7, 100.0, 0.0, 0.0, "bead", _PAPER),
+    "fig3b": (1130.0, 5e-7, 100.0, 0.0, 0.0, "bead", _PAPER),
+    "fig11-free": (100.0, 5e-7, 100.0, 0.0, 0.0, "same-material", _PAPER),
+    "fig11-founded": (100.0, 5e-7, 100.0, 6899.651483730814, 0.001, "same-material", _PAPER),
+    "rig": (60.0, 7e-6, 35.4, 32435.644065089244, 0.001, "same-material", _RIG),
+    "fig12-60": (60.0, 1.1e-5, 35.4, 40660.23165046925, 0.001, "same-material", _RIG),
+    "fig12-90": (90.0, 6e-6, 35.4, 30029.571224527892, 0.001, "same-material", _RIG),
+    "fig12-100": (50.0, 1.3e-5, 35.4, 44202.33199556504, 0.001, "same-material", _RIG),
+}
+
+
+@pytest.mark.parametrize("name", _BARE)
+def test_a_link_to_a_scene_as_it_is_means_what_it_meant(name: str) -> None:
+    """Literal like the one above; a new scene gets a row when it is released."""
+    shown, extras, refused = decode(f"v=1&scene={name}")
+    f, amplitude, damping, k, kappa, wall, (mass, radius, young) = _BARE[name]
+    assert (shown.name, extras, refused) == (name, {}, [])
+    assert (shown.f, shown.A0, shown.D, shown.knobs["wall"]) == (f, amplitude, damping, wall)
+    assert (shown.k, shown.kappa) == pytest.approx((k, kappa), rel=1e-12)  # the presets of the rig state kappa
+    assert (shown.N, shown.F0, shown.knobs["dissipation"], shown.knobs["tension"]) == (11, 0.0, "linear", "allowed")
+    assert shown.accuracy == 1e-6
+    assert all((bead.mass, bead.radius, bead.young, bead.poisson) == (mass, radius, young, 0.3) for bead in shown.beads)
+
+
+def test_every_scene_has_its_literal_link() -> None:
+    assert set(_BARE) == set(scene_names())
+
+
+def test_a_link_with_kappa_means_the_k_it_meant() -> None:
+    shown, _, refused = decode("v=1&scene=rig&A0=6e-06&kappa=0.002")
+    assert refused == [] and shown.A0 == 6e-6
+    assert shown.k == pytest.approx(60059.142449055784, rel=1e-12)
+
+
+def test_every_bad_field_gets_its_sentence_and_the_good_ones_count() -> None:
+    back, extras, refused = decode("v=1&scene=rig&f=nan&A0=1e3&foo=1&mode=x&D=12&look=dark")
+    assert back == scene("rig").evolve(D=12.0)
+    assert extras == {"look": "dark"}
+    assert len(refused) == 4 and all(sentence.endswith(".") for sentence in refused)
+
+
+def test_an_unknown_scene_or_version_is_said_and_the_first_scene_shown() -> None:
+    back, _, refused = decode("v=9&scene=rigg")
+    assert back == scene(scene_names()[0]) and len(refused) == 2
+
+
+@given(st.text(max_size=200))
+def test_no_query_string_breaks_the_page(query: str) -> None:
+    back, extras, refused = decode(query)
+    assert back.N >= 1 and isinstance(extras, dict) and all(isinstance(s, str) for s in refused)
+
+
+def test_a_link_of_unreasonable_length_is_not_read() -> None:
+    assert "longer than" in decode("f=" + "1" * 5000)[2][0]

@@ -1,0 +1,151 @@
+"""Background work of a page: what arrives, what does not after a cancel, and what a failure says."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+from host import FakeHost
+
+from app.serve.queues import Queue
+from app.session.task import Job, Task
+from granchain_core import BadInput, Cancelled, NumbersFailed, scene
+
+
+class Dashboard(FakeHost):
+    """A host that keeps what a task's page says."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.said: list[tuple[str, str]] = []
+
+    def say(self, status: str, sentence: str) -> None:
+        """What the page of the task says."""
+        self.said.append((status, sentence))
+
+
+@pytest.fixture
+def host() -> Dashboard:
+    """A dashboard with nothing on it."""
+    return Dashboard()
+
+
+@pytest.fixture
+def task(host: Dashboard) -> Task:
+    """A task on a queue of its own."""
+    return Task(host, Queue("test", 1), host.say, "The measurement")  # type: ignore[arg-type]
+
+
+def failing(error: Exception) -> Callable[[Job], None]:
+    """Work that ends with this."""
+    def work(_: Job) -> None:
+        raise error
+    return work
+
+
+def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) -> None:
+    task.start(lambda job: job.say("measuring"))
+    assert task.running
+    host.work_off(lambda: not task.running)
+    assert host.said == [("measuring", ""), ("done", "")]
+
+
+@pytest.mark.parametrize(("error", "sentence", "told"), [
+    (NumbersFailed("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
+    (BadInput("f must be positive."), "f must be positive.", False),
+    (ZeroDivisionError("1/0"), "The measurement failed because of an error in granchain.", True)])
+def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: Dashboard,
+                                                          task: Task) -> None:
+    task.start(failing(error))
+    host.work_off(lambda: not task.running and not host.callbacks)
+    assert host.said == [("failed", sentence)]
+    assert host.failures == ([error] if told else [])
+
+
+def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: Dashboard) -> None:
+    problem = BadInput("f must be positive.")
+    task = Task(host, Queue("test", 1), host.say, failed=host.failed)  # type: ignore[arg-type]
+    task.start(failing(problem))
+    host.work_off(lambda: not task.running)
+    assert host.failures == [problem]
+
+
+def test_nothing_of_cancelled_work_arrives(host: Dashboard, task: Task) -> None:
+    entered, leave = threading.Event(), threading.Event()
+
+    def work(job: Job) -> None:
+        job.say("measuring")
+        entered.set()
+        assert leave.wait(20)
+        assert job.stop
+        job.say("late")
+
+    task.start(work)
+    assert entered.wait(20)
+    assert task.cancel() and not task.running
+    assert not task.cancel(), "there is nothing to cancel any more"
+    leave.set()
+    task.start(lambda job: None)
+    host.work_off(lambda: not task.running)
+    assert host.said == [("done", "")]
+
+
+def test_cancelled_is_no_failure(host: Dashboard, task: Task) -> None:
+    def work(job: Job) -> None:
+        while not job.stop:
+            time.sleep(0.002)
+        raise Cancelled
+
+    task.start(work)
+    task.start(lambda job: None)
+    host.work_off(lambda: not task.running)
+    assert host.said == [("done", "")] and host.failures == []
+
+
+def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: Dashboard) -> None:
+    queue, leave = Queue("test", 1), threading.Event()
+    queue.submit(leave.wait, 20)
+    task = Task(host, queue, host.say)  # type: ignore[arg-type]
+    task.start(failing(AssertionError("begun")))
+    task.cancel()
+    leave.set()
+    assert queue.submit(lambda: True).result(20)
+    host.work_off(lambda: not host.callbacks)
+    assert host.said == [] and host.failures == []
+
+
+def test_work_gives_way_to_a_moving_knob(host: Dashboard, task: Task) -> None:
+    host.awaiting_picture = True
+    task.start(lambda job: job.give_way())
+    time.sleep(0.1)
+    assert host.callbacks == []
+    host.awaiting_picture = False
+    host.work_off(lambda: not task.running)
+
+
+def test_compiling_is_said_and_given_up_with_the_job(host: Dashboard, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.session.task.COMPILER.has", lambda *_: False)
+    monkeypatch.setattr("app.session.task.COMPILER.await_piece", lambda *_: False)
+    monkeypatch.setattr("app.session.task.COMPILER.load", lambda *_: pytest.fail("loaded"))
+    task.start(lambda job: job.compile(scene("sec2"), "live"))
+    host.work_off(lambda: host.said == [("compiling", "")])
+    assert host.failures == []
+
+
+def test_a_queue_works_on_so_many_at_once_and_keeps_what_they_return() -> None:
+    queue, entered, leave = Queue("test", 2), threading.Semaphore(0), threading.Event()
+
+    def work(number: int) -> int:
+        entered.release()
+        assert leave.wait(20)
+        return number
+
+    futures = [queue.submit(work, number) for number in range(3)]
+    assert entered.acquire(timeout=20) and entered.acquire(timeout=20)
+    assert not entered.acquire(timeout=0.1), "the third waits"
+    leave.set()
+    assert [future.result(20) for future in futures] == [0, 1, 2]
+    with pytest.raises(ZeroDivisionError):
+        queue.submit(lambda: 1 // 0).result(20)
