@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from granchain_core.kernels import contact_cubic
 from granchain_core.kernels.contact_cubic import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END
 from granchain_core.kernels.dop853 import run as certified
 from granchain_core.kernels.effects.balance import Balance
@@ -28,24 +29,24 @@ def ends_of(*roots: float, sign: float = 1.0) -> tuple[float, float, float, floa
 ])
 def test_a_contact_changes_at_the_cubics_first_root(roots, sign, first) -> None:  # type: ignore[no-untyped-def]
     """Contacts that open, close, do both, and neither; 2 means not in this step."""
-    found = events.contact_root.py_func(*(float(np.real(x)) for x in ends_of(*roots, sign=sign)))
+    found = contact_cubic.contact_root.py_func(*(float(np.real(x)) for x in ends_of(*roots, sign=sign)))
     assert found == pytest.approx(first, abs=1e-11)  # the iteration ends at 1e-12
 
 
 @pytest.mark.parametrize(("s0", "d1", "root"), [(1.0, 0.5, 0.0), (-1.0, -0.5, 2.0), (1.0, -0.5, 2.0)])
 def test_beads_that_touch_close_where_they_are_pushed_together(s0: float, d1: float, root: float) -> None:
-    assert events.contact_root.py_func(0.0, s0, d1, s0) == root
+    assert contact_cubic.contact_root.py_func(0.0, s0, d1, s0) == root
 
 
 def test_the_turn_is_where_the_slope_is_zero() -> None:
     for roots, sign in (((0.2, 0.7), 1.0), ((0.2, 0.7), -1.0), ((0.1, 0.4, 2.0), 1.0)):
         turns = np.roots(np.poly1d(np.poly(roots)).deriv())
         inside = [x for x in turns if 0.0 < x < 1.0]
-        assert events.hermite_turn.py_func(*ends_of(*roots, sign=sign)) == pytest.approx(inside[0], rel=1e-12)
+        assert contact_cubic.hermite_turn.py_func(*ends_of(*roots, sign=sign)) == pytest.approx(inside[0], rel=1e-12)
 
 
 def test_the_first_of_several_contacts_is_taken() -> None:
-    ends = np.zeros((events.ENDS, 3))
+    ends = np.zeros((contact_cubic.ENDS, 3))
     for c, root in enumerate((0.6, 0.25, 0.8)):
         ends[GAP, c], ends[RATE, c], ends[GAP_END, c], ends[RATE_END, c] = ends_of(root)
     ends[[RATE, RATE_END]] /= 0.5  # rates are in time, for a step of 0.5
@@ -72,7 +73,7 @@ def test_what_simpsons_rule_gives_too_much(r: float) -> None:
     (LinearDashpot(0.3), 0.0, 1.25), (Tsuji(0.3), 0.8 * 0.3, 1.25), (KuwabaraKono(0.3), 2.0 / 3.0 * 0.3, 1.5)])
 def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None:  # type: ignore[no-untyped-def]
     """K v^{3/2} h^{5/2} and c v^p h^{p+1} times the excess over the closed side: behind an onset, before a release."""
-    ends, h = np.zeros((events.ENDS, 2)), 0.2
+    ends, h = np.zeros((contact_cubic.ENDS, 2)), 0.2
     ends[RATE, 1] = rate
     events.add_quadrature_errors.py_func(law, 1.4, ends, 1, h, 0.25)
     assert ends[MOMENTUM_ERROR, 1] == pytest.approx(1.4 * 0.7**1.5 * h**2.5 * excess(1.5, part), rel=1e-9)
@@ -93,7 +94,7 @@ def test_a_contact_that_turned_may_have_changed_in_between(before, after, rising
 
 def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None:
     """Contact c pushed its beads apart too much by ends[MOMENTUM_ERROR, c]; the driver did that of contact 0 at its speed."""
-    inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((events.ENDS, 3))
+    inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((contact_cubic.ENDS, 3))
     ends[MOMENTUM_ERROR], ends[DISPLACEMENT_ERROR] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)
     slots = SimpleNamespace(chain=SimpleNamespace(inverse_mass=inverse), balance=Balance(1))
     y = np.zeros(10)
