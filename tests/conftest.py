@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,12 @@ QUICK = (
     "orbits/test_orbit_claims.py", "diagram/test_boundary.py", "observe/test_force_files.py",
     "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py",
 )
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """`-n auto`: one worker more than processors, because one that tests the dashboard mostly waits for browser and server."""
+    return (os.cpu_count() or 1) + 1
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

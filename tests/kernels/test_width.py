@@ -36,8 +36,9 @@ def test_both_numbers_of_lanes_give_the_same_curve() -> None:
 
 
 def test_the_number_of_lanes_is_the_machines_or_the_one_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    for found, lanes in ((True, 8), (False, 4)):
-        monkeypatch.setattr(width, "has_avx512", lambda found=found: found)
+    for wide, name, lanes in ((True, "icelake-server", 8), (True, "znver4", 4), (False, "znver3", 4)):
+        monkeypatch.setattr(width, "has_avx512", lambda wide=wide: wide)
+        monkeypatch.setattr(width, "processor", lambda name=name: name)
         assert width.batch_lanes(None) == lanes
     assert width.batch_lanes("4") == 4 and width.batch_lanes("8") == 8
     with pytest.raises(ValueError, match="GRANCHAIN_LANES = '7' is not one of 4, 8"):
