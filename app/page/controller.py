@@ -71,9 +71,11 @@ class Controller:
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
-            self.say(f"The page sent a request {quoted(name)} that is not known here; reload the page.")
-            return
+            action, message = self._unknown, {"name": quoted(name)}
         with_document_lock(self._document, partial(self._guarded, action, message))
+
+    def _unknown(self, message: dict[str, Any]) -> None:
+        self.say(f"The page sent a request {message['name']} that is not known here; reload the page.")
 
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
         try:

@@ -13,7 +13,7 @@ export class Embedded {
     if (!item || item === this.item) return;
     this.item = item;
     this.host.setAttribute("aria-label", words);
-    this.ready = this.ready.then(async () => {
+    this.enqueue(async () => {
       this.clear();
       // Filled before it is drawn: an axis without data has no range.
       this.document = Bokeh.require("document").Document.from_json(item.doc);
@@ -24,7 +24,12 @@ export class Embedded {
 
   remove() {
     this.item = null;
-    this.ready = this.ready.then(() => this.clear());
+    this.enqueue(() => this.clear());
+  }
+
+  // One after the other; what fails is reported and does not keep the next from being drawn.
+  enqueue(change) {
+    this.ready = this.ready.then(change).catch((problem) => console.error(problem));
   }
 
   clear() {

@@ -61,12 +61,12 @@ class Batch:
             turn=_rows(2), beta=_rows(1), h=_rows(1),
         )
         rows = 2 * (n + 2)
-        whole = [np.zeros(BATCH_LANES, dtype=np.int64) for _ in range(9)]
+        whole = [np.zeros(BATCH_LANES, dtype=np.int64) for _ in range(10)]
         parts = [np.zeros(BATCH_LANES) for _ in range(2)]
         self.state = kernels.BatchState(
             y=_rows(rows), gaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
             steps=whole[0], left=whole[1], periods=whole[2], return_at=whole[3], earliest=whole[4],
-            extrapolate_from=whole[5], pause=whole[6], kept=whole[7], testing=whole[8], slowest=parts[0],
+            extrapolate_from=whole[5], pause=whole[6], kept=whole[7], testing=whole[8], due=whole[9], slowest=parts[0],
             change_before_extrapolation=parts[1], before=np.zeros((BATCH_LANES, 2, n + 2)),
             fine_record=np.zeros((BATCH_LANES, FINE)), strobes=np.zeros((BATCH_LANES, 2 * STROBES_PER_LANE, 2, n + 2)),
             tops=np.zeros((BATCH_LANES, STROBES_PER_LANE, 5)), last_check=np.zeros((BATCH_LANES, 3)), scale=np.zeros(2),
@@ -103,7 +103,7 @@ class Batch:
         state.periods[lane], state.return_at[lane], state.earliest[lane] = 0, return_at, earliest
         state.extrapolate_from[lane], state.pause[lane] = 0, _PAUSE
         state.slowest[lane], state.change_before_extrapolation[lane] = 0.0, 0.0
-        state.fine_record[lane], state.testing[lane] = 0.0, 0
+        state.fine_record[lane], state.testing[lane], state.due[lane] = 0.0, 0, 0
 
     def put_fine(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, period: int, rate: float,
                  tops: np.ndarray) -> None:
@@ -123,12 +123,14 @@ class Batch:
         return int(lane), status == DONE
 
     def run_pairs(self, start: float, periods: int) -> np.ndarray:
-        """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (pairs, periods)."""
+        """Run lanes (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (pairs, periods).
+
+        It is NaN for a pair that did not stay finite.
+        """
         growth = np.zeros((BATCH_LANES // 2, periods))
-        status = kernels.run_pairs(self.lanes, self.state, start, growth, self.stop.flag)
-        if status == CANCELLED:
+        if kernels.run_pairs(self.lanes, self.state, start, growth, self.stop.flag) == CANCELLED:
             raise Cancelled
-        return growth if status == DONE else np.full_like(growth, np.nan)
+        return growth
 
     def strobes(self, lane: int, most: int = STROBES_PER_LANE) -> np.ndarray:
         """The last `most` remembered strobes of a lane in order, (P, 2, N), displacement and w in scaled units."""

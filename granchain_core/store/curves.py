@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
-import h5py
 import numpy as np
 
-from ..errors import BadInput
+from ..errors import FAILURES
+from ..hdf5 import File, opened
+from ..hdf5.border import one_of, within
+from ..hdf5.plain import Refused
+from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
 from ..state import rest
-from ..steady.curve import Curve, CurvePoint
-from ..steady.regime import Regime
-from .files import _MAXIMA, SCHEMA, _or_none
+from ..steady.curve import STARTS, Curve, CurvePoint
+from .files import _MAXIMA, REGIMES, _or_none
 
-_COLUMNS = ("frequency", *_MAXIMA, "error_estimate_input", "error_estimate", "error_estimate_elastic", "period")
+_NUMBERS = ("frequency", *_MAXIMA, "error_estimate_input", "error_estimate", "error_estimate_elastic")
+#: How the computation of a point can have ended.
+_OUTCOMES = ("done", *FAILURES)
 
 
 def load_curve(path: str | Path) -> Curve:
@@ -24,22 +27,25 @@ def load_curve(path: str | Path) -> Curve:
 
     Raises `BadInput` for a file that is not one.
     """
-    try:
-        with h5py.File(path, "r") as file:
-            if int(file.attrs["granchain_schema"]) != SCHEMA:
-                raise BadInput(f"{path}: schema {file.attrs['granchain_schema']}, this version reads {SCHEMA}.")
-            scene = Scene.from_json(json.loads(file.attrs["scene"]))
-            columns = np.array([file["curve"][name][()] for name in _COLUMNS], dtype=float)
-            names, outcomes = (file["curve"][name].asstr()[()] for name in ("regime", "status"))
-            points = [_point(scene, *one) for one in zip(columns.T, names, outcomes, strict=True)]
-            return Curve(scene, str(file.attrs["start"]), points, float(file.attrs["wall_s"]))
-    except BadInput:
-        raise
-    except (OSError, KeyError, TypeError, ValueError, AttributeError) as problem:
-        raise BadInput(f"{path} is not a curve written by granchain: {problem}.") from None
+    with opened(path, "is not a curve written by granchain") as file:
+        file.schema()
+        return _read(file)
 
 
-def _point(scene: Scene, numbers: np.ndarray, name: str, outcome: str) -> CurvePoint:
-    frequency, entered, arrived, elastic, *errors = map(float, numbers[:-1])
-    return CurvePoint(frequency, arrived, elastic, entered, Regime(name, int(numbers[-1]) or None, None, None, 0),
+def _read(file: File) -> Curve:
+    """The curve in a file."""
+    scene, shape = file.scene(), file.shape("curve/frequency")
+    if len(shape) != 1:
+        raise Refused(f"/curve/frequency has shape {shape}, expected one row of frequencies")
+    numbers = np.array([file.numbers(f"curve/{name}", shape) for name in _NUMBERS])
+    periods = within("/curve/period", file.numbers("curve/period", shape, "i"), 0, np.iinfo(np.int32).max)
+    names = file.words("curve/regime", shape[0], REGIMES)
+    outcomes = file.words("curve/status", shape[0], _OUTCOMES)
+    points = [_point(scene, *one) for one in zip(numbers.T, periods, names, outcomes, strict=True)]
+    return Curve(scene, one_of("start", file.text("start"), STARTS), points, file.number("wall_s"))
+
+
+def _point(scene: Scene, numbers: np.ndarray, period: int, name: str, outcome: str) -> CurvePoint:
+    frequency, input_force, output_force, elastic, *errors = map(float, numbers)
+    return CurvePoint(frequency, output_force, elastic, input_force, Regime(name, int(period) or None, None, None, 0),
                       ForceErrors(*(_or_none(error) for error in errors)), rest(scene), status=outcome)

@@ -55,8 +55,11 @@ def ends_well(command: Command, number: signal.Signals) -> None:
     assert command.left() == []
 
 
-@pytest.mark.parametrize("number", SENTENCE)
-@pytest.mark.parametrize("name", LONG)
+#: Every command and both signals; all pairs of them at random instants: `python -m tools.kills`.
+BY_TURNS = [(name, list(SENTENCE)[i % 2]) for i, name in enumerate(LONG)]
+
+
+@pytest.mark.parametrize(("name", "number"), BY_TURNS)
 def test_a_command_ends_while_it_computes_or_compiles(name: str, number: signal.Signals,
                                                       started: Callable[..., Command]) -> None:
     """After three seconds it has loaded everything and computes, or compiles where the machine has no kernels yet."""
@@ -66,8 +69,7 @@ def test_a_command_ends_while_it_computes_or_compiles(name: str, number: signal.
     ends_well(command, number)
 
 
-@pytest.mark.parametrize("number", SENTENCE)
-@pytest.mark.parametrize("name", ["run", "check", "warm", "serve"])
+@pytest.mark.parametrize(("name", "number"), list(zip(["run", "check", "warm", "serve"], list(SENTENCE) * 2, strict=True)))
 def test_a_command_ends_while_kernels_compile(name: str, number: signal.Signals, started: Callable[..., Command],
                                               tmp_path: Path) -> None:
     command = started(*LONG[name], GRANCHAIN_CACHE=str(tmp_path / "empty"))
@@ -78,8 +80,7 @@ def test_a_command_ends_while_kernels_compile(name: str, number: signal.Signals,
     ends_well(command, number)
 
 
-@pytest.mark.parametrize("entry", ENTRIES)
-@pytest.mark.parametrize("after", [0.0, 0.03, 0.1, 0.2, 0.4, 0.8])
+@pytest.mark.parametrize(("after", "entry"), list(zip([0.0, 0.03, 0.1, 0.2, 0.4, 0.8], list(ENTRIES) * 3, strict=True)))
 def test_an_interrupt_in_the_first_second(after: float, entry: str, started: Callable[..., Command]) -> None:
     """While it loads what it needs, from the instant on at which the entry has told the system of its handlers."""
     command = started(*LONG["run"], program=ENTRIES[entry])

@@ -22,7 +22,7 @@ from tools.damage.harms import FORGERIES, LEADING
 from tools.damage.kinds import KINDS, made, told
 
 #: A dataset that each reader needs.
-NEEDED = {"run": "run/displacement", "start of orbit": "run/velocity", "force of a run": "run/input_force", "branch": "branch/state",
+NEEDED = {"run": "run/displacement", "start of orbit": "run/velocity", "force of a run": "run/input_force", "branch": "branch/state", "curve": "curve/period",
           "map": "map/regime", "observation": "observation/displacement"}
 
 

@@ -11,11 +11,12 @@ import h5py
 import numpy as np
 
 from app.cli.orbit import _start
-from granchain_core import observe, run, scene
+from granchain_core import observe, resonance_curve, run, scene
 from granchain_core.diagram import Axis, Grid, diagram
 from granchain_core.observe import first_state, read_force
 from granchain_core.orbits import Continuation, begin_branch
-from granchain_core.store import load, load_branch, save, save_branch, save_observation
+from granchain_core.store import load, load_branch, save, save_branch, save_curve, save_observation
+from granchain_core.store.curves import load_curve
 from granchain_core.store.diagrams import load_diagram, save_diagram
 
 BEADS = 3
@@ -43,6 +44,10 @@ def _branch(path: Path) -> Path:
     return save_branch(Continuation(begun).run(most_points=4), path)
 
 
+def _curve(path: Path) -> Path:
+    return save_curve(resonance_curve(_chain(), [300.0, 340.0, 380.0]), path)
+
+
 def _map(path: Path) -> Path:
     grid = Grid(_chain(), Axis.of("f", [300.0, 340.0, 380.0]), Axis.of("A0", [4e-7, 5e-7]))
     return save_diagram(diagram(grid.scene, ("f", grid.x.values), ("A0", grid.y.values)), path)
@@ -59,7 +64,7 @@ def _read_force(path: Path) -> Any:
 
 KINDS = {kind.name: kind for kind in (
     Kind("run", _run, load), Kind("start of orbit", _run, lambda path: _start(_chain(), str(path), 0)),
-    Kind("force of a run", _run, _read_force), Kind("branch", _branch, load_branch), Kind("map", _map, load_diagram),
+    Kind("force of a run", _run, _read_force), Kind("branch", _branch, load_branch), Kind("curve", _curve, load_curve), Kind("map", _map, load_diagram),
     Kind("observation", _observation, _read_force))}
 
 

@@ -67,9 +67,11 @@ class ObserverPage(Page):
         session = self._host.session
         self._task.start(partial(self._work, session.scene, session.picture))
 
-    def _said(self, status: Status, _: str) -> None:
+    def _said(self, status: Status, sentence: str) -> None:
         if status == "compiling":
             self._view.update_state(**WORDS.of(status))
+        elif status == "failed":
+            self._view.update_state(**WORDS.of(status), sentence=sentence)
         elif self._asked:
             self._more()
 

@@ -47,7 +47,7 @@ class StabilityPage(Page):
         self._host = host
         self._view = view
         self._orbits = Task(host, ANALYSES, self._ended, "The analysis")
-        self._sections = Task(host, ANALYSES, self._ended, "The section")
+        self._sections = Task(host, ANALYSES, self._section_ended, "The section")
         self._quiet = Debounce(host, ANALYSIS_QUIET)
         self._open = False
         self._observer = False
@@ -180,6 +180,12 @@ class StabilityPage(Page):
             with unlocked():
                 self._say(status, sentence)
                 self._show_evidence()
+
+    def _section_ended(self, status: Status, sentence: str) -> None:
+        """Report a failure; how the analysis stands is another matter."""
+        if status == "failed":
+            with unlocked():
+                self._view.update_state(failure=sentence)
 
     def _show(self, analysis: Analysis) -> None:
         self._analysis, self.status = analysis, "done"

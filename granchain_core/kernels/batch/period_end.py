@@ -165,6 +165,7 @@ def decayed(state, lane):
     """Whether the disturbance of a lane has decayed; the lane is then put back on its orbit, and the decay is kept."""
     n, m = state.testing[lane], state.limit.shape[1]
     state.testing[lane] = 0
+    largest_of(state.strobes[lane, : _TEST_ORBITS * n + 1], state.scale)  # other lanes have used it since
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
         there, whole = 0.0, 0.0
@@ -183,6 +184,7 @@ def decayed(state, lane):
         state.last_check[lane, 1] = max(state.last_check[lane, 1], min(rate, _NEARLY_ONE))
         return True
     state.slowest[lane], state.change_before_extrapolation[lane] = 0.0, 0.0
+    state.last_check[lane, 0] = 0.0  # the orbit that was found is none for this lane
     state.extrapolate_from[lane] = state.periods[lane] + _NO_MORE
     return False
 

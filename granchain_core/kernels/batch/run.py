@@ -24,6 +24,9 @@ from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_batch_ends
 
+#: `return_at` of a pair that is not in use, or not any more.
+NOT_IN_USE = -1
+
 
 class Lanes(NamedTuple):
     """Values of the lanes' scenes: the wall's stiffness, slots with (1, L) or (rows, L) arrays or None, step data.
@@ -54,6 +57,7 @@ class BatchState(NamedTuple):
     earliest (L,)            next period at which the strobes are checked
     extrapolate_from (L,)    period from which a transient may be extrapolated
     pause (L,)               periods without an attempt after one that failed
+    due (L,)                 1 where a check is due, else 0
     kept (L,)                number of strobes
     slowest (L,)             slowest decay known
     change_before_extrapolation (L,)   that before an extrapolation that is not yet confirmed, else 0
@@ -79,6 +83,7 @@ class BatchState(NamedTuple):
     earliest: np.ndarray
     extrapolate_from: np.ndarray
     pause: np.ndarray
+    due: np.ndarray
     kept: np.ndarray
     slowest: np.ndarray
     change_before_extrapolation: np.ndarray
@@ -121,21 +126,22 @@ def batch_steps(lanes, state, count):
 
 @kernel
 def run_batch(lanes, state, stop):
-    """Run until a lane is due for a check; returns (status, lane)."""
+    """Run until a lane is due for a check; returns (status, lane). Of several, each is returned before any goes on."""
     while True:
+        for lane in range(BATCH_LANES):
+            if state.due[lane] != 0:
+                state.due[lane] = 0
+                return (DONE if np.isfinite(state.y[1, lane]) else NOT_FINITE), lane
+        if stop[0] != 0:
+            return CANCELLED, -1
         count = STEPS_BETWEEN_STOP_CHECKS
         for lane in range(BATCH_LANES):
             count = min(count, state.left[lane])
         batch_steps(lanes, state, count)
-        found = -1
         for lane in range(BATCH_LANES):
             state.left[lane] -= count
-            if state.left[lane] == 0 and end_period(state, lane) and found < 0:
-                found = lane
-        if stop[0] != 0:
-            return CANCELLED, found
-        if found >= 0:
-            return (DONE if np.isfinite(state.y[1, found]) else NOT_FINITE), found
+            if state.left[lane] == 0 and end_period(state, lane):
+                state.due[lane] = 1
 
 
 @inline_numba
@@ -154,8 +160,8 @@ def renormalise(state, m, start, growth, lane):
 def run_pairs(lanes, state, start, growth, stop):
     """Run lanes in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
 
-    growth (4, P) holds the logarithm of each period's growth; only pairs whose `return_at` is P count,
-    the others are not in use.
+    growth (pairs, P) holds the logarithm of each period's growth, NaN for a pair that did not stay finite; only pairs
+    whose `return_at` is P count, the others are not in use.
     """
     m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
     while busy:
@@ -171,9 +177,11 @@ def run_pairs(lanes, state, start, growth, stop):
                 if state.left[one] == 0:
                     end_period(state, one)
             if counted and state.left[lane] == state.steps[lane]:
-                if not (np.isfinite(state.y[1, lane]) and np.isfinite(state.y[1, lane + 1])):
-                    return NOT_FINITE
-                renormalise(state, m, start, growth, lane)
+                if np.isfinite(state.y[1, lane]) and np.isfinite(state.y[1, lane + 1]):
+                    renormalise(state, m, start, growth, lane)
+                else:
+                    growth[lane // 2] = np.nan
+                    state.return_at[lane], counted = NOT_IN_USE, False
             busy = busy or (counted and state.periods[lane] < periods)
         if stop[0] != 0:
             return CANCELLED

@@ -37,14 +37,20 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
 
 @pytest.mark.parametrize(("rate", "stable"), [(0.8, True), (1.2, False)])
 def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: bool) -> None:
-    """Sixteen periods behind a disturbance of 1e-4: smaller, and the chain is put back; larger, and it was no orbit."""
+    """Sixteen periods after a disturbance of 1e-4: smaller, and the chain is put back; larger, and it was no orbit.
+
+    The scale of displacements and velocities is the lane's own: others have used the workspace meanwhile.
+    """
     block = seen(1.0 + 1e-4 * rate ** np.arange(period_end._TEST_ORBITS + 1))
     state = block.state
-    state.testing[LANE], state.slowest[LANE], state.scale[:] = 1, 0.9, 1.0
+    state.testing[LANE], state.slowest[LANE], state.last_check[LANE, 0] = 1, 0.9, 1.0
+    state.scale[:] = 1e-12, 1e12
     state.before[LANE, :, 1:-1] = 1.0
     assert period_end.decayed.py_func(state, LANE) == stable
     assert state.testing[LANE] == 0 and (state.slowest[LANE] > 0.0) == stable
     assert (state.y[1, LANE] == 1.0) == stable
+    assert (state.last_check[LANE, 0] == 1.0) == stable, "what was no orbit has no period"
+    assert state.scale == pytest.approx(1.0, rel=1e-2)
 
 
 @pytest.mark.parametrize(("before", "kept"), [(1e-3, True), (1e-9, False)])

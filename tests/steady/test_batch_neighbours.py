@@ -1,0 +1,66 @@
+"""What a batch finds of a scene does not depend on the scenes beside it, nor on their order: to the last bit."""
+
+from __future__ import annotations
+
+import random
+
+import numpy as np
+import pytest
+
+from granchain_core import Scene, scene
+from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.kernels.width import BATCH_LANES
+from granchain_core.lower import lower
+from granchain_core.steady.batch_settle import batch_results
+from granchain_core.steady.steady_state import SteadyState
+from granchain_core.stop import Stop
+
+#: Rows of a map: with one frequency all lanes end their periods at once, and several are due for a check together.
+#: Among them are periodic, quasi-periodic and chaotic motions.
+SCENES = [scene("sec2").evolve(f=f, A0=a) for f in (130.0, 340.0, 700.0, 1130.0) for a in (3e-7, 4e-7, 5e-7, 8e-7)]
+
+
+def results(scenes: list[Scene]) -> dict[tuple[float, float], SteadyState]:
+    """What one batch finds, by the scenes' knobs."""
+    return {(found.scene.f, found.scene.A0): found for found in batch_results(iter(scenes), Stop())}
+
+
+def told(found: SteadyState) -> tuple[object, ...]:
+    """All of a result, bit by bit."""
+    errors = [None if one is None else float(one).hex() for one in
+              (found.force_errors.input, found.force_errors.output, found.force_errors.elastic)]
+    return (found.regime.name, found.regime.period, found.regime.periods_run, found.regime.lyapunov, found.doubtful,
+            [float(top).hex() for top in found.tops], errors)
+
+
+def test_a_scene_alone_and_among_others_is_the_same() -> None:
+    together = results(SCENES)
+    shuffled = SCENES.copy()
+    random.Random(1).shuffle(shuffled)
+    for (f, a), found in results(shuffled).items():
+        assert told(found) == told(together[f, a]), (f, a)
+    for alone in SCENES[::3]:
+        (found,) = results([alone]).values()
+        assert told(found) == told(together[alone.f, alone.A0]), (alone.f, alone.A0)
+    assert len({found.regime.name for found in together.values()}) > 1
+
+
+def test_lanes_that_are_due_together_are_all_returned_before_one_goes_on() -> None:
+    chain = scene("sec2").evolve(f=1130.0)
+    lowered, batch = lower(chain), Batch(chain, Stop())
+    for lane in range(BATCH_LANES):
+        batch.put(lane, lowered, np.zeros(2 * lowered.bodies), 1, return_at=3, earliest=NEVER)
+    assert sorted(batch.run()[0] for _ in range(BATCH_LANES)) == list(range(BATCH_LANES))
+    assert list(batch.state.periods) == [3] * BATCH_LANES
+
+
+@pytest.mark.parametrize("wrong", [0, 1])
+def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int) -> None:
+    chain = scene("sec2").evolve(f=1130.0)
+    lowered, batch = lower(chain), Batch(chain, Stop())
+    for pair in (0, 1):
+        y = np.full(2 * lowered.bodies, np.nan) if pair == wrong else np.zeros(2 * lowered.bodies)
+        for lane in (2 * pair, 2 * pair + 1):
+            batch.put(lane, lowered, y + 1e-9 * (lane % 2), 1, return_at=4, earliest=NEVER)
+    growth = batch.run_pairs(1e-8, 4)
+    assert np.isnan(growth[wrong]).all() and np.isfinite(growth[1 - wrong]).all()
