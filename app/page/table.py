@@ -53,7 +53,7 @@ PAGES = (
         "Periodic orbits followed over the drive frequency, stable and unstable."),
     Row("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else."),
-    Row("hard", "hard cases", HardCasesPage, HardCases, ABOUT, taller=False),
+    Row("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False),
     Row("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False),
 )

@@ -22,7 +22,7 @@ DRAWN = """() => {
 
 def opened(page: Page) -> Locator:
     """The page, opened from its tab."""
-    page.get_by_role("tab", name="hard cases").click()
+    page.get_by_role("tab", name="hard").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
     sheet = page.locator('[data-overlay="hard"]')
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()

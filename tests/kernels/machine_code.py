@@ -19,6 +19,7 @@ import re
 import sys
 from collections import Counter
 
+import llvmlite.binding
 import numba
 
 from granchain_core import scene
@@ -28,6 +29,9 @@ from granchain_core.kernels.batch.run import batch_steps
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
 from granchain_core.kernels.samples import Output
 from granchain_core.stop import Stop
+
+# A loop is read once: how many of its first rounds the compiler writes out is its own choice, case by case.
+llvmlite.binding.set_option("machine_code", "-unroll-allow-peeling=false")
 
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
 NOTHING = {"dissipation": "none"}

@@ -19,11 +19,11 @@ PROGRAM = """
 import json
 import numpy as np
 from granchain_core.kernels.cache import CACHE_FOLDER
-from granchain_core.kernels.forces.peaks import PEAKS, forget
+from granchain_core.kernels.forces.peaks import PEAKS, reset_peaks
 peaks = np.ones(PEAKS)
-forget(peaks)
+reset_peaks(peaks)
 right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
-print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(forget.stats.cache_hits.values())}))
+print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(reset_peaks.stats.cache_hits.values())}))
 """
 #: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as well.
 _FULL = "import resource, signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"

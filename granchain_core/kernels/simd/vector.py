@@ -101,11 +101,11 @@ def splat(typingctx, value):
     return vector(types.float64), codegen
 
 
-def _row_pointer(context, builder, sig, args, kind):
-    """Pointer to row args[1] of the C-ordered (rows, lanes) array args[0]."""
-    array = context.make_array(sig.args[0])(context, builder, args[0])
-    offset = builder.mul(args[1], ir.Constant(args[1].type, kind.count))
-    return builder.bitcast(builder.gep(array.data, [offset]), kind.as_pointer())
+def _row_pointer(context, builder, array_type, array, row, kind):
+    """Pointer to a row of a C-ordered (rows, lanes) array."""
+    data = context.make_array(array_type)(context, builder, array).data
+    offset = builder.mul(row, ir.Constant(row.type, kind.count))
+    return builder.bitcast(builder.gep(data, [offset]), kind.as_pointer())
 
 
 def loader(lanes):
@@ -115,7 +115,7 @@ def loader(lanes):
     @intrinsic
     def load_lanes(typingctx, array, row):
         def codegen(context, builder, sig, args):
-            return builder.load(_row_pointer(context, builder, sig, args, kind.ir), align=8)
+            return builder.load(_row_pointer(context, builder, sig.args[0], *args, kind.ir), align=8)
 
         return kind(array, types.intp), codegen
 
@@ -132,7 +132,7 @@ def load_like(typingctx, value, array, row):
     """One row of an array as wide as the vector `value`."""
 
     def codegen(context, builder, sig, args):
-        return builder.load(_row_pointer(context, builder, sig.args[1:], args[1:], sig.return_type.ir), align=8)
+        return builder.load(_row_pointer(context, builder, sig.args[1], *args[1:], sig.return_type.ir), align=8)
 
     return value(value, array, row), codegen
 
@@ -142,7 +142,7 @@ def store(typingctx, array, row, value):
     """Write a vector to row `row` of a (rows, lanes) array."""
 
     def codegen(context, builder, sig, args):
-        builder.store(args[2], _row_pointer(context, builder, sig, args, sig.args[2].ir), align=8)
+        builder.store(args[2], _row_pointer(context, builder, sig.args[0], args[0], args[1], sig.args[2].ir), align=8)
         return context.get_dummy_value()
 
     return types.void(array, types.intp, value), codegen

@@ -1,4 +1,4 @@
-"""A batch: eight scenes at once converge to their motions with order about 3, each as if it ran alone."""
+"""A batch: several scenes at once converge to their motions with order about 3, each as if it ran alone."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.kernels.width import BATCH_LANES
 from granchain_core.lower import lower
 from granchain_core.state import rest
 from granchain_core.stop import Stop
@@ -37,7 +38,13 @@ def put(block: Batch, lane: int, one, refine: float) -> None:
 
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
-    """Displacements at the strobes (8, PERIODS + 1, N) and largest forces of all periods (8, 3)."""
+    """Displacements at the strobes (8, PERIODS + 1, N) and largest forces of all periods (8, 3), batch after batch."""
+    parts = [run_batch(scenes[i : i + BATCH_LANES], refine) for i in range(0, len(scenes), BATCH_LANES)]
+    return np.concatenate([strobes for strobes, _ in parts]), np.concatenate([tops for _, tops in parts])
+
+
+def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
+    """The same of no more scenes than there are lanes."""
     block = Batch(scenes[0], Stop())
     for lane, one in enumerate(scenes):
         put(block, lane, one, refine)
@@ -117,6 +124,7 @@ def test_a_lane_does_not_know_of_the_others(case):
     same = run_all([scenes[3]] * 8, 1.0)[0]
     assert (same == together[3]).all()
     block = Batch(scenes[0], Stop())
-    put(block, 5, scenes[3], 1.0)
-    assert block.run() == (5, True)
-    assert (block.strobes(5)[: PERIODS + 1, 0] == together[3]).all()
+    last = BATCH_LANES - 1
+    put(block, last, scenes[3], 1.0)
+    assert block.run() == (last, True)
+    assert (block.strobes(last)[: PERIODS + 1, 0] == together[3]).all()

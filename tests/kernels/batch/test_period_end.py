@@ -9,9 +9,10 @@ from granchain_core import scene
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch import contact_correction, period_end
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from granchain_core.kernels.width import BATCH_LANES
 from granchain_core.stop import Stop
 
-LANE, ROW = 5, 4
+LANE, ROW = BATCH_LANES - 2, 4
 
 
 def seen(record: np.ndarray) -> Batch:
