@@ -2,4 +2,4 @@
 
 from app.page.entry import page
 
-page().servable(location=False)  # as in serve/server.py: page/entry.py reads the link
+page().servable(location=False)  # as in app/server.py: page/entry.py reads the link

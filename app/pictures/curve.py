@@ -20,12 +20,12 @@ DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 """Dashes of the line by the start of a sweep."""
 WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
 """The same in words."""
-FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
-"""A tooltip's lines for the columns of `forces_in_words`."""
 LABELS = {"rest": "from rest", "up": "╌ up", "down": "┈ down"}
 """The same for a choice beside the curve, with a piece of the line."""
 KEY = "Solid line: from rest; dashed: frequency rising; dotted: frequency falling."
 """What the dashes mean, in a sentence."""
+FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
+"""A tooltip's lines for the columns of `forces_in_words`."""
 
 
 def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure:

@@ -4,8 +4,8 @@ Every scene starts in a lane with coarse steps. Once its regime is decided, the 
 periodic scene is run again from its settled state with a third of the step, until the difference from the coarse orbit
 has decayed; the forces of this finer run are reported, with their change as error estimate. Slow approaches are
 extrapolated in both runs (kernels/strobes/extrapolation.py). Motions that are not periodic within the
-budget are classified by their Lyapunov exponents, four scenes at a time. Results that are still undecided are marked
-and left to `settle`, which takes one chain at a time (curve.py).
+budget are classified by their Lyapunov exponents, as many at a time as there are pairs of lanes. Results that are still
+undecided are marked and left to `settle`, which takes one chain at a time (curve.py).
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ class _Lanes:
         self.block.put(lane, job.lowered, np.zeros_like(job.y), 1, NEVER, NEVER)
 
     def undecided(self) -> list[Job]:
-        """Up to four doubtful jobs of similar steps a period; fewer only if there is nothing else to do."""
+        """Doubtful jobs of similar steps a period, one for each pair of lanes; fewer only if nothing else is to do."""
         jobs = sorted(self.doubtful, key=_steps)
         for i in range(len(jobs) - _PAIRS + 1):
             if _steps(jobs[i + _PAIRS - 1]) <= MOST_APART * _steps(jobs[i]):
@@ -142,7 +142,7 @@ def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> I
 def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
-    Up to rounding, results do not depend on which starts share the lanes. A draft ends with the coarse run
+    To the last bit, results do not depend on which starts share the lanes. A draft ends with the coarse run
     and after few periods: without errors, and motions that are not periodic by then are called unsettled. Raises
     `Cancelled`.
     """

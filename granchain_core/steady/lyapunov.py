@@ -23,7 +23,7 @@ MOST_APART = 2.5
 
 def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, block: int,
                        stop: Stop) -> list[tuple[np.ndarray, ...]]:
-    """`exponents` of up to four scenes side by side in lanes, each from its scaled state (2(N+2),) at phase 0.
+    """`exponents` of scenes side by side in pairs of lanes, each from its scaled state (2(N+2),) at phase 0.
 
     Returns for each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its
     last periods (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. The

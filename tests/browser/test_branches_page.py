@@ -101,6 +101,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
         row = page.evaluate(LONELY, stable)
         frequency = source(page, "branches", "orbits")["x"][row]
         until(page, lambda row=row: told("orbits", row, "elastic output force"))
+        page.wait_for_timeout(600)  # two clicks within 300 ms are a double click to Bokeh, wherever they are
         page.mouse.click(*at("orbits", row))
         expect(sheet.locator(".chosen")).to_contain_text(words)
         expect(page.locator("#foot")).to_contain_text(regime, timeout=15_000)
