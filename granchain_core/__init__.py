@@ -16,12 +16,17 @@ import types
 from typing import TYPE_CHECKING, Any
 
 from .errors import BadInput, Cancelled, NumbersFailed, OverBudget
-from .scene import Bead, Scene, scene, scene_names
+from .scene import Amplitude, Bead, Scene, scene, scene_names
 from .version import __version__
 
 if TYPE_CHECKING:
     from .accuracy import WorkPrecision, work_precision
+    from .analysis.basins import Basins, basins
+    from .analysis.lyapunov_spectrum import LyapunovSpectrum, lyapunov_spectrum
+    from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
+    from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .diagram import Attractor, Diagram, attractors, diagram
+    from .fit import Fit, fit
     from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
@@ -31,9 +36,9 @@ if TYPE_CHECKING:
     from .run.live import LiveChain
     from .run.run import run
     from .state import State
-    from .steady.curve import Curve, CurvePoint, iter_curve, resonance_curve
-    from .steady.settled import Settled, settled, settling
-    from .steady.settled import settled as settle
+    from .steady.curve.resonance_curve import Curve, CurvePoint, iter_curve, resonance_curve
+    from .steady.settling.recorded import Settled, settled, settling
+    from .steady.settling.recorded import settled as settle
     from .stop import Stop
     from .store import load, save
 
@@ -41,22 +46,26 @@ if TYPE_CHECKING:
 _MODULES = {
     "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
     "stop": ("Stop",),
-    "steady.settled": ("Settled", "settled", "settling"), "regime": ("Regime",),
-    "steady.curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
-    "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"),
+    "steady.settling.recorded": ("Settled", "settled", "settling"), "regime": ("Regime",),
+    "steady.curve.resonance_curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
+    "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
     "diagram": ("Attractor", "Diagram", "attractors", "diagram"), "observe": ("Observation", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
+    "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
+    "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
+    "analysis.strobe_diagram": ("StrobeDiagram", "strobe_diagram"),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 #: Short names and what they stand for.
 _SHORT = {"settle": "settled", "orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
-    "Attractor", "BadInput", "Bead", "Branch", "Cancelled", "Cost", "Curve", "CurvePoint", "Diagram", "LiveChain",
-    "NumbersFailed", "Observation", "Orbit", "OverBudget", "Regime", "Run", "Scene", "Settled", "State", "Stop",
-    "WorkPrecision", "__version__", "attractors", "branch", "continue_branch", "diagram", "iter_curve", "load",
-    "observe", "orbit", "periodic_orbit", "resonance_curve", "run", "save", "scene", "scene_names", "settle",
-    "settled", "settling", "work_precision",
+    "Amplitude", "Attractor", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve", "CurvePoint",
+    "Diagram", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit", "OverBudget",
+    "Regime", "Run", "Scene", "Settled", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision",
+    "__version__", "attractors", "basins", "branch", "continue_branch", "diagram", "fit", "iter_curve", "load",
+    "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "resonance_curve", "run", "save", "scene",
+    "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
 ]
 
 

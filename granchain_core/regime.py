@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+#: What a motion can be called.
+NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
+
 
 @dataclass(frozen=True)
 class Regime:
@@ -12,7 +15,7 @@ class Regime:
     Attributes
     ----------
     name : str
-        "periodic", "quasi-periodic", "chaotic" or "unsettled".
+        One of `NAMES`.
     period : int or None
         In drive periods, where the motion is periodic.
     decay : float or None

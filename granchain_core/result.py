@@ -224,7 +224,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
     scene, scales = engine.lowered.scene, engine.lowered.scales
     index = first_sample + np.arange(len(samples.displacement))
     inside = np.mod(index, engine.samples)
-    tops = np.where(np.isfinite(engine.tops), engine.tops, 0.0) * scales.force
+    maxima = np.where(np.isfinite(engine.maxima), engine.maxima, 0.0) * scales.force
     return Run(
         scene=scene, samples=engine.samples,
         time=(index // engine.samples + inside / engine.samples) * scene.period,
@@ -232,7 +232,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
         velocity=samples.velocity * scales.velocity,
         force=samples.force * scales.force,
         drive_displacement=scene.A0 * np.sin(2 * np.pi * inside / engine.samples),
-        max_input_force=float(tops[0]), max_output_force=float(tops[1]), max_output_force_elastic=float(tops[2]),
+        max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
         status=status, regime=regime, error_estimate=error, energy_residual=residual(samples.energy), cost=cost,
         force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
     )

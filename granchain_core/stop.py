@@ -8,7 +8,7 @@ from .errors import Cancelled
 
 
 class Stop:
-    """Asks a computation in another thread to end; it then raises `Cancelled`, or yields nothing more.
+    """Asks a computation in another thread to end; it then raises `Cancelled`, or returns what there is.
 
     Attributes
     ----------
@@ -33,6 +33,12 @@ class Stop:
     def set(self) -> None:
         """Ask for the end; from any thread, and for good."""
         self.flag[0] = 1
+
+    def pause(self) -> None:
+        """Called between parts of a computation, some hundredths of a second apart, by the thread that computes.
+
+        Nothing happens here; a server's own kind lets others go first.
+        """
 
     def __bool__(self) -> bool:
         return bool(self.flag[0])

@@ -19,7 +19,7 @@ from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
 from ..state import rest
-from ..steady.batch_job import Start
+from ..steady.batch.job import Start
 from ..steady.regime import grows, is_neutral
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
@@ -120,7 +120,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     seed : int
         Of the random states; the same seed gives the same answer.
     stop : Stop, optional
-        Read between starts; once it is set the search ends with what has been found.
+        Once it is set the search ends with what has been found, or with `Cancelled` before anything is.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
 
@@ -143,23 +143,28 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     [(1, 1.0)]
     """
     check_range("random_states =", random_states, 0, MOST_STATES)
-    origins = _origins(scene, random_states, seed, stop)
-    starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
-    results = _settled(starts, stop, progress)
-    if results and not any(not result.failure for result in results):
-        raise NumbersFailed(results[0].failure, "not-finite")
-    groups = merged([found(result) for result in results if not result.failure])
-    again = [start for group in groups if group[0].unstable for start in _beside(group)]
-    if again:
-        kept = [one for group in groups if not group[0].unstable for one in group]
-        moved = [found(result) for result in _settled(again, stop) if not result.failure]
-        groups = merged(kept + moved)
-    listed = [_attractor(group, origins) for group in groups]
+    listed = attractors_from(scene, _origins(scene, random_states, seed, stop), stop, progress)
     thrown = sum(origin.name.startswith("random") for attractor in listed for origin in attractor.origins)
     for attractor in listed:
         count = sum(origin.name.startswith("random") for origin in attractor.origins)
         attractor.share, attractor.share_error = share(count, thrown)
     return sorted(listed, key=lambda one: (-len(one.origins), one.max_output_force))
+
+
+def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = None,
+                    progress: Callable[[float], None] | None = None) -> list[Attractor]:
+    """The steady states that these starts reach, each once with its starts. Raises as `attractors` does."""
+    starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
+    results = _settled(starts, stop, progress)
+    if results and not any(not result.failure for result in results):
+        raise NumbersFailed(results[0].failure, "not-finite")
+    groups = merged([found(result) for result in results if not result.failure])
+    again = [start for group in groups if group[0].unstable for start in _beside(group, stop)]
+    if again:
+        kept = [one for group in groups if not group[0].unstable for one in group]
+        moved = [found(result) for result in _settled(again, stop) if not result.failure]
+        groups = merged(kept + moved)
+    return [_attractor(group, origins) for group in groups]
 
 
 def _settled(starts: list[Start], stop: Stop | None,
@@ -173,14 +178,14 @@ def _settled(starts: list[Start], stop: Stop | None,
     return sorted(results, key=lambda result: result.number)
 
 
-def _beside(group: list[Found]) -> Iterator[Start]:
+def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
     """New starts beside the orbit for all results on an unstable orbit."""
     orbit = group[0].orbit
     assert orbit is not None
     u, v = orbit.state.displacement, orbit.state.velocity
     for one in group:
         shape = np.random.default_rng(one.result.number).standard_normal((2, len(u)))
-        engine = Engine(orbit.scene, LIVE_SETTING, 1)
+        engine = Engine(orbit.scene, LIVE_SETTING, 1, stop=stop)
         engine.start(State(u + _BESIDE * np.abs(u).max() * shape[0], v + _BESIDE * np.abs(v).max() * shape[1]))
         engine.periods(_RUN_ON)
         yield Start(orbit.scene, engine.state, one.result.number)
@@ -196,7 +201,7 @@ def share(count: int, of: int) -> tuple[float, float]:
 
 def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> list[Origin]:
     """Rest, the ends of both sweeps, and random states."""
-    _, strobes, velocity = _run_on(scene, rest(scene))
+    _, strobes, velocity = _run_on(scene, rest(scene), stop)
     dice = np.random.default_rng(seed)
     size = _BOX * np.abs(strobes).max(axis=(0, 2)) * (scene.A0, velocity)
     size = np.maximum(size, (scene.A0, 2.0 * math.pi * scene.f * scene.A0))
@@ -215,13 +220,13 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
         if stop:
             break
         f = scene.f * (factor + (1.0 - factor) * step / _SWEEP)
-        state, _, _ = _run_on(scene.evolve(f=f), state)
+        state, _, _ = _run_on(scene.evolve(f=f), state, stop)
     return state
 
 
-def _run_on(scene: Scene, state: State) -> tuple[State, np.ndarray, float]:
+def _run_on(scene: Scene, state: State, stop: Stop | None) -> tuple[State, np.ndarray, float]:
     """State after `_PASS` periods by the live method, scaled strobes on the way, and the unit of velocity [m/s]."""
-    engine = Engine(scene, LIVE_SETTING, 1)
+    engine = Engine(scene, LIVE_SETTING, 1, stop=stop)
     engine.start(state)
     strobes, _ = engine.periods(_PASS)
     return engine.state, strobes, engine.lowered.scales.velocity
@@ -230,13 +235,13 @@ def _run_on(scene: Scene, state: State) -> tuple[State, np.ndarray, float]:
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
     """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
     best = min((one.result for one in group), key=lambda result: result.error_estimate or 0.0)
-    first, tops = group[0], best.tops
+    first, maxima = group[0], best.maxima
     if first.result.regime.period is None:
-        tops = np.max([one.result.tops for one in group], axis=0)
+        maxima = np.max([one.result.maxima for one in group], axis=0)
     regime = _regime([one.result.regime for one in group])
     state = first.result.state if first.orbit is None else first.orbit.state
-    return Attractor(best.scene, regime, float(tops[0]), float(tops[1]), float(tops[2]), ForceErrors.of(best.errors),
-                     state, first.orbit, [origins[one.result.number] for one in group])
+    return Attractor(best.scene, regime, float(maxima[0]), float(maxima[1]), float(maxima[2]),
+                     ForceErrors.of(best.errors), state, first.orbit, [origins[one.result.number] for one in group])
 
 
 def _regime(regimes: list[Regime]) -> Regime:

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..regime import Regime
+from ..regime import NAMES, Regime
 from ..result import ForceErrors
 from ..steady.steady_state import SteadyState
 from .grid import Grid
 
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
-REGIMES = ("periodic", "quasi-periodic", "chaotic", "unsettled", "failed")
+REGIMES = (*NAMES, "failed")
 #: One cell. Forces in N, NaN where the numbers failed; error estimates are relative, `error_estimate` that of the
 #: output force, NaN where none is claimed; `period` in drive periods, 0 where not periodic; `decay` per orbit,
 #: `multiplier` (the largest |μ|) and `lyapunov` (per drive period) NaN where not seen or not computed.
@@ -44,7 +44,7 @@ def cell_of(result: SteadyState) -> np.ndarray:
     regime = result.regime
     name = "failed" if result.failure else regime.name
     mean, error = regime.lyapunov or (np.nan, np.nan)
-    return np.array((result.number, REGIMES.index(name), regime.period or 0, regime.periods_run, *result.tops,
+    return np.array((result.number, REGIMES.index(name), regime.period or 0, regime.periods_run, *result.maxima,
                      *ForceErrors.of(result.errors).row, _or_nan(regime.decay),
                      _or_nan(regime.multiplier), mean, error), dtype=CELL)
 

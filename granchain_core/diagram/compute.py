@@ -10,11 +10,11 @@ import numpy as np
 
 from ..integrate.batch import can_share_batch
 from ..scene import Scene
-from ..steady.alone import safe_state, settled_alone
-from ..steady.batch_job import Start
-from ..steady.batch_settle import batch_states
+from ..steady.batch.job import Start
+from ..steady.batch.settle import batch_states
+from ..steady.batch.threads import on_all_cores
+from ..steady.settling.alone import safe_state, settled_alone
 from ..steady.steady_state import SteadyState
-from ..steady.threads import on_all_cores
 from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells
 from .grid import Axis, Grid

@@ -1,4 +1,4 @@
-"""A hard case: figures against bars, the oracle they are measured against, and a small picture."""
+"""A hard case: measurements and their limits, the oracle they are measured against, and a small picture."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from ..errors import BadInput, NumbersFailed
 
 
 @dataclass(frozen=True)
-class Figure:
-    """One number that must not be above its bar; NaN is above every bar. `note` is the finding in words."""
+class Measurement:
+    """One number that must not be above its limit; NaN is above every limit. `note` is the finding in words."""
 
     name: str
     value: float
-    bar: float
+    limit: float
     note: str = ""
 
 
@@ -44,7 +44,7 @@ class Picture:
 class Case:
     """One hard case.
 
-    `measure(quick)` computes the figures, with smaller counts where it is quick; `picture()` the lines drawn beside
+    `measure(quick)` takes the measurements, with smaller counts where it is quick; `picture()` the lines drawn beside
     them. `hard` and `naive` are one line each for a student: what is hard, and what a naive solver does there.
     """
 
@@ -52,17 +52,17 @@ class Case:
     hard: str
     naive: str
     oracle: str
-    measure: Callable[[bool], Sequence[Figure]]
+    measure: Callable[[bool], Sequence[Measurement]]
     picture: Callable[[], Picture] | None = None
 
 
 @dataclass(frozen=True)
 class Check:
-    """One figure of a case with its verdict; `seconds` is the whole case's time, on its first row only."""
+    """One measurement of a case with its verdict; `seconds` is the whole case's time, on its first row only."""
 
     case: str
-    figure: float
-    bar: float
+    value: float
+    limit: float
     passed: bool
     seconds: float
     what_is_hard: str
@@ -75,9 +75,9 @@ def run_case(case: Case, quick: bool) -> list[Check]:
     """Measure one case; a computation that fails or is refused is a row that did not pass, with its sentence."""
     began = time.perf_counter()
     try:
-        figures = list(case.measure(quick))
+        measurements = list(case.measure(quick))
     except (NumbersFailed, BadInput) as problem:
-        figures = [Figure("could not be computed", math.nan, 0.0, str(problem))]
+        measurements = [Measurement("could not be computed", math.nan, 0.0, str(problem))]
     spent = time.perf_counter() - began
-    return [Check(f"{case.name}: {f.name}", f.value, f.bar, bool(f.value <= f.bar), spent if i == 0 else 0.0,
-                  case.hard, case.naive, case.oracle, f.note) for i, f in enumerate(figures)]
+    return [Check(f"{case.name}: {f.name}", f.value, f.limit, bool(f.value <= f.limit), spent if i == 0 else 0.0,
+                  case.hard, case.naive, case.oracle, f.note) for i, f in enumerate(measurements)]

@@ -7,13 +7,13 @@ import numpy as np
 from ..kernels.effects.dissipation import LinearDashpot
 from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE
 from . import touches
-from .case import Figure, Picture, Trace
+from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time
 from .naive_solvers import euler, one_after_another, plain_slope
 from .oracle import Plain, solved
 
 
-def brushed(quick: bool) -> list[Figure]:
+def brushed(quick: bool) -> list[Measurement]:
     """Random grazing touches: none missed, none invented, and the times of contact exact."""
     count = 4_000 if quick else 100_000
     driver, thrown = (touches.draw(count // 2, 11, True), touches.draw(count // 2, 12, False))
@@ -23,9 +23,9 @@ def brushed(quick: bool) -> list[Figure]:
     still = touched & (touches.moved(driver) < 1e-10)
     onset = max(by_driver[touched, touches.ONSET_ERROR].max(), by_throw[hit, touches.ONSET_ERROR].max())
     return [
-        Figure(f"of {count} random brushes missed or invented", float(wrong), 0.0),
-        Figure("moment of the onset, in periods", float(onset), 1e-9),
-        Figure("moment of the release, in periods", float(by_driver[still, touches.RELEASE_ERROR].max()), 1e-9),
+        Measurement(f"of {count} random brushes missed or invented", float(wrong), 0.0),
+        Measurement("moment of the onset, in periods", float(onset), 1e-9),
+        Measurement("moment of the release, in periods", float(by_driver[still, touches.RELEASE_ERROR].max()), 1e-9),
     ]
 
 
@@ -60,7 +60,8 @@ def reordered(beads: int, time: float, seed: int) -> float:
     """How far a chain is from its mirror image, in which simultaneous events come in the other order.
 
     Velocities are drawn from three values, so that collisions coincide without the whole being symmetric. The two take
-    steps of their own, so their tolerance is far below the bar: at 1e-14 one of 200 chains was 1.2e-12 off, now 3e-14.
+    steps of their own, so their tolerance is far below the limit: at 1e-14 one of 200 chains was 1.2e-12 off, now
+    3e-14.
     """
     velocity = np.random.default_rng(seed).choice([-1.0, 0.0, 1.0], beads)
     velocity[0] = 1.0
@@ -72,14 +73,14 @@ def reordered(beads: int, time: float, seed: int) -> float:
     return float(np.abs(kept[0] + kept[1][:, ::-1]).max() / np.abs(kept[0]).max())
 
 
-def at_once(quick: bool) -> list[Figure]:
+def at_once(quick: bool) -> list[Measurement]:
     """Symmetry, and independence of the order of events."""
     symmetric, of_cut = (max(mirrored(n, 200.0 if quick else 2000.0, t, cut)
                              for n in (2, 5, 8) for t in (1e-5, 1e-9, 1e-13)) for cut in (False, True))
     order = max(reordered(n, 60.0, seed) for n in (5, 8) for seed in range(4 if quick else 100))
-    return [Figure("departure from mirror symmetry, in amplitudes", symmetric, 1e-13),
-            Figure("the same with tension cut", of_cut, 1e-13),
-            Figure("change when events are met in the other order", order, 1e-12)]
+    return [Measurement("departure from mirror symmetry, in amplitudes", symmetric, 1e-13),
+            Measurement("the same with tension cut", of_cut, 1e-13),
+            Measurement("change when events are met in the other order", order, 1e-12)]
 
 
 def at_once_picture() -> Picture:
@@ -144,9 +145,9 @@ def solitary(beads: int) -> tuple[float, float]:
     bench.throw(np.eye(beads)[0])
     kept = bench.record()
     first, second = beads // 2, beads // 2 + beads // 6
-    tops = [_top(bench.time, kept.force[:, c]) for c in (first, second)]
-    speed = (second - first) / (tops[1][0] - tops[0][0])
-    force = 0.5 * (tops[0][1] + tops[1][1])
+    maxima = [_top(bench.time, kept.force[:, c]) for c in (first, second)]
+    speed = (second - first) / (maxima[1][0] - maxima[0][0])
+    force = 0.5 * (maxima[0][1] + maxima[1][1])
     velocity = _top(bench.time, kept.velocity[:, (first + second) // 2])[1]
     return abs(speed / (0.9055158 * force ** (1 / 6)) - 1.0), abs(speed / (0.9074701 * velocity**0.2) - 1.0)
 
@@ -161,21 +162,21 @@ def _top(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:
     return time[i] + where * h, float(fit(where))
 
 
-def collisions(quick: bool) -> list[Figure]:
+def collisions(quick: bool) -> list[Measurement]:
     """Hertz collision, unequal beads, cradle, a bead on a chain, solitary wave."""
     duration, peak, loss = np.max([hertz(v, s) for v in (0.01, 1.0, 10.0) for s in (1.0, 2.0**1.5)], axis=0)
     masses = (1e-3, 0.5, 1.0, 3.0, 1e3)
     by_force, by_speed = solitary(60 if quick else 120)
     return [
-        Figure("Hertz collision, duration", float(duration), 1e-7, "its constant is known to eight digits"),
-        Figure("Hertz collision, peak force", float(peak), 1e-7, "its constant is known to eight digits"),
-        Figure("Hertz collision, speed after", float(loss), 1e-10),
-        Figure("unequal beads, velocities after", max(unequal(m) for m in masses), 1e-10),
-        Figure("Newton's cradle of five beads", free_pulse(5, [1.0] * 5), 1e-9),
-        Figure("heavy bead on a chain", free_pulse(5, [0.1, *([1.0] * 4)]), 1e-9),
-        Figure("light bead on a chain", free_pulse(5, [10.0, *([1.0] * 4)]), 1e-9),
-        Figure("solitary wave, speed by its force", by_force, 1e-7, "its constant is known to seven digits"),
-        Figure("solitary wave, speed by its velocity", by_speed, 1e-7, "its constant is known to seven digits"),
+        Measurement("Hertz collision, duration", float(duration), 1e-7, "its constant is known to eight digits"),
+        Measurement("Hertz collision, peak force", float(peak), 1e-7, "its constant is known to eight digits"),
+        Measurement("Hertz collision, speed after", float(loss), 1e-10),
+        Measurement("unequal beads, velocities after", max(unequal(m) for m in masses), 1e-10),
+        Measurement("Newton's cradle of five beads", free_pulse(5, [1.0] * 5), 1e-9),
+        Measurement("heavy bead on a chain", free_pulse(5, [0.1, *([1.0] * 4)]), 1e-9),
+        Measurement("light bead on a chain", free_pulse(5, [10.0, *([1.0] * 4)]), 1e-9),
+        Measurement("solitary wave, speed by its force", by_force, 1e-7, "its constant is known to seven digits"),
+        Measurement("solitary wave, speed by its velocity", by_speed, 1e-7, "its constant is known to seven digits"),
     ]
 
 

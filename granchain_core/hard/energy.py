@@ -11,9 +11,9 @@ from ..integrate.methods import CERTIFIED
 from ..kernels.effects.driver import Harmonic
 from ..orbits.flow import StroboscopicMap
 from ..scene import Scene, scene
-from ..steady.curve import iter_curve
+from ..steady.curve.resonance_curve import iter_curve
 from ..steady.lyapunov import exponents
-from .case import Figure, Picture, Trace
+from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time
 from .naive_solvers import plain_slope, rk4
 from .oracle import Plain
@@ -36,7 +36,7 @@ def confined(times: int, method: str, refine: float = 1.0) -> tuple[np.ndarray, 
     return np.arange(len(energy)) * 10.0 / 8.0, energy / energy[0] - 1.0
 
 
-def free_chain(quick: bool) -> list[Figure]:
+def free_chain(quick: bool) -> list[Measurement]:
     """Energy, its trend and momentum without damping."""
     times = 2_000 if quick else 10_000
     clock, change = confined(times, CERTIFIED)
@@ -46,10 +46,10 @@ def free_chain(quick: bool) -> list[Figure]:
     kept = bench.record(10)
     momentum, energy = bench.momentum(kept), bench.energy(kept)
     return [
-        Figure(f"energy over {times} shortest contact times", float(np.abs(change).max()), 1e-9),
-        Figure("trend of the energy, its straight line over the whole run", float(abs(slope) * clock[-1]), 1e-11),
-        Figure("energy of the free chain after the impact", float(np.abs(energy / energy[0] - 1.0).max()), 1e-9),
-        Figure("momentum of the free chain", float(np.abs(momentum / momentum[0] - 1.0).max()), 1e-13),
+        Measurement(f"energy over {times} shortest contact times", float(np.abs(change).max()), 1e-9),
+        Measurement("trend of the energy, its straight line over the whole run", float(abs(slope) * clock[-1]), 1e-11),
+        Measurement("energy of the free chain after the impact", float(np.abs(energy / energy[0] - 1.0).max()), 1e-9),
+        Measurement("momentum of the free chain", float(np.abs(momentum / momentum[0] - 1.0).max()), 1e-13),
     ]
 
 
@@ -71,7 +71,7 @@ def undamped(frequency: float = 340.0, beads: int = 11) -> Scene:
     return scene("sec2").evolve(dissipation="none", f=frequency, N=beads)
 
 
-def driven_chaos(quick: bool) -> list[Figure]:
+def driven_chaos(quick: bool) -> list[Measurement]:
     """Energy account, Lyapunov exponent by two methods, and no periodic verdict."""
     engine = Engine(undamped(), certified(1e-14), 1, balance=True)
     energy = engine.record(20 if quick else 100).energy
@@ -82,10 +82,11 @@ def driven_chaos(quick: bool) -> list[Figure]:
     periodic = sum(p.regime.name == "periodic" for p in points)
     difference, shadow, tangent = two_exponents(15 if quick else 100)
     return [
-        Figure("energy balance", float(np.abs(work - lost - stored).max() / largest), 1e-8),
-        Figure("Lyapunov exponents of two methods, difference over their stated errors", difference, 2.0,
-               f"per period {shadow[0]:.3f} ± {shadow[1]:.3f} by a shadow, {tangent[0]:.3f} ± {tangent[1]:.3f} else"),
-        Figure(f"of {count} undamped motions called periodic", float(periodic), 0.0),
+        Measurement("energy balance", float(np.abs(work - lost - stored).max() / largest), 1e-8),
+        Measurement("Lyapunov exponents of two methods, difference over their stated errors", difference, 2.0,
+                    f"per period {shadow[0]:.3f} ± {shadow[1]:.3f} by a shadow, "
+                    f"{tangent[0]:.3f} ± {tangent[1]:.3f} else"),
+        Measurement(f"of {count} undamped motions called periodic", float(periodic), 0.0),
     ]
 
 
@@ -176,16 +177,16 @@ def jump_push() -> float:
     return abs(float((chosen.masses() * engine.state.velocity).sum()) - push) / push
 
 
-def switched_drives(quick: bool) -> list[Figure]:
+def switched_drives(quick: bool) -> list[Measurement]:
     """The push of a jump; impulse balance after a jump, of a ramp, a chirp and a stop."""
-    half, whole, bar = _SWITCHED // 2, _SWITCHED, 1e-9
+    half, whole, limit = _SWITCHED // 2, _SWITCHED, 1e-9
     count = 6 if quick else 40
     return [
-        Figure("the jump's own push, against D times the jump", jump_push(), 1e-12),
-        Figure("after a jump", switched([(340.0, 1.0, whole)], 0.25), bar),
-        Figure("ramp", switched([(340.0, (i + 1) / count, half) for i in range(count)], 0.0), bar),
-        Figure("chirp", switched([(200.0 * 1.1**i, 1.0, half) for i in range(count)], 0.0), bar),
-        Figure("stop", switched([(340.0, 1.0, whole), (340.0, 0.0, whole)], 0.0), bar),
+        Measurement("the jump's own push, against D times the jump", jump_push(), 1e-12),
+        Measurement("after a jump", switched([(340.0, 1.0, whole)], 0.25), limit),
+        Measurement("ramp", switched([(340.0, (i + 1) / count, half) for i in range(count)], 0.0), limit),
+        Measurement("chirp", switched([(200.0 * 1.1**i, 1.0, half) for i in range(count)], 0.0), limit),
+        Measurement("stop", switched([(340.0, 1.0, whole), (340.0, 0.0, whole)], 0.0), limit),
     ]
 
 

@@ -11,7 +11,7 @@ from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..run.run import run
 from ..scene import Scene, scene
-from .case import Figure, Picture, Trace
+from .case import Measurement, Picture, Trace
 from .naive_solvers import plain_slope, rk4
 from .oracle import Plain, solved
 
@@ -66,18 +66,18 @@ def _tridiagonal(slope: np.ndarray) -> np.ndarray:
     return np.diag(slope[:-1] + slope[1:]) - np.diag(slope[1:-1], 1) - np.diag(slope[1:-1], -1)
 
 
-def amplitudes(quick: bool) -> list[Figure]:
+def amplitudes(quick: bool) -> list[Measurement]:
     """Scaling, statics and the stop band."""
     times = (1e-4, 1e4) if quick else tuple(10.0**p for p in range(-4, 5))
     drives = (340.0,) if quick else (10.0, 340.0, 3000.0, 1e5)
     fixed = max(scaled_difference(f, live(2.0), times) for f in drives)
     certain = max(scaled_difference(f, certified(1e-15), times) for f in drives)
     return [
-        Figure("scaling from 1e-12 to 1e-4 m, fixed steps", fixed, 1e-12),
-        Figure("scaling from 1e-12 to 1e-4 m, certified", certain, 1e-12),
-        Figure("statics at 1 Hz" if quick else "statics at 0.1 Hz", statics_error(1.0 if quick else 0.1), 1e-6),
-        Figure("stop band, a quarter above the cut-off", lattice_error(1.25), 1e-6),
-        Figure("stop band, 100 kHz" if quick else "stop band, 1 MHz", lattice_error(12.0 if quick else 1e3), 1e-6),
+        Measurement("scaling from 1e-12 to 1e-4 m, fixed steps", fixed, 1e-12),
+        Measurement("scaling from 1e-12 to 1e-4 m, certified", certain, 1e-12),
+        Measurement("statics at 1 Hz" if quick else "statics at 0.1 Hz", statics_error(1.0 if quick else 0.1), 1e-6),
+        Measurement("stop band, a quarter above the cut-off", lattice_error(1.25), 1e-6),
+        Measurement("stop band, 100 kHz" if quick else "stop band, 1 MHz", lattice_error(12.0 if quick else 1e3), 1e-6),
     ]
 
 
@@ -148,18 +148,19 @@ def unequal(masses: dict[int, float], beads: int, modulus: float = 1.0) -> Scene
     return replace(base, impurities=tuple(changed.items()))
 
 
-def sizes(quick: bool) -> list[Figure]:
+def sizes(quick: bool) -> list[Measurement]:
     """One bead, two, ten thousand; a mass and a stiffness a million apart."""
     found = [
-        Figure("error of one bead", plain_error(scene("sec2").evolve(N=1, accuracy=1e-7)), 1e-6),
-        Figure("error of two beads", plain_error(scene("sec2").evolve(N=2, accuracy=1e-7)), 1e-6),
-        Figure("error with a bead of 10^6 times the mass", plain_error(unequal({2: 1e6}, 3)), 1e-6),
-        Figure("error with beads of 10^3 and 10^-3 times the mass", plain_error(unequal({2: 1e3, 3: 1e-3}, 4)), 1e-6),
-        Figure("error with one soft bead, 10^-6 of the modulus", plain_error(unequal({}, 3, 1e-6)), 1e-6),
+        Measurement("error of one bead", plain_error(scene("sec2").evolve(N=1, accuracy=1e-7)), 1e-6),
+        Measurement("error of two beads", plain_error(scene("sec2").evolve(N=2, accuracy=1e-7)), 1e-6),
+        Measurement("error with a bead of 10^6 times the mass", plain_error(unequal({2: 1e6}, 3)), 1e-6),
+        Measurement("error with beads of 10^3 and 10^-3 times the mass",
+                    plain_error(unequal({2: 1e3, 3: 1e-3}, 4)), 1e-6),
+        Measurement("error with one soft bead, 10^-6 of the modulus", plain_error(unequal({}, 3, 1e-6)), 1e-6),
     ]
     beads = 1_000 if quick else 10_000
-    return [*found, Figure(f"error of {beads} beads, two methods", long_chain_error(beads), 1e-6),
-            Figure(f"time per bead and step, {beads} beads over 100", cost_growth(beads, 3 if quick else 10), 2.0)]
+    return [*found, Measurement(f"error of {beads} beads, two methods", long_chain_error(beads), 1e-6),
+            Measurement(f"time per bead and step, {beads} beads over 100", cost_growth(beads, 3 if quick else 10), 2.0)]
 
 
 def sizes_picture() -> Picture:
@@ -233,17 +234,17 @@ def cut_off_error(beads: int) -> float:
     return abs(found - np.cos(angle)) / abs(np.sin(angle)) / angle
 
 
-def preloads(quick: bool) -> list[Figure]:
+def preloads(quick: bool) -> list[Measurement]:
     """Linear modes from a millionth of a newton to ten thousand, and the limit without preload."""
     forces = (1e-6, 10.0) if quick else (1e-6, 1e-3, 1.0, 10.0, 100.0, 1e4)
     errors = [mode_errors(f, n) for f in forces for n in (0, 10)]
     weak = (1e-9,) if quick else (1e-12, 1e-9, 1e-6)
     limit = max(plain_error(scene("sec2").evolve(N=3, F0=f, accuracy=1e-7)) for f in weak)
     return [
-        Figure("linear modes, in amplitudes", max(e[0] for e in errors), 1e-8),
-        Figure("deviation over ten times the amplitude, less ten times", max(e[1] for e in errors), 0.05),
-        Figure("cut-off frequency", cut_off_error(40 if quick else 200), 1e-8),
-        Figure("error towards the sonic vacuum, from rest", limit, 1e-6),
+        Measurement("linear modes, in amplitudes", max(e[0] for e in errors), 1e-8),
+        Measurement("deviation over ten times the amplitude, less ten times", max(e[1] for e in errors), 0.05),
+        Measurement("cut-off frequency", cut_off_error(40 if quick else 200), 1e-8),
+        Measurement("error towards the sonic vacuum, from rest", limit, 1e-6),
     ]
 
 

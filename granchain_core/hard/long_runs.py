@@ -7,7 +7,7 @@ import numpy as np
 from ..integrate import METHODS, Engine, Setting, live
 from ..integrate.checkpoint import Checkpoint, checkpoint, resumed
 from ..scene import scene
-from .case import Figure, Picture, Trace
+from .case import Measurement, Picture, Trace
 
 _SAMPLES = 8
 
@@ -67,18 +67,18 @@ def phase_error(periods: int) -> tuple[float, float]:
     return worst, abs(engine.elapsed - (periods + 1.0))
 
 
-def long_runs(quick: bool) -> list[Figure]:
+def long_runs(quick: bool) -> list[Measurement]:
     """Drive phase and bitwise restarts."""
     periods = 20_000 if quick else 100_000
     phase, counted = phase_error(periods)
-    found = [Figure(f"drive phase after {periods} periods, in amplitudes", phase, 1e-15),
-             Figure("periods counted wrongly", counted, 0.0)]
+    found = [Measurement(f"drive phase after {periods} periods, in amplitudes", phase, 1e-15),
+             Measurement("periods counted wrongly", counted, 0.0)]
     cuts = 40 if quick else 1_000
     for method in METHODS:
         run = 2 * cuts if quick else periods // (10 if METHODS[method].adaptive else 1)
         differs = cut_and_gone_on(method, 2 * cuts, cuts) + uninterrupted(method, run, cuts)
-        found.append(Figure(f"numbers that {cuts} random cuts change, {method}", differs, 0.0,
-                            f"{run} periods in one call, and {2 * cuts} sample by sample"))
+        found.append(Measurement(f"numbers that {cuts} random cuts change, {method}", differs, 0.0,
+                                 f"{run} periods in one call, and {2 * cuts} sample by sample"))
     return found
 
 

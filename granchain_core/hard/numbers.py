@@ -10,7 +10,7 @@ from ..errors import NumbersFailed
 from ..integrate import METHODS, Engine, Setting
 from ..integrate.methods import CERTIFIED, LIVE
 from ..scene import scene
-from .case import Figure, Picture, Trace
+from .case import Measurement, Picture, Trace
 
 #: Values that are injected.
 _VALUES = (np.nan, np.inf, -np.inf)
@@ -119,13 +119,14 @@ def slowing(method: str, beads: int, rounds: int) -> float:
     return best[0] / best[1]
 
 
-def bad_numbers(quick: bool) -> list[Figure]:
+def bad_numbers(quick: bool) -> list[Measurement]:
     """Injections, and the cost of subnormal numbers."""
     count, wrong = injections(2_000 if quick else 100_000)
-    found = [Figure(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
+    found = [Measurement(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
     for method, beads in ((LIVE, 30), (LIVE, 200), (CERTIFIED, 200)):
-        found.append(Figure(f"time of an evaluation with a subnormal tail over that without, {method}, {beads} beads",
-                            slowing(method, beads, 20 if quick else 60), 1.2))
+        found.append(Measurement("time of an evaluation with a subnormal tail over that without, "
+                                 f"{method}, {beads} beads",
+                                 slowing(method, beads, 20 if quick else 60), 1.2))
     return found
 
 

@@ -10,10 +10,10 @@ from ..orbits import periodic_orbit
 from ..orbits.flow import StroboscopicMap
 from ..run.run import run
 from ..scene import scene
-from ..steady.curve import CurvePoint, iter_curve
+from ..steady.curve.resonance_curve import CurvePoint, iter_curve
 from ..steady.regime import find_period
-from ..steady.settled import settled
-from .case import Figure, Picture, Trace
+from ..steady.settling.recorded import settled
+from .case import Measurement, Picture, Trace
 from .naive_solvers import observed_apart
 from .oracle import Plain
 
@@ -87,17 +87,17 @@ def claims(count: int, seed: int) -> tuple[int, int, int]:
     return made, wrong, slow
 
 
-def near_bifurcation(quick: bool) -> list[Figure]:
+def near_bifurcation(quick: bool) -> list[Measurement]:
     """Distance bounds near bifurcations, by normal forms and in the chain."""
     count = 600 if quick else 10_000
     made, wrong, slow = claims(count, 3)
     checked, outside = chain_claims(4 if quick else 60)
     return [
-        Figure("claims of a settled motion with a wrong bound, part", wrong / max(1, made), 1e-3,
-               f"{made} claims on {count} maps, {wrong} of them wrong"),
-        Figure("slow transients called settled", float(slow), 0.0),
-        Figure("settled chains further from their orbit than stated, part", outside / max(1, checked), 1e-3,
-               f"{checked} chains"),
+        Measurement("claims of a settled motion with a wrong bound, part", wrong / max(1, made), 1e-3,
+                    f"{made} claims on {count} maps, {wrong} of them wrong"),
+        Measurement("slow transients called settled", float(slow), 0.0),
+        Measurement("settled chains further from their orbit than stated, part", outside / max(1, checked), 1e-3,
+                    f"{checked} chains"),
     ]
 
 
@@ -152,7 +152,7 @@ def arrivals() -> dict[str, CurvePoint]:
     return found
 
 
-def two_attractors(quick: bool) -> list[Figure]:
+def two_attractors(quick: bool) -> list[Measurement]:
     """Both orbits found, both stable by their multipliers, and every result says which start it is from."""
     found, chosen = arrivals(), scene("sec2").evolve(f=_SHARED)
     orbits = {start: periodic_orbit(chosen, p.regime.period, p.state) for start, p in found.items()}
@@ -164,12 +164,12 @@ def two_attractors(quick: bool) -> list[Figure]:
              run(chosen, periods=0, record=1, samples=4).start == "rest",
              run(chosen, periods=0, record=1, samples=4, start=found["up"].state).start == "given state"]
     return [
-        Figure("orbits missing, of two", 2.0 - len({p.regime.period for p in found.values()}), 0.0,
-               ", ".join(f"{s}: period {p.regime.period}, {p.max_output_force:.4f} N" for s, p in found.items())),
-        Figure("largest multiplier of either orbit", leading, 1.0),
-        Figure("smaller force over the larger", min(forces) / max(forces), 0.9),
-        Figure("change of either when gone on from", float(same), 1e-3),
-        Figure("results that do not say their start", float(len(named) - sum(named)), 0.0),
+        Measurement("orbits missing, of two", 2.0 - len({p.regime.period for p in found.values()}), 0.0,
+                    ", ".join(f"{s}: period {p.regime.period}, {p.max_output_force:.4f} N" for s, p in found.items())),
+        Measurement("largest multiplier of either orbit", leading, 1.0),
+        Measurement("smaller force over the larger", min(forces) / max(forces), 0.9),
+        Measurement("change of either when gone on from", float(same), 1e-3),
+        Measurement("results that do not say their start", float(len(named) - sum(named)), 0.0),
     ]
 
 
@@ -187,7 +187,7 @@ def two_attractors_picture() -> Picture:
 # --- drift ------------------------------------------------------------------------------------------------
 
 
-def drifting(quick: bool) -> list[Figure]:
+def drifting(quick: bool) -> list[Measurement]:
     """The observer without a foundation drifts, and the verdict reports it; with one it does not drift."""
     wrong = []
     for base, drifts in (("fig11-free", True), ("fig11-founded", False)):
@@ -196,8 +196,8 @@ def drifting(quick: bool) -> list[Figure]:
             wrong.append((observer_drift(periodic_orbit(chosen, observer=True)) is not None) != drifts)
     bead = scene("fig11-free").evolve(N=1, f=340.0)
     alone = observer_drift(periodic_orbit(bead, observer=True))
-    return [Figure("observers with a wrong verdict on drift", float(sum(wrong)), 0.0),
-            Figure("free beads whose drift is not named", float(alone is None), 0.0, str(alone))]
+    return [Measurement("observers with a wrong verdict on drift", float(sum(wrong)), 0.0),
+            Measurement("free beads whose drift is not named", float(alone is None), 0.0, str(alone))]
 
 
 def drifting_picture() -> Picture:

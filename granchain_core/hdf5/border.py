@@ -35,6 +35,14 @@ class File:
         """Whether there is a dataset."""
         return self._source.stored(path) is not None
 
+    def names(self) -> list[str]:
+        """The paths of all datasets that stand in the file itself."""
+        return self._source.names()
+
+    def described(self, path: str) -> Stored:
+        """The type, shape and unit of a dataset that has to be there."""
+        return self._stored(path)
+
     def shape(self, path: str) -> tuple[int, ...]:
         """The shape of a dataset that has to be there."""
         return self._stored(path).shape

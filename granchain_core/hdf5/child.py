@@ -59,6 +59,10 @@ class Child:
         found = self._ask("stored", path)
         return found and Stored(str(found["type"]), tuple(found["shape"]), found["units"])
 
+    def names(self) -> list[str]:
+        """As `Plain.names`."""
+        return [str(name) for name in self._ask("names")]
+
     def words(self, path: str) -> list[str]:
         """As `Plain.words`."""
         return [str(word) for word in self._ask("words", path)]

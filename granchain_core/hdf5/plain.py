@@ -27,6 +27,8 @@ from h5py import h5a, h5d, h5g, h5l, h5o, h5s, h5t
 _MOST_ATTRIBUTE = 16_000_000
 #: Most words in one dataset, and dimensions.
 _MOST_WORDS, _MOST_DIMENSIONS = 100_000, 3
+#: Most objects of a file that are listed, and groups within groups.
+_MOST_OBJECTS, _DEEPEST = 2000, 5
 #: What stands in the file for a word of variable length [bytes].
 _REFERENCE = 16
 _NUMBERS = (h5t.FLOAT, h5t.INTEGER)
@@ -97,6 +99,25 @@ class Plain:
         shape = self._shape(found, path)
         units = self.attribute(path, "units")
         return Stored(name, shape, None if units is None else str(units))
+
+    def names(self) -> list[str]:
+        """The paths of all datasets, reached by hard links only, in the order of their names."""
+        found: list[str] = []
+        self._list(h5g.open(self._file.id, b"/"), "", found, [0], 0)
+        return found
+
+    def _list(self, group: h5g.GroupID, path: str, found: list[str], seen: list[int], depth: int) -> None:
+        for name in group:
+            seen[0] += 1
+            if seen[0] > _MOST_OBJECTS or depth > _DEEPEST:
+                raise Refused(f"it has more than {_MOST_OBJECTS} objects, or groups deeper than {_DEEPEST}")
+            if group.links.get_info(name).type != h5l.TYPE_HARD:
+                continue
+            here, called = h5o.open(group, name), f"{path}/{name.decode('utf-8')}".lstrip("/")
+            if isinstance(here, h5g.GroupID):
+                self._list(here, called, found, seen, depth + 1)
+            elif isinstance(here, h5d.DatasetID):
+                found.append(called)
 
     def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
         """The numbers of a dataset or only its first `rows`, as they are stored."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..kernels.dop853.run import Stretch, run_certified
@@ -11,6 +13,7 @@ from ..kernels.forces.peaks import MEMORY, ROWS, next_period
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE
 from ..lower import Lowered
+from ..stop import Stop
 from .stepper import Start, empty_samples
 
 #: At least this many steps are made in a period, so that the driver is never stepped over.
@@ -29,6 +32,7 @@ class Adaptive:
         self.method = Dop853(tolerance, largest)
         self.lowered = lowered
         self.grid = samples
+        self.pause: Callable[[], None] = Stop().pause
         self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
                          slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
                          next_step=np.array([min(_FIRST_STEP, largest)]), forces=lowered.forces())
@@ -56,20 +60,21 @@ class Adaptive:
         """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
         return self._run(y, first, len(samples.displacement) - 1, 1, samples, out)
 
-    def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
+    def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
         """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
         keep, row = empty_samples(self.lowered, 2), self.lowered.bodies
         strobes[0] = y[:row], self.work.k[0, :row]
-        for p in range(len(tops)):
+        for p in range(len(maxima)):
             next_period(out.log.peaks)
             status, _ = self._run(y, 0, self.grid, self.grid if watch else 0, keep, out)
             if status != DONE:
                 return status, p
             strobes[p + 1] = y[:row], self.work.k[0, :row]
+            self.pause()
             if watch:
-                tops[p] = out.log.peaks[:MEMORY:ROWS]
-        return DONE, len(tops)
+                maxima[p] = out.log.peaks[:MEMORY:ROWS]
+        return DONE, len(maxima)
 
     def _run(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: Output) -> tuple[int, int]:

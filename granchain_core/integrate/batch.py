@@ -69,9 +69,9 @@ class Batch:
             extrapolate_from=whole[5], pause=whole[6], kept=whole[7], testing=whole[8], due=whole[9], slowest=parts[0],
             change_before_extrapolation=parts[1], before=np.zeros((BATCH_LANES, 2, n + 2)),
             fine_record=np.zeros((BATCH_LANES, FINE)), strobes=np.zeros((BATCH_LANES, 2 * STROBES_PER_LANE, 2, n + 2)),
-            tops=np.zeros((BATCH_LANES, STROBES_PER_LANE, 5)), last_check=np.zeros((BATCH_LANES, 3)), scale=np.zeros(2),
-            change=np.zeros(3 * LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
-            triangle=np.zeros((ORBITS, ORBITS)),
+            maxima=np.zeros((BATCH_LANES, STROBES_PER_LANE, 5)),
+            last_check=np.zeros((BATCH_LANES, 3)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
+            limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
         )
         for lane in range(BATCH_LANES):  # an empty lane runs the example at rest and is never checked
             self.put(lane, lowered, np.zeros(rows), 1, NEVER, NEVER)
@@ -106,14 +106,14 @@ class Batch:
         state.fine_record[lane], state.testing[lane], state.due[lane] = 0.0, 0, 0
 
     def put_fine(self, lane: int, lowered: Lowered, y: np.ndarray, refine: float, period: int, rate: float,
-                 tops: np.ndarray) -> None:
+                 maxima: np.ndarray) -> None:
         """Start a scene on the orbit y of a coarser run, of `period` and decay `rate` per orbit, with its forces.
 
         It is checked once the difference from that orbit has decayed.
         """
         orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(COARSE_ERROR_LEFT) / math.log(rate))))
         self.put(lane, lowered, y, refine, NEVER, orbits * period)
-        self.state.fine_record[lane] = period, rate, *tops, orbits, 0.0
+        self.state.fine_record[lane] = period, rate, *maxima, orbits, 0.0
 
     def run(self) -> tuple[int, bool]:
         """Run until a lane is due for a check; its number, and whether it is finite."""
@@ -137,12 +137,12 @@ class Batch:
         kept = int(self.state.kept[lane])
         return self.state.strobes[lane, max(0, kept - most) : kept, :, 1:-1]
 
-    def settled_tops(self, lane: int, period: int) -> np.ndarray:
+    def settled_maxima(self, lane: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse lane has settled on: from before it was disturbed, if it was."""
         disturbed = self.state.slowest[lane] > 0.0
-        return self.state.fine_record[lane, FORCES : FORCES + 3].copy() if disturbed else self.tops(lane, period)
+        return self.state.fine_record[lane, FORCES : FORCES + 3].copy() if disturbed else self.maxima(lane, period)
 
-    def tops(self, lane: int, periods: int) -> np.ndarray:
+    def maxima(self, lane: int, periods: int) -> np.ndarray:
         """Largest input, output and elastic output force of the last `periods` periods, in scaled units."""
         return self._last(lane, periods)[:3]
 
@@ -153,4 +153,4 @@ class Batch:
     def _last(self, lane: int, periods: int) -> np.ndarray:
         run = int(self.state.periods[lane])
         places = np.arange(max(1, run - min(periods, STROBES_PER_LANE) + 1), run + 1) % STROBES_PER_LANE
-        return self.state.tops[lane, places].max(axis=0)
+        return self.state.maxima[lane, places].max(axis=0)

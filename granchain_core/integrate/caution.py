@@ -1,5 +1,8 @@
 """Factors of caution: the stated error of a computation is its difference from a coarser one times one of these.
 
+The displacements of a settled orbit have none: their difference is enlarged by 1/(1 − |μ|) only
+(steady/settling/recorded.py).
+
 Where the error falls by the method's order, the difference alone is a bound: at order 4 it is fifteen times the error.
 Contact events make the fall uneven.
 """

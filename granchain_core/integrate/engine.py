@@ -42,6 +42,7 @@ class Engine:
         self.stop = Stop() if stop is None else stop
         self.y = np.zeros(ready.size)
         self.stepper: Any = method.stepper(setting, ready, samples)
+        self.stepper.pause = self.stop.pause
         self.grid: int = self.stepper.grid
         self.start(rest(scene) if lowered is None else State(np.zeros(ready.beads), np.zeros(ready.beads)))
         self._remember()
@@ -106,6 +107,7 @@ class Engine:
 
         Raises `NumbersFailed`, `Cancelled`.
         """
+        self.stop.pause()
         self._remember()
         stepper, periods = self.stepper, count / self.samples
         samples = empty_samples(stepper.lowered, count + 1)
@@ -125,14 +127,15 @@ class Engine:
         input, output and elastic output force of each period (count, 3); without `watch` the certified method does
         not search the largest forces and they are NaN.
         """
+        self.stop.pause()
         self._remember()
         stepper = self.stepper
-        strobes, tops = np.zeros((count + 1, 2, stepper.lowered.bodies)), np.full((count, 3), np.nan)
-        status, done = stepper.periods(self.y, strobes, tops, watch, self._output())
+        strobes, maxima = np.zeros((count + 1, 2, stepper.lowered.bodies)), np.full((count, 3), np.nan)
+        status, done = stepper.periods(self.y, strobes, maxima, watch, self._output())
         if status != DONE:
             self.raise_for(status, done, self._before)
         self.elapsed += count
-        return strobes[:, :, 1:-1], tops
+        return strobes[:, :, 1:-1], maxima
 
     def _output(self, closings: int = 0) -> Output:
         """A new log with places for this number of closings, the counts and the stop flag."""
@@ -146,7 +149,7 @@ class Engine:
         reset_peaks(self.log.peaks)
 
     @property
-    def tops(self) -> np.ndarray:
+    def maxima(self) -> np.ndarray:
         """The largest input, output and elastic output force since they were last reset, in scaled units."""
         return self.log.peaks[:MEMORY:ROWS].copy()
 
@@ -174,7 +177,7 @@ class Engine:
         """Advance by whole periods: the largest input, output and elastic output force on the way (3,), scaled."""
         self.reset_peaks()
         self.record(periods * self.samples)
-        return self.tops
+        return self.maxima
 
     # --- failures ------------------------------------------------------------------------------------------
 

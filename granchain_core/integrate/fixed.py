@@ -3,10 +3,14 @@
 Their kernels test for numbers that are not finite once a sample or a period, because the test costs as much as a bead.
 When one is found, the period is repeated from its start and bisected until the step is known; in that step the failure
 has not spread yet, and its earliest stage identifies the bead where it began.
+
+A period of a long chain, or of a slow drive, may take minutes. It is computed in parts, so that it can be cancelled at
+any instant and others may go first; parts.py has them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -24,6 +28,7 @@ from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.simd.vector import LANES, aligned
 from ..lower import Lowered
 from ..stop import Stop
+from .parts import periods_in_parts, samples_in_parts, steps_in_part
 from .stepper import Start, empty_samples
 
 #: Steps in a period up to which the driver's motion is tabulated.
@@ -38,6 +43,7 @@ class FixedStep:
         self.lowered = lowered
         self.grid: int = method.steps_per_period
         self.h = lowered.period / self.grid
+        self.pause: Callable[[], None] = Stop().pause
         self._every = self.grid // samples
         self._simd = simd
         self._no_samples = empty_samples(lowered, 0)
@@ -84,15 +90,24 @@ class FixedStep:
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from step `first`, filling the samples; returns status and number of rows filled."""
-        return self._run(y, first, self._every, Kept(samples, *self._no_periods), out)
+        part = steps_in_part(self.lowered.bodies)
+        if self._every * (len(samples.displacement) - 1) > part:
+            return samples_in_parts(self, y, first, self._every, part, samples, out)
+        return self.run(y, first, self._every, samples, out)
 
-    def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
+    def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
         """Advance whole periods, filling strobes and largest forces (at no cost); returns status and periods done."""
-        return self._run(y, 0, self.grid, Kept(self._no_samples, strobes, tops), out)
+        part = steps_in_part(self.lowered.bodies)
+        if self.grid > part:
+            return periods_in_parts(self, y, part, strobes, maxima, out)
+        status, done = run_steps(self.method, self.trajectory(y), 0, self.grid, Kept(self._no_samples, strobes, maxima),
+                                 out)
+        return status, done
 
-    def _run(self, y: np.ndarray, first: int, stride: int, kept: Kept, out: Output) -> tuple[int, int]:
-        status, done = run_steps(self.method, self.trajectory(y), first, stride, kept, out)
+    def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: Output) -> tuple[int, int]:
+        """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
+        status, done = run_steps(self.method, self.trajectory(y), first, stride, Kept(samples, *self._no_periods), out)
         return status, done
 
     def step_at(self, grid_index: int) -> int | None:

@@ -203,7 +203,7 @@ def typical_error(setting: Setting) -> float:
     return _SPREAD * method.usual_error / setting.refine**method.order_smooth
 
 
-def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndarray, tops: np.ndarray) -> np.ndarray:
+def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndarray, maxima: np.ndarray) -> np.ndarray:
     """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,) [scaled].
 
     The quadrature error after an onset is subtracted at the end of the split step and of the next two steps. If
@@ -215,7 +215,7 @@ def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndar
     if setting.method == LIVE and lowered.slots.dissipation is not None:
         chain, step = lowered.slots.chain, lowered.period / setting.steps_per_period(lowered, samples)
         root_speeds = np.sqrt(jumps / lowered.slots.dissipation.coefficient)
-        at_jump = jumps > AT_A_JUMP * tops[:2]
+        at_jump = jumps > AT_A_JUMP * maxima[:2]
         least[:2] = at_jump * _JUMP * step**2.5 * root_speeds * chain.stiffness.max() * chain.inverse_mass.max()
     return least
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
@@ -15,11 +16,15 @@ Start = tuple[np.ndarray, np.ndarray, int]
 
 
 class Stepper(Protocol):
-    """A method with its arrays. `grid` is the number of its grid points in a drive period, where calls may end."""
+    """A method with its arrays. `grid` is the number of its grid points in a drive period, where calls may end.
+
+    A method that takes long calls in parts calls `pause` between them.
+    """
 
     lowered: Lowered
     grid: int
     work: Any
+    pause: Callable[[], None]
 
     def use(self, lowered: Lowered) -> None:
         """Go on with other values in the same slots, or with other effects."""
@@ -36,7 +41,7 @@ class Stepper(Protocol):
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from grid index `first`, filling the samples; returns status and number of rows filled."""
 
-    def periods(self, y: np.ndarray, strobes: np.ndarray, tops: np.ndarray, watch: bool,
+    def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
         """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
 

@@ -14,6 +14,8 @@ import os
 import llvmlite.binding
 import numba
 
+from ..errors import BadInput
+
 #: Environment variable that chooses the number of scenes instead.
 VARIABLE = "GRANCHAIN_LANES"
 #: Numbers of scenes there are kernels for.
@@ -39,13 +41,14 @@ def batch_lanes(chosen: str | None) -> int:
 
     Raises
     ------
-    ValueError
+    BadInput
         `chosen` is something else.
     """
     if not chosen:
         return 8 if has_avx512() and processor() not in _HALVES else 4
     if chosen not in map(str, CHOICES):
-        raise ValueError(f"{VARIABLE} = {chosen[:40]!r} is not one of {', '.join(map(str, CHOICES))}.")
+        allowed = " or ".join(map(str, CHOICES))
+        raise BadInput(f"The environment variable {VARIABLE} is {chosen[:40]!r}; it may be {allowed}.")
     return int(chosen)
 
 

@@ -194,7 +194,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     thin = record.thinned()
     coarse = PushedChain(scene, thin, stop, chain.counts).run(begin, halvings)
     kept = np.searchsorted(record.time, thin.time)
-    tops, scales = chain.tops, chain.lowered.scales
+    maxima, scales = chain.maxima, chain.lowered.scales
     displacement = now.displacement * scales.length
     forces = now.force * scales.force
     forces[:, 0] = record.force
@@ -203,7 +203,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         progress(1.0)
     return Observation(
         scene=scene, record=record, displacement=displacement, velocity=now.velocity * scales.velocity, force=forces,
-        max_output_force=float(tops[1]) * scales.force, max_output_force_elastic=float(tops[2]) * scales.force,
+        max_output_force=float(maxima[1]) * scales.force, max_output_force_elastic=float(maxima[2]) * scales.force,
         integration_error=integration,
         interpolation_error=UNEVEN * _difference(now.displacement[kept], coarse.displacement),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",

@@ -44,7 +44,7 @@ class PushedChain:
         self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / driven.step).astype(np.int64)
 
     @property
-    def tops(self) -> np.ndarray:
+    def maxima(self) -> np.ndarray:
         """Largest input, output and elastic output force of the last run, in scaled units."""
         return self._log.peaks[:MEMORY:ROWS].copy()
 

@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import BadInput, unknown_name
-from ..experiment.table import Expected, Table, read_table
 from ..hdf5 import File, opened
 from ..hdf5.plain import Refused
 from ..integrate import State
 from .record import ForceRecord, checked
+from .table import Expected, Table, read_table
 
 #: Units that are understood, in SI.
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6}

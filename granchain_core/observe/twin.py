@@ -19,7 +19,7 @@ from ..integrate.methods import CERTIFIED
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
-from ..steady.settle import run_until_settled
+from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from .pair import Pair
 

@@ -9,13 +9,13 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import Engine, certified
-from ..kernels.dop853.flow import run_flow
-from ..kernels.dop853.flow_attempt import ContactStatus, Course
 from ..kernels.dop853.tableau import STAGES
-from ..kernels.dop853.tangent import Tangent
 from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
-from ..kernels.saltation import VelocityTangent
+from ..kernels.flow.attempt import ContactStatus, Course
+from ..kernels.flow.run import run_flow
+from ..kernels.flow.saltation import VelocityTangent
+from ..kernels.flow.tangent import Tangent
 from ..kernels.simd.vector import LANES, aligned
 from ..kernels.status import EVENTS_PER_CONTACT
 from ..lower import Lowered

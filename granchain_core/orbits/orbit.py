@@ -17,7 +17,7 @@ from ..integrate import State
 from ..lower import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
-from ..steady.settle import run_until_settled
+from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from .flow import Flow, StroboscopicMap, refuse_cut, relative_change
 

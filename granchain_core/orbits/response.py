@@ -1,12 +1,12 @@
 """Classification of a periodic orbit's response by the orbit alone: 1:n resonance, 1:1 anti-resonance, or neither.
 
-The place of a state on a resonance curve is another matter (steady/resonance.py).
+The place of a state on a resonance curve is another matter (steady/curve/resonance.py).
 
 Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives one strong push every n periods, at the
 moment at which the pulse reflected by the wall comes back to it; in an anti-resonance pulses interfere destructively,
 and every period has one weak push. Both are read from the orbit itself:
 
-pushes     counted as in steady/resonance.py: `strong` pushes in `periods` drive periods, in lowest terms.
+pushes     counted as in steady/curve/resonance.py: `strong` pushes in `periods` drive periods, in lowest terms.
 returning  speed with which bead 1 comes towards the driver just before the strongest push, over the drive's largest
            speed 2πf A0: the reflected pulse, if it is in step.
 rule       one strong push in n ≥ 2 periods is a 1:n resonance. One push a period is a 1:1 resonance if `returning` is
@@ -28,7 +28,7 @@ from ..integrate import Engine, certified
 from ..integrate.methods import CERTIFIED
 from ..regime import Regime
 from ..result import Cost, Run, run_from
-from ..steady.resonance import ENDED, STOPS, pushes
+from ..steady.curve.resonance import ENDED, STOPS, pushes
 from .orbit import Orbit
 
 #: The reflected pulse is in step if bead 1 comes back with this fraction of the drive's largest speed.

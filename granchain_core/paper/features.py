@@ -4,21 +4,14 @@ from __future__ import annotations
 
 from itertools import pairwise
 
-import numpy as np
-
-from ..steady.curve import Curve, CurvePoint
-from ..steady.resonance import extrema
+from ..steady.curve.resonance import peaks_and_valleys
+from ..steady.curve.resonance_curve import Curve, CurvePoint
 
 
 def turning_points(curve: Curve) -> tuple[list[CurvePoint], list[CurvePoint]]:
     """Peaks and dips of the elastic output force, without the curve's ends."""
-    force = curve.column("max_output_force_elastic")
-    turns = extrema(np.asarray(force, dtype=float))
-    high: list[CurvePoint] = []
-    low: list[CurvePoint] = []
-    for before, here in pairwise(turns[:-1]):
-        (high if force[here] > force[before] else low).append(curve.points[here])
-    return high, low
+    high, low = peaks_and_valleys(curve.column("max_output_force_elastic"))
+    return [curve.points[i] for i in high], [curve.points[i] for i in low]
 
 
 def peaks(curve: Curve) -> list[CurvePoint]:

@@ -11,12 +11,11 @@ from . import compute as by
 from .given import Given
 from .results import Result
 
-_IMAGES = ("The paper's measured series are images, whose numbers we do not have, so none is drawn; "
-           "your own is drawn over it (--data FILE).")
+_IMAGES = ("The paper's measured series are images, whose numbers we do not have, so none is drawn; your own is drawn "
+           "over it (--data FILE).")
 _FEATURES = "Of the measurement only what the text states is drawn, its frequencies: the text gives no force. "
-_AMPLITUDES = ("Model (5) with the amplitudes of the presets: 11 µm at 60 Hz, 6 µm at 90 Hz, and "
-               "for the paper's 100 Hz "
-               "13 µm at 50 Hz, as the paper drove its own model. It took another amplitude at each frequency and "
+_AMPLITUDES = ("Model (5) with the amplitudes of the presets: 11 µm at 60 Hz, 6 µm at 90 Hz, and for the paper's 100 "
+               "Hz 13 µm at 50 Hz, as the paper drove its own model. It took another amplitude at each frequency and "
                "states none. ")
 
 
@@ -38,66 +37,60 @@ def _quietly(_: float) -> None:
 
 _TABLE = (
     PaperFigure("1", "The driven chain of section 2",
-                "Driver (bead 0), eleven beads and the wall, to scale from the scene sec2. The "
-                "drive amplitude, 0.5 µm, is "
-                "1/38,100 of a bead's diameter and cannot be seen at any scale that shows a bead.",
+                "Driver (bead 0), eleven beads and the wall, to scale from the scene sec2. The drive amplitude, 0.5 "
+                "µm, is 1/38,100 of a bead's diameter and cannot be seen at any scale that shows a bead.",
                 lambda *_: by.rig("sec2")),
     PaperFigure("2", "Largest transmitted force of section 2 over the drive frequency",
-                "Every point starts at rest; the force is the elastic one, the paper's. Peaks have "
-                "the paper's names 1:n, "
-                "marks the motion's regime. Where the motion is not periodic, a mark is the largest force of the last "
-                "periods and not of an orbit.",
+                "Every point starts at rest; the force is the elastic one, the paper's. Peaks have the paper's names "
+                "1:n, marks the motion's regime. Where the motion is not periodic, a mark is the largest force of the "
+                "last periods and not of an orbit.",
                 by.transmission, ("curve",)),
     PaperFigure("3", "Kinetic energy of the beads at the 1:1 and the 1:3 resonance",
-                "Left of each map the drive's displacement (red) and the force on bead 1 (blue). At "
-                "340 Hz one strong push "
-                "in every period, at 1130 Hz one in three.",
+                "Left of each map the drive's displacement (red) and the force on bead 1 (blue). At 340 Hz one strong "
+                "push in every period, at 1130 Hz one in three.",
                 lambda _, stop, __: by.energy(("fig3a", "fig3b"), stop)),
     PaperFigure("3a", "Kinetic energy of the beads at the 1:1 resonance, 340 Hz",
-                "Left of the map the drive's displacement (red) and the force on bead 1 (blue): one "
-                "strong push in every "
-                "period, given when the reflected pulse is back.",
+                "Left of the map the drive's displacement (red) and the force on bead 1 (blue): one strong push in "
+                "every period, given when the reflected pulse is back.",
                 lambda _, stop, __: by.energy(("fig3a",), stop)),
     PaperFigure("3b", "Kinetic energy of the beads at the 1:3 resonance, 1130 Hz",
-                "Left of the map the drive's displacement (red) and the force on bead 1 (blue): one "
-                "strong push in three "
-                "periods; the weaker ones between start no pulse.",
+                "Left of the map the drive's displacement (red) and the force on bead 1 (blue): one strong push in "
+                "three periods; the weaker ones between start no pulse.",
                 lambda _, stop, __: by.energy(("fig3b",), stop)),
     PaperFigure("4", "The laboratory rig",
-                "Beads of the scene rig to scale. Shaker, vibrometer, force transducers, holders "
-                "and flexures are drawn "
-                "where the text has them, without a scale: it states no size of theirs.",
+                "Beads of the scene rig to scale. Shaker, vibrometer, force transducers, holders and flexures are "
+                "drawn where the text has them, without a scale: it states no size of theirs.",
                 lambda *_: by.rig("rig", True)),
     PaperFigure("5", "What the shaker does: velocity and displacement over the frequency",
                 "V0 = 2πf A0 for the amplitudes that the text states, about 6 to 8 µm, and 7 µm between. " + _IMAGES,
                 lambda given, *_: by.shaker(given), ("shaker",)),
     PaperFigure("6", "The rig's response: largest transmitted force, and force trains at 60 Hz",
-                "(a) " + _FEATURES + "The curve is model (5) at a constant 7 µm from rest, with its "
-                "regimes; it has its "
-                "peak and valley elsewhere. (b) Model (5) at 60 Hz with 11 µm. " + _IMAGES,
+                "(a) " + _FEATURES + "The curve is model (5) at a constant 7 µm from rest, with its regimes; "
+                                     "it has its peak and valley elsewhere. (b) Model (5) at 60 Hz with 11 "
+                                     "µm. " + _IMAGES,
                 lambda given, stop, said: by.response(given, False, stop, said), ("curve", "series"), (60.0,)),
     PaperFigure("7", "Force trains at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
                 _AMPLITUDES + _IMAGES,
                 lambda given, stop, said: by.trains((90.0, 100.0), given, False, stop, said), ("series",),
                 (90.0, 100.0)),
     PaperFigure("8", "The chain of models (3) to (5): every bead on a weak foundation",
-                "The scene rig to scale; the springs, which stand for the flexures, are symbols. κ "
-                "= 0.001 is k/(K√A0). "
-                "In model (3) a given force F_in takes the driver's place.",
+                "The scene rig to scale; the springs, which stand for the flexures, are symbols. κ = 0.001 is "
+                "k/(K√A0). In model (3) a given force F_in takes the driver's place.",
                 lambda *_: by.rig("rig")),
     PaperFigure("9", "Model and measurement: largest transmitted force, and force trains at 60 Hz",
-                "(a) " + _FEATURES + "Model (3) needs the measured input force at every frequency; "
-                "in its place model (5) "
-                "at four constant amplitudes from rest and, ringed, the presets of figure 12 at the "
-                "frequencies that the "
-                "paper names. (b) Model (3) fed with a measured input force or, without one, with that of model (5). "
+                "(a) " + _FEATURES + "Model (3) needs the measured input force at every frequency; in its place model "
+                                     "(5) at four constant amplitudes from rest and, ringed, the presets of figure 12 "
+                                     "at the frequencies that the paper names. (b) Model (3) fed with a measured input "
+                                     "force or, without one, with that of model (5). "
                 + _IMAGES,
                 lambda given, stop, said: by.response(given, True, stop, said), ("curve", "series"), (60.0,)),
     PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
-                "Model (3) from rest, fed with a measured input force or, without one, with that of "
-                "model (5), and shown "
-                "after 60 periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable and does not find the "
-                "chain's motion. " + _IMAGES,
+                "Model (3) from rest, fed with "
+                "a measured input force or, "
+                "without one, with that of "
+                "model (5), and shown after 60 "
+                "periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable and does not find "
+                                                     "the chain's motion. " + _IMAGES,
                 lambda given, stop, said: by.trains((90.0, 100.0), given, True, stop, said), ("series",),
                 (90.0, 100.0)),
     PaperFigure("11", "Stability of model (4): multipliers, and the first beads of both chains",
@@ -105,9 +98,13 @@ _TABLE = (
                 "observer, which starts 0.001 A0 beside it. The text does not name the drive frequency; here 100 Hz.",
                 lambda _, stop, __: by.observers(stop)),
     PaperFigure("12", "Model (5) at 60, 90 and 100 Hz",
-                "Top the shaker's velocity with the contact of driver and bead 1 (green: they touch), then input and "
-                "output force. " + _AMPLITUDES + "Dotted at 100 Hz: a shaker with 6.5 µm, which has the same velocity "
-                "amplitude. " + _IMAGES,
+                "Top the shaker's "
+                "velocity with the "
+                "contact of driver and "
+                "bead 1 (green: they "
+                "touch), then input and "
+                "output force. " + _AMPLITUDES + "Dotted at 100 Hz: a shaker with 6.5 µm, which has the same "
+                                                 "velocity amplitude. " + _IMAGES,
                 lambda given, stop, said: by.trains((60.0, 90.0, 100.0), given, False, stop, said), ("series",),
                 (60.0, 90.0, 100.0)),
 )

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..experiment import Measured, Series, Shaker, read_experiment
+from ..experiment import Answers, Measured, Series, Shaker, read_experiment
 from .results import SHOWN
 
 
@@ -35,14 +35,18 @@ _WORDS = {"curve": "a resonance curve (frequency_Hz, force_N)",
           "series": "time series (time_s and velocity_m_s, input_force_N, output_force_N)"}
 
 
-def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], files: Sequence[str]) -> Given:
-    """The files of `--data`, each FILE or HZ=FILE. Raises `BadInput` for what the figure does not take."""
+def read_given(number: str, takes: Sequence[str], frequencies: Sequence[float], files: Sequence[str],
+               answers: Answers | None = None) -> Given:
+    """The files of `--data`, each FILE or HZ=FILE; `answers` are for all of them.
+
+    Raises `Unclear` for what has to be asked, and `BadInput` for what the figure does not take.
+    """
     given = Given()
     for name in files:
         if not takes:
             raise BadInput(f"Figure {number} shows nothing that was measured, so it takes no --data.")
         hertz, path = _split(name)
-        found = read_experiment(path)
+        found = read_experiment(path, answers)
         kind = _KINDS[type(found)]
         if kind not in takes:
             raise BadInput(f"Figure {number} takes {' and '.join(_WORDS[one] for one in takes)}; "

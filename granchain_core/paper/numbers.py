@@ -15,10 +15,10 @@ from ..observe import figure_11
 from ..orbits import periodic_orbit
 from ..scene import scene
 from ..state import rest
-from ..steady.curve import Curve, resonance_curve
+from ..steady.curve.resonance import pushes
+from ..steady.curve.resonance_curve import Curve, resonance_curve
 from ..steady.regime import Regime
-from ..steady.resonance import pushes
-from ..steady.settled import Settled, settled
+from ..steady.settling.recorded import Settled, settled
 from .compute import SECTION_2, STATES
 from .features import dips, peaks
 

@@ -13,8 +13,8 @@ from ..experiment import Feature, Measured, Series, Shaker
 from ..observe import Figure11
 from ..result import Run
 from ..scene import Scene
-from ..steady.curve import Curve
-from ..steady.settled import Settled
+from ..steady.curve.resonance_curve import Curve
+from ..steady.settling.recorded import Settled
 
 Row = dict[str, Any]
 #: Time shown of force trains [s]: six periods at 60 Hz, nine at 90 Hz, five at 50 Hz.

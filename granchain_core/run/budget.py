@@ -18,8 +18,9 @@ import numpy as np
 from numba.core import event
 
 from ..errors import OverBudget
-from ..integrate import METHODS, Setting, method_for
+from ..integrate import METHODS, Setting, live, method_for
 from ..lower import Lowered, lower
+from ..quantities import QUANTITIES
 from ..scene import Scene
 
 #: The accuracy that is offered if the run would fit with it.
@@ -115,6 +116,31 @@ def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, re
     steps, seconds = steps * often, seconds * often
     seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
     return Estimate(seconds * machine_factor(), steps)
+
+
+def picture_seconds(scene: Scene, periods: int, samples: int) -> float:
+    """What `periods` of the live method take, with `samples` kept of each [s]."""
+    setting, lowered = live(), lower(scene)
+    cost = METHODS[setting.method].cost
+    steps = float(periods * setting.steps_per_period(lowered, samples))
+    return steps * (cost.fixed + cost.each * (scene.N + 1)) * machine_factor()
+
+
+def check_picture(scene: Scene, periods: int, samples: int, budget: float) -> None:
+    """Raise `OverBudget`, whose sentence says what fits, if a picture would take longer than `budget` [s]."""
+    seconds = picture_seconds(scene, periods, samples)
+    if seconds <= budget:
+        return
+    part = 0.9 * budget / seconds
+    fits = [f"N = {int(scene.N * part)}"] if scene.N * part >= 1.0 and not scene.impurities else []
+    fastest = float(f"{1.1 * scene.f / part:.2g}")
+    while fastest <= QUANTITIES["f"].high and picture_seconds(scene.evolve(f=fastest), periods, samples) > budget:
+        fastest = float(f"{1.5 * fastest:.2g}")  # a period has at least so many steps, however short it is
+    if fastest <= QUANTITIES["f"].high:
+        fits.append(f"f = {fastest:g} Hz")
+    remedy = f"{' or '.join(fits)} would fit" if fits else "fewer beads and a higher frequency are needed"
+    raise OverBudget(f"The first picture of this chain would take about {_in_words(seconds)}, and the limit "
+                     f"is {_in_words(budget)}: {remedy}.", seconds, budget)
 
 
 def _share(setting: Setting) -> float:

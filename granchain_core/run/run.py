@@ -22,8 +22,8 @@ from ..result import Cost, Run, relative_changes, residual, run_from
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..state import rest
-from ..steady.decide import REMEMBERED, regime_without_continuing
 from ..steady.regime import find_period
+from ..steady.settling.regime_decisions import REMEMBERED, regime_without_continuing
 from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
 from .kept_run import KeptRun, Reached
@@ -224,13 +224,13 @@ def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
     The differences of forces are taken with a factor for caution.
     """
     factor = RUN_FORCES_THAT_JUMP if now.engine.lowered.scene.forces_jump else RUN_FORCES
-    return np.array([_difference(now, before), *(factor * relative_changes(now.engine.tops, before.engine.tops))])
+    return np.array([_difference(now, before), *(factor * relative_changes(now.engine.maxima, before.engine.maxima))])
 
 
 def _least(now: _Attempt, setting: Setting) -> np.ndarray:
     """Lower limits of the stated errors (4,): typical for this step, and for forces at jumps `jump_errors`."""
     engine = now.engine
-    jumps = jump_errors(setting, engine.lowered, engine.samples, engine.jumps, engine.tops)
+    jumps = jump_errors(setting, engine.lowered, engine.samples, engine.jumps, engine.maxima)
     return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])
 
 

@@ -1,7 +1,8 @@
 """Scenes: frozen descriptions in SI and the presets."""
 
+from .amplitude import Amplitude
 from .description import Bead, hertz_stiffness
 from .model import Scene
 from .presets import ASSETS, scene, scene_names
 
-__all__ = ["ASSETS", "Bead", "Scene", "hertz_stiffness", "scene", "scene_names"]
+__all__ = ["ASSETS", "Amplitude", "Bead", "Scene", "hertz_stiffness", "scene", "scene_names"]

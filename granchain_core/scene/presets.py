@@ -13,7 +13,9 @@ from ..quantities import QUANTITIES
 from .description import Bead
 from .model import Scene
 
-ASSETS = Path(__file__).resolve().parents[2] / "assets"
+_PACKAGE = Path(__file__).resolve().parents[1]
+#: Scenes and measured data: beside the packages in the tree, within this one where it is installed.
+ASSETS = next(place for place in (_PACKAGE / "assets", _PACKAGE.parent / "assets") if place.is_dir())
 _SECTIONS = {"parent", "title", "look_at", "paper", "order", "chain", "knobs", "ranges"}
 
 

@@ -52,7 +52,7 @@ def _record(pairs: Batch, lane: int, periods: int) -> tuple[np.ndarray, np.ndarr
     """Strobes, last largest forces and last state of a lane's own periods: a lane runs on until the slowest is done."""
     strobes = pairs.state.strobes[lane, : periods + 1]
     last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_PER_LANE
-    return strobes[1:, :, 1:-1].copy(), pairs.state.tops[lane, last, :3].copy(), strobes[-1].ravel().copy()
+    return strobes[1:, :, 1:-1].copy(), pairs.state.maxima[lane, last, :3].copy(), strobes[-1].ravel().copy()
 
 
 def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.ndarray]:

@@ -14,15 +14,15 @@ from ..result import relative_changes
 _FORCE_PER_OVERLAP = 1.5
 
 
-def force_distances(distance: float, lowered: Lowered, tops: np.ndarray, y: np.ndarray) -> np.ndarray:
+def force_distances(distance: float, lowered: Lowered, maxima: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Relative changes (3,) of the largest forces over a relative `distance` of states.
 
     The distance is relative to the largest displacement of the scaled state y, but a force depends on its overlap.
     Where a contact of the first or last bead overlaps less than that, as in the stop band, the same distance changes
-    its force by a larger part. `tops` are the scaled forces.
+    its force by a larger part. `maxima` are the scaled forces.
     """
     stiffness = lowered.slots.chain.stiffness[[0, -1, -1]]
-    overlaps = (tops / stiffness) ** (1.0 / _FORCE_PER_OVERLAP)
+    overlaps = (maxima / stiffness) ** (1.0 / _FORCE_PER_OVERLAP)
     largest = float(np.abs(lowered.rows(y)[0]).max())
     nearer = np.ones(3)
     np.divide(largest, overlaps, out=nearer, where=(overlaps > 0.0) & (overlaps < largest))
@@ -48,7 +48,7 @@ def errors_between(finer: Engine, before: np.ndarray, contraction: float, distan
 
     Both began at the relative `distance` from the orbit; `contraction` is the part of it that is left after an orbit.
     """
-    jumps = jump_errors(finer.setting, finer.lowered, finer.samples, finer.jumps, finer.tops)
-    left = force_distances(distance, finer.lowered, finer.tops, finer.y)
-    return orbit_force_errors(relative_changes(finer.tops, before), left, contraction, jumps,
+    jumps = jump_errors(finer.setting, finer.lowered, finer.samples, finer.jumps, finer.maxima)
+    left = force_distances(distance, finer.lowered, finer.maxima, finer.y)
+    return orbit_force_errors(relative_changes(finer.maxima, before), left, contraction, jumps,
                               typical_error(finer.setting))

@@ -1,8 +1,8 @@
 """The regime of a motion from its stroboscopic states and its Lyapunov exponents.
 
 A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by r per
-orbit, the distance left is change·r/(1 − r). Only that bound makes a motion a candidate; its multipliers then confirm
-it.
+orbit, the distance left is change·r/(1 − r). Only that bound makes a motion a candidate; what confirms it is in
+settling/regime_decisions.py and batch/settle.py.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
 
 @dataclass(frozen=True)
-class Approach:
+class SlowDecay:
     """A motion on its way to an orbit: its period, the decay per orbit and the present change over it."""
 
     period: int
@@ -48,7 +48,7 @@ def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
 
 
 def regime_and_approach(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING,
-         slowest: float = 0.0) -> tuple[Regime, Approach | None]:
+                        slowest: float = 0.0) -> tuple[Regime, SlowDecay | None]:
     """Periodic with the smallest n whose distance bound holds, else unsettled and the orbit approached, if any.
 
     Strobes (P + 1, 2, N). Changes below `rounding` are the method's own and count as none; `slowest` is a
@@ -60,7 +60,7 @@ def regime_and_approach(strobes: np.ndarray, longest: int = LONGEST_PERIOD, roun
 
 
 def regime_from_numbers(seen: Sequence[float] | np.ndarray, run: int,
-             rounding: float = ROUNDING) -> tuple[Regime, Approach | None]:
+                        rounding: float = ROUNDING) -> tuple[Regime, SlowDecay | None]:
     """The six numbers of section.find after `run` periods as a regime and the orbit approached, if any.
 
     Changes that are lost in rounding may still be those of a slow approach: the distance is no better known than
@@ -71,7 +71,7 @@ def regime_from_numbers(seen: Sequence[float] | np.ndarray, run: int,
         if 0.0 < rate < 1.0:
             distance = max(distance, rounding * rate / (1.0 - rate))
         return Regime("periodic", int(period), None if rate < 0.0 else float(rate), float(distance), run), None
-    approach = Approach(int(approached), float(its_rate), float(its_change)) if approached else None
+    approach = SlowDecay(int(approached), float(its_rate), float(its_change)) if approached else None
     return Regime.unsettled(run), approach
 
 

@@ -14,7 +14,7 @@ from ..state import State
 
 @dataclass(frozen=True, eq=False)
 class SteadyState:
-    """A steady state with its largest forces `tops` (3,) [N] in the order input, output, elastic output.
+    """A steady state with its largest forces `maxima` (3,) [N] in the order input, output, elastic output.
 
     `errors` (3,) are their relative errors, None where none is claimed; `state` is at drive phase 0. With a `failure`,
     a sentence, there are none of these, and `status` is its name. `number` is that of the start it was found from.
@@ -22,7 +22,7 @@ class SteadyState:
     """
 
     scene: Scene
-    tops: np.ndarray
+    maxima: np.ndarray
     regime: Regime
     errors: np.ndarray | None
     state: State

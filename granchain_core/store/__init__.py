@@ -1,7 +1,11 @@
 """Results as HDF5 that other programs open with labelled axes."""
 
 from .branches import load_branch, save_branch
-from .files import check_writable, load, save, save_curve
+from .curves import load_curve, save_curve
 from .observations import save_observation
+from .runs import load, save
+from .writing import check_writable
 
-__all__ = ["check_writable", "load", "load_branch", "save", "save_branch", "save_curve", "save_observation"]
+__all__ = [
+    "check_writable", "load", "load_branch", "load_curve", "save", "save_branch", "save_curve", "save_observation",
+]

@@ -25,7 +25,7 @@ from ..integrate.methods import CERTIFIED
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
 from ..quantities import QUANTITIES
-from .files import _provenance, _scale, _variable, _write
+from .writing import write_axis, write_file, write_root, write_values
 
 _FORCES = ("max_input_force", "max_output_force", "max_output_force_elastic")
 _NONE = -1
@@ -41,14 +41,15 @@ def save_branch(branch: Branch, path: str | Path) -> Path:
     """Write a branch, finished or not; returns the path. Raises `BadInput` where it cannot be written."""
 
     def write(file: h5py.File) -> None:
-        _provenance(file, branch.axis.scene, CERTIFIED, None)
+        write_root(file, branch.axis.scene, CERTIFIED, None)
         file.attrs["branch"] = json.dumps({
             "knob": branch.axis.knob, "start": branch.axis.start, "end": branch.axis.end, "period": branch.period,
             "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
                      for arm in branch.arms]})
         numbered = [(place, point) for place, arm in enumerate(branch.arms) for point in arm.points]
         group = _orbits(file, "branch", branch, [point for _, point in numbered])
-        _variable(group, "arm", np.array([place for place, _ in numbered]), ("point",), "1", "which way from the seed")
+        write_values(group, "arm", np.array([place for place, _ in numbered]), ("point",), "1",
+                     "which way from the seed")
         special = [(place, one) for place, arm in enumerate(branch.arms) for one in arm.special]
         _special(file.create_group("special"), branch, special)
         _orbits(file, "special_before", branch, [one.before for _, one in special])
@@ -57,7 +58,7 @@ def save_branch(branch: Branch, path: str | Path) -> Path:
         for place, arm in enumerate(branch.arms):
             turns.create_dataset(str(place), data=arm.points[-1].turns)
 
-    return _write(path, write)
+    return write_file(path, write)
 
 
 def load_branch(path: str | Path) -> Branch:
@@ -88,25 +89,26 @@ def _orbits(file: h5py.File, name: str, branch: Branch, points: list[BranchPoint
             ("contact", n + 1, "contact number; c joins bodies c and c + 1"),
             ("coordinate", 2 * n + 1, "state over √(2N), then the knob's coordinate"),
             ("iteration", longest, "evaluation of Newton's method")):
-        _scale(group, scale, np.arange(size), "1", meaning)
-    _variable(group, "knob", column("knob"), ("point",), quantity.unit, quantity.label)
-    _variable(group, "arclength", column("arclength"), ("point",), "1", "arclength from the seed")
+        write_axis(group, scale, np.arange(size), "1", meaning)
+    write_values(group, "knob", column("knob"), ("point",), quantity.unit, quantity.label)
+    write_values(group, "arclength", column("arclength"), ("point",), "1", "arclength from the seed")
     for force in _FORCES:
         words = force.replace("_", " ").replace("max", "largest", 1)
-        _variable(group, force, column(force), ("point",), "N", f"{words} along the orbit")
-    _variable(group, "stable", column("stable").astype(np.int8), ("point",), "1", "1 if no multiplier is outside")
-    _variable(group, "unstable", column("unstable").astype(int), ("point",), "1", "multipliers outside the unit circle")
-    _variable(group, "liouville", column("liouville"), ("point",), "1", "ln |det| against the integral of the trace")
+        write_values(group, force, column(force), ("point",), "N", f"{words} along the orbit")
+    write_values(group, "stable", column("stable").astype(np.int8), ("point",), "1", "1 if no multiplier is outside")
+    write_values(group, "unstable", column("unstable").astype(int), ("point",), "1",
+                 "multipliers outside the unit circle")
+    write_values(group, "liouville", column("liouville"), ("point",), "1", "ln |det| against the integral of the trace")
     residuals = np.full((len(points), longest), np.nan)
     for row, point in zip(residuals, points, strict=True):
         row[: len(point.residuals)] = point.residuals
-    _variable(group, "residual", residuals, ("point", "iteration"), "1", "residuals of Newton's method")
-    _variable(group, "state", table("x", 2 * n, float), ("point", "component"), "1", "scaled state at phase 0")
-    _variable(group, "tangent", table("tangent", 2 * n + 1, float), ("point", "coordinate"), "1", "unit tangent")
-    _variable(group, "slope", table("slope", 2 * n, float), ("point", "component"), "1", "change of the map with p")
-    _variable(group, "multiplier_real", multipliers.real, ("point", "component"), "1", "multipliers, real part")
-    _variable(group, "multiplier_imag", multipliers.imag, ("point", "component"), "1", "multipliers, imaginary part")
-    _variable(group, "closings", table("closings", n + 1, int), ("point", "contact"), "1",
+    write_values(group, "residual", residuals, ("point", "iteration"), "1", "residuals of Newton's method")
+    write_values(group, "state", table("x", 2 * n, float), ("point", "component"), "1", "scaled state at phase 0")
+    write_values(group, "tangent", table("tangent", 2 * n + 1, float), ("point", "coordinate"), "1", "unit tangent")
+    write_values(group, "slope", table("slope", 2 * n, float), ("point", "component"), "1", "change of the map with p")
+    write_values(group, "multiplier_real", multipliers.real, ("point", "component"), "1", "multipliers, real part")
+    write_values(group, "multiplier_imag", multipliers.imag, ("point", "component"), "1", "multipliers, imaginary part")
+    write_values(group, "closings", table("closings", n + 1, int), ("point", "contact"), "1",
               "closings of each contact; 0 always open, -1 always closed")
     return group
 
@@ -114,10 +116,10 @@ def _orbits(file: h5py.File, name: str, branch: Branch, points: list[BranchPoint
 def _special(group: h5py.Group, branch: Branch, special: list[tuple[int, SpecialPoint]]) -> None:
     unit, words = QUANTITIES[branch.axis.knob].unit, h5py.string_dtype()
     multipliers = np.array([np.nan if s.multiplier is None else s.multiplier for _, s in special], dtype=complex)
-    _scale(group, "special", np.arange(len(special)), "1", "special point along the branch")
+    write_axis(group, "special", np.arange(len(special)), "1", "special point along the branch")
 
     def variable(name: str, values: Any, its: str, meaning: str) -> None:
-        _variable(group, name, values, ("special",), its, meaning)
+        write_values(group, name, values, ("special",), its, meaning)
 
     variable("kind", np.array([s.kind for _, s in special], dtype=words), "",
              "fold, period_doubling, neimark_sacker or grazing")

@@ -20,7 +20,7 @@ from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
 from ..quantities import QUANTITIES
-from .files import _provenance, _scale, _variable, _write
+from .writing import write_axis, write_file, write_root, write_values
 
 _COLUMNS = {  # name: (unit, meaning)
     "max_input_force": ("N", "largest force of the driver on bead 1 in the steady state"),
@@ -46,20 +46,20 @@ def save_diagram(diagram: Diagram, path: str | Path) -> Path:
     def write(file: h5py.File) -> None:
         errors = diagram.cells["error_estimate"]
         known = errors[np.isfinite(errors)]
-        _provenance(file, grid.scene, "rk4 in lanes", float(known.max()) if len(known) else None)
+        write_root(file, grid.scene, "rk4 in lanes", float(known.max()) if len(known) else None)
         file.attrs["map_digest"], file.attrs["wall_s"] = grid.digest, diagram.wall_s
         file.attrs["map_axes"] = json.dumps([grid.y.knob, grid.x.knob])
         group = file.create_group("map")
         for axis in (grid.y, grid.x):
             quantity = QUANTITIES[axis.knob]
-            _scale(group, axis.knob, axis.array, quantity.unit, quantity.label)
+            write_axis(group, axis.knob, axis.array, quantity.unit, quantity.label)
         for name, (unit, meaning) in _COLUMNS.items():
-            _variable(group, name, diagram.column(name), (grid.y.knob, grid.x.knob), unit, meaning)
+            write_values(group, name, diagram.column(name), (grid.y.knob, grid.x.knob), unit, meaning)
         codes = np.array([-1, *range(len(REGIMES))], dtype=np.int8)
         group["regime"].attrs["flag_values"] = codes
         group["regime"].attrs["flag_meanings"] = " ".join(["not_computed", *REGIMES])
 
-    return _write(path, write)
+    return write_file(path, write)
 
 
 def load_diagram(path: str | Path) -> Diagram:

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 
 from ..observe import Observation
-from .files import _provenance, _scale, _variable, _write
+from .writing import write_axis, write_file, write_root, write_values
 
 _ROWS = {  # name: (dimensions, unit, meaning)
     "displacement": (("time", "bead"), "m", "bead displacement from its rest position"),
@@ -30,7 +30,7 @@ def save_observation(seen: Observation, path: str | Path) -> Path:
     """Write an observation to `path`; returns the path. Raises `BadInput` where it cannot be written."""
 
     def write(file: h5py.File) -> None:
-        _provenance(file, seen.scene, seen.cost.method, seen.error_estimate)
+        write_root(file, seen.scene, seen.cost.method, seen.error_estimate)
         file.attrs["status"] = seen.status
         file.attrs["integration_error"] = seen.integration_error
         file.attrs["interpolation_error"] = seen.interpolation_error
@@ -41,12 +41,13 @@ def save_observation(seen: Observation, path: str | Path) -> Path:
             if found is not None:
                 file.attrs[name] = json.dumps(asdict(found))
         group = file.create_group("observation")
-        _scale(group, "time", seen.time, "s", "time as in the measured force")
-        _scale(group, "bead", np.arange(1, seen.scene.N + 1), "1", "bead number from the driver")
-        _scale(group, "contact", np.arange(seen.scene.N + 1), "1", "contact number; c joins bodies c and c + 1")
+        write_axis(group, "time", seen.time, "s", "time as in the measured force")
+        write_axis(group, "bead", np.arange(1, seen.scene.N + 1), "1", "bead number from the driver")
+        write_axis(group, "contact", np.arange(seen.scene.N + 1), "1", "contact number; c joins bodies c and c + 1")
         for name, (dimensions, unit, meaning) in _ROWS.items():
-            _variable(group, name, getattr(seen, name), dimensions, unit, meaning)
+            write_values(group, name, getattr(seen, name), dimensions, unit, meaning)
         if seen.record.output is not None:
-            _variable(group, "measured_output_force", seen.record.output, ("time",), "N", "the measured output force")
+            write_values(group, "measured_output_force", seen.record.output, ("time",), "N",
+                         "the measured output force")
 
-    return _write(path, write)
+    return write_file(path, write)

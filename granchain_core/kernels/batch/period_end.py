@@ -3,7 +3,7 @@
 A coarse member is extrapolated no further than its decay predicts; if the change after the extrapolation is not smaller
 than before, it is undone. A chain may approach an unstable orbit before it leaves it, and an extrapolation could end
 there. So an orbit found by extrapolation is disturbed, and accepted only if the
-disturbance decays; if it decays slowly, multipliers decide (steady/batch_settle.py). A fine member starts on the
+disturbance decays; if it decays slowly, multipliers decide (steady/batch/settle.py). A fine member starts on the
 coarse orbit and is extrapolated to its own, each extrapolation checked in the same way.
 """
 
@@ -194,7 +194,7 @@ def largest_top(state, lane, n, q):
     """The largest force of kind q in a lane's last n periods."""
     largest = 0.0
     for p in range(n):
-        largest = max(largest, state.tops[lane, (state.periods[lane] - p) % STROBES_PER_LANE, q])
+        largest = max(largest, state.maxima[lane, (state.periods[lane] - p) % STROBES_PER_LANE, q])
     return largest
 
 
@@ -237,13 +237,13 @@ def end_period(state, lane):
     state.periods[lane] += 1
     periods = state.periods[lane]
     finite = keep_member_strobe(state, lane)
-    tops = state.tops[lane, periods % STROBES_PER_LANE]
+    maxima = state.maxima[lane, periods % STROBES_PER_LANE]
     for q in range(3):
-        tops[q] = state.peaks[ROWS * q, lane]
+        maxima[q] = state.peaks[ROWS * q, lane]
         state.peaks[ROWS * q, lane] = 0.0
     for q in range(2):
-        tops[3 + q] = state.peaks[MEMORY + q, lane]
-        tops[q] = max(tops[q], tops[3 + q])
+        maxima[3 + q] = state.peaks[MEMORY + q, lane]
+        maxima[q] = max(maxima[q], maxima[3 + q])
         state.peaks[MEMORY + q, lane] = 0.0
     state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0
     state.left[lane] = state.steps[lane]

@@ -65,7 +65,7 @@ class BatchState(NamedTuple):
     before (L, 2, N+2)       state before the last extrapolation
     fine_record (L, 7)       record of a fine member (period_end.py)
     strobes (L, 2R, 2, N+2)  stroboscopic states
-    tops (L, R, 5)           largest forces and jumps of the last periods, a ring
+    maxima (L, R, 5)           largest forces and jumps of the last periods, a ring
     last_check (L, 3)        result of the last check: period, rate, distance
 
     The others are workspaces of period_end.py.
@@ -91,7 +91,7 @@ class BatchState(NamedTuple):
     before: np.ndarray
     fine_record: np.ndarray
     strobes: np.ndarray
-    tops: np.ndarray
+    maxima: np.ndarray
     last_check: np.ndarray
     scale: np.ndarray
     change: np.ndarray

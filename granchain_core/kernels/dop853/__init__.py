@@ -1,1 +1,1 @@
-"""Dormand and Prince's method of order 8 with contact events located: motions and the flow under orbits."""
+"""Dormand and Prince's method of order 8 with contact events located."""

@@ -1,1 +1,1 @@
-"""The equations of motion in (u, w), and their linearisation."""
+"""The equations of motion in (u, w)."""

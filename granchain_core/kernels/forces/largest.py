@@ -174,7 +174,7 @@ def watch_event(slots, y, dy, e, h, c, theta, log):
 
 @inline_numba
 def watch_ends_at_event(slots, ends, c, theta, log):
-    """Raise the largest forces at the event of contact c; overlaps and rates are in `ends` (contact_events.py)."""
+    """Raise the largest forces at the event of contact c; overlaps and rates are in `ends` (contact_cubic.py)."""
     last = slots.chain.stiffness.size - 1
     for q in range(2):
         contact = 0 if q == 0 else last

@@ -72,15 +72,15 @@ def watch_equal(slots, y, dy, e, peaks):
 
 
 class Kept(NamedTuple):
-    """Arrays that a run fills: either samples, or strobes and tops of whole periods; the others have no rows.
+    """Arrays that a run fills: either samples, or strobes and maxima of whole periods; the others have no rows.
 
     `samples` has T rows, the start first. `strobes` (P + 1, 2, N + 2) are displacement and velocity, the start first,
-    `tops` (P, 3) the largest forces in the order of `peaks`.
+    `maxima` (P, 3) the largest forces in the order of `peaks`.
     """
 
     samples: Samples
     strobes: np.ndarray
-    tops: np.ndarray
+    maxima: np.ndarray
 
 
 @kernel
@@ -98,7 +98,7 @@ def run_steps(method, trajectory, first_step, stride, kept, out):
         keep(slots, 0, y, stages.k[0], stages.forces.e, kept.samples)
     else:
         keep_strobe(y, stages.k[0], kept.strobes[0])
-    for i in range(kept.samples.displacement.shape[0] - 1 if sampled else kept.tops.shape[0]):
+    for i in range(kept.samples.displacement.shape[0] - 1 if sampled else kept.maxima.shape[0]):
         if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
             return NOT_FINITE, i
         if sampled:
@@ -116,5 +116,5 @@ def run_steps(method, trajectory, first_step, stride, kept, out):
             keep(slots, i + 1, y, stages.k[0], stages.forces.e, kept.samples)
         else:
             keep_strobe(y, stages.k[0], kept.strobes[i + 1])
-            copy(log.peaks[:MEMORY:ROWS], kept.tops[i])
-    return DONE, max(kept.samples.displacement.shape[0], kept.tops.shape[0])
+            copy(log.peaks[:MEMORY:ROWS], kept.maxima[i])
+    return DONE, max(kept.samples.displacement.shape[0], kept.maxima.shape[0])

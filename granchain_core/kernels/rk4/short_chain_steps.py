@@ -100,11 +100,11 @@ def watch_block(values, count, largest, peaks, first):
 
 
 @inline_numba
-def follow_block(wide, count, tops, peaks):
-    """Follow the three forces through the last `count` steps, whose largest values are `tops`."""
-    watch_block(wide.forces[0], count, tops[0], peaks, INPUT)
-    watch_block(wide.forces[1], count, tops[1], peaks, OUTPUT)
-    watch_block(wide.forces[2], count, tops[2], peaks, OUTPUT_ELASTIC)
+def follow_block(wide, count, maxima, peaks):
+    """Follow the three forces through the last `count` steps, whose largest values are `maxima`."""
+    watch_block(wide.forces[0], count, maxima[0], peaks, INPUT)
+    watch_block(wide.forces[1], count, maxima[1], peaks, OUTPUT)
+    watch_block(wide.forces[2], count, maxima[2], peaks, OUTPUT_ELASTIC)
 
 
 @inline_llvm

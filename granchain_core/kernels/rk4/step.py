@@ -42,7 +42,7 @@ class Rk4Split(NamedTuple):
 class Stages(NamedTuple):
     """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays.
 
-    `ends` (6, N+1) are overlaps and rates at the ends of a step that is split (contact_events.py).
+    `ends` (6, N+1) are overlaps, rates and quadrature errors of a step that is split; contact_cubic.py names the rows.
     `simd` is the workspace of steps with SIMD along the chain (long_chain.py), None where there are none.
     """
 

@@ -83,10 +83,10 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
     x, value = equations.state(solved.z), equations.value(solved.z)
     multipliers = sorted_multipliers(solved.flow.derivative)
     engine, record = record_along(equations, x, value)
-    tops = record.peaks[:MEMORY:ROWS] * engine.lowered.scales.force
+    maxima = record.peaks[:MEMORY:ROWS] * engine.lowered.scales.force
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
-        max_input_force=float(tops[0]), max_output_force=float(tops[1]), max_output_force_elastic=float(tops[2]),
+        max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
         closings=_counts(len(x) // 2 + 1, record, solved.flow.changes), slope=solved.knob_slope,
         residuals=solved.residuals,
         liouville=liouville_error(multipliers, solved.flow.log_determinant), turns=record.turns)

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kernels.batch.period_end import FARTHEST_EXTRAPOLATION
-from ..kernels.strobes import extrapolation as approach
+from ...kernels.batch.period_end import FARTHEST_EXTRAPOLATION
+from ...kernels.strobes import extrapolation as approach
 
 
 def reduced_rank(states: np.ndarray) -> np.ndarray:

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import NumbersFailed
-from ..integrate import Engine, certified, live
-from ..scene import Scene
-from ..stop import Stop
+from ...errors import NumbersFailed
+from ...integrate import Engine, certified, live
+from ...scene import Scene
+from ...stop import Stop
 
 #: Steps in place of one live step: multipliers then differ from those of a tangent flow by about 1e-6.
 _REFINE = 4.0

@@ -5,9 +5,9 @@ no Taylor series in t there. It has one in s, where
 
     t = t_e + s^p  after an onset,    t = t_e − s^p  before a release,    p = 2
 
-and p = 4 for damping ∝ δ^{1/4} or δ^{3/4}, whose G grows as the power 5/4 or 7/4. A step of Dormand and Prince that
-begins at an event is then as long as anywhere else, for motion and tangents alike; in t, error control would have to
-begin with tiny steps.
+and p = 4 for damping ∝ δ^{1/4}, δ^{3/4} or δ^{5/4}, whose G grows as a power with quarters. A step of Dormand and
+Prince that begins at an event is then as long as anywhere else, for motion and tangents alike; in t, error control
+would have to begin with tiny steps.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from ..dop853.step import evaluate
 from ..effects.dissipation import LAWS, exponent
 from ..jit import by_slot, internal
-from .step import evaluate
 
 #: Kinds of time: after an onset, plain, before a release.
 AFTER, PLAIN, BEFORE = 1, 0, -1

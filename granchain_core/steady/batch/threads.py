@@ -11,8 +11,8 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
 
-from ..errors import Cancelled
-from ..stop import Stop
+from ...errors import Cancelled
+from ...stop import Stop
 
 #: Time between two checks whether the computation is still wanted [s].
 _LOOK = 0.05

@@ -12,12 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..effects.preload import overlap
-from ..equations.motion import Trajectory
-from ..jit import by_slot, inline_numba, internal
-from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .bracket import may_turn, value_at
-from .step import (
+from ..dop853.bracket import may_turn, value_at
+from ..dop853.step import (
     Overlap,
     combine,
     crossing,
@@ -28,7 +24,11 @@ from .step import (
     shrunk,
     turning_point,
 )
-from .tableau import ALL_STAGES, DENSE_EVALUATIONS, STAGES, C
+from ..dop853.tableau import ALL_STAGES, DENSE_EVALUATIONS, STAGES, C
+from ..effects.preload import overlap
+from ..equations.motion import Trajectory
+from ..jit import by_slot, inline_numba, internal
+from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .time_map import Time, rate_at, slope_in_x, time_at
 
 

@@ -1,11 +1,12 @@
 """Many steady states in batches: settle with coarse steps, then with fine ones; the difference is the error.
 
-Every scene starts in a lane with coarse steps. Once its regime is decided, the next scene takes its lane. A
-periodic scene is run again from its settled state with a third of the step, until the difference from the coarse orbit
-has decayed; the forces of this finer run are reported, with their change as error estimate. Slow approaches are
-extrapolated in both runs (kernels/strobes/extrapolation.py). Motions that are not periodic within the
-budget are classified by their Lyapunov exponents, as many at a time as there are pairs of lanes. Results that are still
-undecided are marked and left to `settle`, which takes one chain at a time (curve.py).
+Every scene starts in a lane with coarse steps. Once its regime is decided, the next scene takes its lane.
+
+Coarse run: `check_coarse` (kernels/batch/period_end.py) bounds the distance to the orbit; an orbit that was reached by
+extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run, a third of the step:
+`check_fine`, until that bound is small or six extrapolations are spent; what is left goes into the stated error, with
+the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, twice, as many at a
+time as there are pairs of lanes. What is still undecided is marked `doubtful` and settled alone (settling/alone.py).
 """
 
 from __future__ import annotations
@@ -15,18 +16,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate.batch import NEVER, Batch
-from ..kernels.width import BATCH_LANES
-from ..lower import lower
-from ..scene import Scene
-from ..state import rest
-from ..stop import Stop
-from .batch_job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
-from .decide import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK
-from .lyapunov import MOST_APART, exponents_in_pairs
-from .nearby_orbit import MOST_BEADS, seen_modulus
-from .regime import agree, clearly_chaotic, find_period, regime_from_exponents
-from .steady_state import SteadyState
+from ...integrate.batch import NEVER, Batch
+from ...kernels.width import BATCH_LANES
+from ...lower import lower
+from ...scene import Scene
+from ...state import rest
+from ...stop import Stop
+from ..lyapunov import MOST_APART, exponents_in_pairs
+from ..regime import agree, clearly_chaotic, find_period, regime_from_exponents
+from ..settling.nearby_orbit import MOST_BEADS, seen_modulus
+from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK
+from ..steady_state import SteadyState
+from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
 
 #: Periods after which a draft gives up.
 _DRAFT = 300
@@ -65,10 +66,10 @@ class _Lanes:
             look = min(_DRAFT if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
             self.block.put(lane, job.lowered, job.y, 1, look)
             return
-        regime, tops = job.coarse
+        regime, maxima = job.coarse
         assert regime.period is not None
         rate = max(1e-3, regime.contraction)
-        self.block.put_fine(lane, job.lowered, job.y, FINER, regime.period, rate, tops)
+        self.block.put_fine(lane, job.lowered, job.y, FINER, regime.period, rate, maxima)
 
     def step(self) -> SteadyState | None:
         """Run until a lane is due for a check, and check it."""
@@ -108,7 +109,7 @@ class _Lanes:
         """Classify doubtful jobs by their Lyapunov exponents; one whose neighbours come closer runs on."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
         found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], EXPONENT_BLOCKS, PERIODS_IN_BLOCK, self.stop)
-        for job, (growth, strobes, tops, y) in zip(jobs, found, strict=True):
+        for job, (growth, strobes, maxima, y) in zip(jobs, found, strict=True):
             if not np.isfinite(growth).all():
                 yield failed(job)
                 continue
@@ -116,7 +117,7 @@ class _Lanes:
             job.y, job.in_doubt = y, False
             regime = replace(find_period(strobes), periods_run=job.run)
             if regime.period is not None:
-                job.coarse = (regime, tops[-regime.period :].max(axis=0))
+                job.coarse = (regime, maxima[-regime.period :].max(axis=0))
                 self.waiting.append(job)
                 continue
             regime, before = regime_from_exponents(growth, job.record, job.run), job.measured
@@ -127,7 +128,7 @@ class _Lanes:
                 self.waiting.append(job)
             else:
                 unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
-                yield SteadyState(job.scene, job.tops, regime, None, job.lowered.unscaled(y), number=job.number,
+                yield SteadyState(job.scene, job.maxima, regime, None, job.lowered.unscaled(y), number=job.number,
                                  doubtful=unclear and job.affordable)
 
 

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from math import gcd
 
 import numpy as np
 
-from ..result import Run
+from ...result import Run
 
 #: A push is strong if its largest force is above this part of the largest push.
 STRONG = 0.7
@@ -78,8 +79,7 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     here = float(np.interp(at, f, F))
     if abs(here - output) > _OFF * max(here, output):
         return Place("")
-    turns, ends = extrema(F), (0, len(f) - 1)
-    peaks = [i for i in turns if i not in ends and _is_peak(F, turns, i)]
+    turns, (peaks, valleys) = extrema(F), peaks_and_valleys(F)
     if transmission < STOPS:
         return Place("stop band" if not any(f[i] >= at for i in peaks) and peaks else "")
     before, after = [i for i in turns if f[i] <= at], [i for i in turns if f[i] > at]
@@ -89,14 +89,9 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     way = (output - F[low]) / (F[high] - F[low])
     if high in peaks and way > 1.0 - _ON_TOP:
         return Place("peak", float(f[high]), periods[high])
-    if low not in ends and way < _AT_BOTTOM:
+    if low in valleys and way < _AT_BOTTOM:
         return Place("valley")
     return Place("flank", float(f[high]), periods[high]) if high in peaks else Place("")
-
-
-def _is_peak(force: np.ndarray, turns: list[int], i: int) -> bool:
-    place = turns.index(i)
-    return bool(force[i] > force[turns[place - 1]])
 
 
 def extrema(force: np.ndarray) -> list[int]:
@@ -109,6 +104,14 @@ def extrema(force: np.ndarray) -> list[int]:
         elif abs(force[i] - force[turns[-1]]) >= STANDS_OUT * max(force[i], force[turns[-1]]):
             turns.append(i)
     return turns
+
+
+def peaks_and_valleys(force: np.ndarray) -> tuple[list[int], list[int]]:
+    """Indices of the peaks and of the valleys of a curve: extrema that stand out from both sides."""
+    found: tuple[list[int], list[int]] = [], []
+    for before, here in pairwise(extrema(force)[:-1]):
+        found[0 if force[here] > force[before] else 1].append(here)
+    return found
 
 
 def place_words(pushed: tuple[int, int] | None, place: Place | None) -> str:

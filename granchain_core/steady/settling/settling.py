@@ -1,7 +1,8 @@
 """Bringing a chain to its steady state, and deciding whether it is there.
 
 The live method runs from the start until the distance bound is small (regime.py) or the regime is decided otherwise
-(decide.py). A periodic orbit is then computed again with finer steps (relax.py); settled.py records what was reached.
+(regime_decisions.py). A periodic orbit is then computed again with finer steps (relax.py); recorded.py records what
+was reached.
 """
 
 from __future__ import annotations
@@ -11,13 +12,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, State, live
-from ..regime import Regime
-from ..scene import Scene
-from ..state import rest
-from ..stop import Stop
-from .decide import EXAMINED_AFTER, REMEMBERED, Decisions
-from .regime import find_period
+from ...integrate import Engine, State, live
+from ...regime import Regime
+from ...scene import Scene
+from ...state import rest
+from ...stop import Stop
+from ..regime import find_period
+from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
 #: Most steps of the live method while settling: about half a minute.
 MOST_STEPS = 100_000_000
@@ -32,22 +33,17 @@ class Settling:
         self.stop = self.engine.stop
         self.engine.start(start if start is not None else rest(scene))
         self._steps = self.engine.grid
-        self.tops = np.zeros((0, 3))
+        self.maxima = np.zeros((0, 3))
         self._begin(0)
         self.decisions = Decisions(self.scene, start is not None)
         self.decided = False
 
     def _begin(self, run: int) -> None:
-        """A new record of strobes from where the engine is, after `run` periods."""
+        """A new record of strobes from where the engine is, after `run` periods; `_here` counts its periods."""
         first, scales = self.engine.state, self.engine.lowered.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
-        self._run, self._stop_at = run, EXAMINED_AFTER
+        self._run, self._here, self._stop_at = run, 0, EXAMINED_AFTER
         self.regime = Regime.unsettled(run)
-
-    @property
-    def _here(self) -> int:
-        """Periods of the present record."""
-        return len(self.strobes) - 1
 
     def go_on(self, seconds: float) -> None:
         """Run until the regime is decided, the budget is spent, or about `seconds` have passed."""
@@ -67,15 +63,16 @@ class Settling:
             chunk = 2 if per_period == 0.0 else max(1, int(min(self._until_next_look(), left / per_period)))
             chunk = min(chunk, self._stop_at - self._here, max(1, self._steps_left() // self._steps))
             began = time.perf_counter()
-            strobes, tops = self.engine.periods(chunk)
+            strobes, maxima = self.engine.periods(chunk)
             per_period = (time.perf_counter() - began) / chunk
-            self.tops = np.concatenate([self.tops, tops])
+            self.maxima = np.concatenate([self.maxima, maxima])
             self._note(strobes[1:])
         return True
 
     def _note(self, strobes: np.ndarray) -> None:
-        """Add strobes to the record and look for a period."""
-        self.strobes = np.concatenate([self.strobes, strobes])
+        """Add strobes to the record, of which only the last are kept, and look for a period."""
+        self._here += len(strobes)
+        self.strobes = np.concatenate([self.strobes[-REMEMBERED:], strobes])
         self.regime = replace(find_period(self.strobes[-REMEMBERED:]), periods_run=self._run + self._here)
 
     def _steps_left(self) -> int:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, method_for
-from ..kernels.strobes.extrapolation import ORBITS
-from ..scene import Scene
-from .extrapolate import reduced_rank, within_reach
-from .regime import changes
-from .settle import Settling
+from ...integrate import Engine, Setting, State, method_for
+from ...kernels.strobes.extrapolation import ORBITS
+from ...scene import Scene
+from ..regime import changes
+from .reduced_rank import reduced_rank, within_reach
+from .settling import Settling
 
 #: Most rounds; each has as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12

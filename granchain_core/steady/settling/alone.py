@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import NumbersFailed
-from ..integrate import Engine, State
-from ..regime import Regime
-from ..scene import Scene
-from ..stop import Stop
-from .orbit_errors import errors_between
+from ...errors import NumbersFailed
+from ...integrate import Engine, State
+from ...regime import Regime
+from ...scene import Scene
+from ...stop import Stop
+from ..orbit_errors import errors_between
+from ..steady_state import SteadyState
 from .relax import relax
-from .settle import Settling, run_until_settled
-from .steady_state import SteadyState
+from .settling import Settling, run_until_settled
 
 #: Points of a curve are computed to this relative accuracy at best, even if the scene asks for more.
 CURVE_ACCURACY = 1e-5
@@ -25,8 +25,8 @@ def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     settling = run_until_settled(scene, start, stop)
     if settling.regime.name == "periodic":
         return _on_its_orbit(settling)
-    tops = settling.tops[-min(len(settling.tops), 100) :].max(axis=0) * settling.engine.lowered.scales.force
-    return SteadyState(scene, tops, settling.regime, None, settling.engine.state)
+    maxima = settling.maxima[-min(len(settling.maxima), 100) :].max(axis=0) * settling.engine.lowered.scales.force
+    return SteadyState(scene, maxima, settling.regime, None, settling.engine.state)
 
 
 def _on_its_orbit(settling: Settling) -> SteadyState:
@@ -37,9 +37,9 @@ def _on_its_orbit(settling: Settling) -> SteadyState:
     before = engine.largest_forces(n)
     finer = Engine(settling.scene, engine.setting.finer(), 1, stop=settling.stop)
     finer.start(engine.state)
-    tops = finer.largest_forces(n)
+    maxima = finer.largest_forces(n)
     errors = errors_between(finer, before, settling.regime.contraction, distance)
-    return SteadyState(settling.scene, tops * finer.lowered.scales.force, settling.regime, errors, finer.state)
+    return SteadyState(settling.scene, maxima * finer.lowered.scales.force, settling.regime, errors, finer.state)
 
 
 def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:

@@ -6,20 +6,20 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..integrate import Engine, State, live
-from ..integrate.batch import Batch
-from ..integrate.methods import AT_A_JUMP, typical_error
-from ..lower import Lowered
-from ..regime import Regime
-from ..result import relative_changes
-from ..scene import Scene
-from ..state import rest
-from ..stop import Stop
-from .decide import EXAMINED_AFTER, MOST_PERIODS
-from .orbit_errors import errors_between, force_distances, orbit_force_errors
-from .regime import SLOW_RECORD, shrinking
-from .settle import MOST_STEPS
-from .steady_state import SteadyState
+from ...integrate import Engine, State, live
+from ...integrate.batch import Batch
+from ...integrate.methods import AT_A_JUMP, typical_error
+from ...lower import Lowered
+from ...regime import Regime
+from ...result import relative_changes
+from ...scene import Scene
+from ...state import rest
+from ...stop import Stop
+from ..orbit_errors import errors_between, force_distances, orbit_force_errors
+from ..regime import SLOW_RECORD, shrinking
+from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
+from ..settling.settling import MOST_STEPS
+from ..steady_state import SteadyState
 
 #: Steps of the finer run of a batch for one of the coarse run.
 FINER = 3
@@ -53,7 +53,7 @@ class Job:
     coarse: tuple[Regime, np.ndarray] | None = None
     in_doubt: bool = False
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
-    tops: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    maxima: np.ndarray = field(default_factory=lambda: np.zeros(3))
     measured: Regime | None = None
     number: int = 0
 
@@ -73,21 +73,21 @@ class Job:
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
         y, distance = block.state.y[:, lane], float(block.state.last_check[lane, 2])
-        tops, jumps = block.tops(lane, regime.period), block.jumps(lane, regime.period)
+        maxima, jumps = block.maxima(lane, regime.period), block.jumps(lane, regime.period)
         farther = max(distance, regime.distance)
-        left = force_distances(farther, self.lowered, tops, y)
+        left = force_distances(farther, self.lowered, maxima, y)
         # each of the two runs has come to its own orbit: the change is the difference of these orbits
-        errors = orbit_force_errors(relative_changes(tops, before), left,
+        errors = orbit_force_errors(relative_changes(maxima, before), left,
                                     least=typical_error(live(FINER)) / (1.0 - regime.contraction))
-        at_jump = np.append(jumps > AT_A_JUMP * tops[:2], False)
+        at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
         if at_jump.any():
-            located, apart = self._located_tops(y, regime, farther, block.stop)
-            tops, errors = np.where(at_jump, located, tops), np.where(at_jump, apart, errors)
-        tops = tops * self.lowered.scales.force
-        return SteadyState(self.scene, tops, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
+            located, apart = self._located_maxima(y, regime, farther, block.stop)
+            maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, apart, errors)
+        maxima = maxima * self.lowered.scales.force
+        return SteadyState(self.scene, maxima, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
                           number=self.number)
 
-    def _located_tops(self, y: np.ndarray, regime: Regime, distance: float,
+    def _located_maxima(self, y: np.ndarray, regime: Regime, distance: float,
                       stop: Stop) -> tuple[np.ndarray, np.ndarray]:
         """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
@@ -111,8 +111,8 @@ def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:
     if period <= 0:
         return unsettled(job, block, lane, run)
     regime = _periodic(block, lane, run)
-    tops = block.settled_tops(lane, int(period)) * job.lowered.scales.force
-    return SteadyState(job.scene, tops, regime, None, job.lowered.unscaled(block.state.y[:, lane]), number=job.number)
+    maxima = block.settled_maxima(lane, int(period)) * job.lowered.scales.force
+    return SteadyState(job.scene, maxima, regime, None, job.lowered.unscaled(block.state.y[:, lane]), number=job.number)
 
 
 def outcome_of_coarse_run(job: Job, block: Batch, lane: int) -> SteadyState | Job | None:
@@ -122,7 +122,7 @@ def outcome_of_coarse_run(job: Job, block: Batch, lane: int) -> SteadyState | Jo
     period = block.state.last_check[lane, 0]
     if period > 0:
         regime = _periodic(block, lane, run)
-        settled = (regime, block.settled_tops(lane, int(period)))
+        settled = (regime, block.settled_maxima(lane, int(period)))
         return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, settled, number=job.number)
     if run >= job.affordable_periods:
         return unsettled(job, block, lane, run)
@@ -143,16 +143,16 @@ def _periodic(block: Batch, lane: int, run: int) -> Regime:
 
 def _in_doubt(job: Job, block: Batch, lane: int, run: int, record: np.ndarray) -> Job:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
-    tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
-    return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, in_doubt=True, record=record, tops=tops,
+    maxima = block.maxima(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
+    return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, in_doubt=True, record=record, maxima=maxima,
                number=job.number)
 
 
 def unsettled(job: Job, block: Batch, lane: int, run: int) -> SteadyState:
     """The result of a lane whose budget of steps is spent."""
-    tops = block.tops(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
+    maxima = block.maxima(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
     state = job.lowered.unscaled(block.state.y[:, lane])
-    return SteadyState(job.scene, tops, Regime.unsettled(run), None, state,
+    return SteadyState(job.scene, maxima, Regime.unsettled(run), None, state,
                       number=job.number)
 
 

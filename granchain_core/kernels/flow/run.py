@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..dop853.step import evaluate, new_scale
 from ..effects.preload import overlap
 from ..equations.motion import copy
 from ..jit import by_slot, internal, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
-from .flow_events import flow_step
-from .step import evaluate, new_scale
+from .events import flow_step
 from .tangent import Tangent, carry
 from .time_map import time_at
 
@@ -23,11 +23,11 @@ _MOST_STEPS = 5_000_000
 
 
 @by_slot
-def jump(tangent, slots, c, closes):
+def saltate(tangent, slots, c, closes):
     """Let tangents jump where contact c opens or closes. Absent: there are none, or they are continuous in w."""
 
 
-@jump.of(Tangent)
+@saltate.of(Tangent)
 def _(tangent, slots, c, closes):
     pass
 
@@ -44,7 +44,7 @@ def change(slots, contacts, tangent, c, t):
     """Change contact c at time t; returns whether it closed."""
     closes = contacts.closed[c] == 0
     contacts.closed[c] = 1 if closes else 0
-    jump(tangent, slots, c, closes)
+    saltate(tangent, slots, c, closes)
     row = contacts.logged[0]
     contacts.log[row, 0], contacts.log[row, 1] = c + 1.0 if closes else -c - 1.0, t
     contacts.logged[0] = row + 1

@@ -4,7 +4,7 @@ Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + λ_{i-1} δδ̇_{i-
 Saltation  at the onset of contact c   δv_c −= (λ/m_c) δδ_c,   δv_{c+1} += (λ/m_{c+1}) δδ_c,   at release the reverse:
            the velocity of neighbouring motions changes its slope there at another time than that of this one
 Source     saltation matrices: Leine & Nijmeijer 2004, chapter 7; for this force they are constant shears
-Use        a check of dop853/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
+Use        a check of flow/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
            Liouville's formula cannot see whether it is there; the columns do. Linear dashpot or no damping.
 """
 
@@ -14,16 +14,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .contact_cubic import TINY
-from .dop853.flow import jump
-from .dop853.flow_attempt import keep_gaps
-from .dop853.tableau import STAGES, A, C
-from .dop853.tangent import carry, stage_gaps
-from .dop853.time_map import rate_at
-from .effects.contact import elastic_slope, positive_part
-from .effects.dissipation import damping
-from .effects.foundation import foundation_pull
-from .jit import inline_numba
+from ..contact_cubic import TINY
+from ..dop853.tableau import STAGES, A, C
+from ..effects.contact import elastic_slope, positive_part
+from ..effects.dissipation import damping
+from ..effects.foundation import foundation_pull
+from ..jit import inline_numba
+from .attempt import keep_gaps
+from .run import saltate
+from .tangent import carry, stage_gaps
+from .time_map import rate_at
 
 
 class VelocityTangent(NamedTuple):
@@ -88,7 +88,7 @@ def _(tangent, slots, time, h, contacts):
     return 0.0
 
 
-@jump.of(VelocityTangent)
+@saltate.of(VelocityTangent)
 def _(tangent, slots, c, closes):
     T, n = tangent.matrix, tangent.matrix.shape[0] // 2
     shear = tangent.jumps * damping(slots.dissipation, 1.0)

@@ -10,19 +10,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, unknown_name
-from ..integrate import State
-from ..integrate.batch import can_share_batch
-from ..regime import Regime
-from ..result import ForceErrors
-from ..scene import Scene
-from ..stop import Stop
-from .alone import safe_state, settled_alone
-from .batch_settle import batch_results
-from .steady_state import SteadyState
-from .threads import on_all_cores
+from ...errors import BadInput, Cancelled
+from ...integrate import State
+from ...integrate.batch import can_share_batch
+from ...regime import Regime
+from ...result import ForceErrors
+from ...scene import Amplitude, Scene
+from ...stop import Stop
+from ..batch.settle import batch_results
+from ..batch.threads import on_all_cores
+from ..settling.alone import safe_state, settled_alone
+from ..steady_state import SteadyState
+from .order import used_and_missing
 
-STARTS = ("rest", "up", "down")
 #: Most points of one curve.
 MOST_POINTS = 100_000
 
@@ -69,7 +69,7 @@ class CurvePoint:
     @classmethod
     def of(cls, found: SteadyState) -> CurvePoint:
         """The point of a steady state."""
-        input_force, output_force, elastic = map(float, found.tops)
+        input_force, output_force, elastic = map(float, found.maxima)
         return cls(found.scene.f, output_force, elastic, input_force, found.regime, found.force_errors, found.state,
                    found.failure, found.status)
 
@@ -88,11 +88,13 @@ class Curve:
     scene : Scene
         The chain.
     start : str
-        "rest", "up" or "down".
+        One of `STARTS` (order.py).
     points : list of CurvePoint
         One for each frequency.
     wall_s : float
         Wall-clock time [s].
+    amplitude : Amplitude or None
+        The drive amplitude over the frequency, where it is not that of the scene.
 
     Examples
     --------
@@ -106,36 +108,31 @@ class Curve:
     start: str
     points: list[CurvePoint] = field(default_factory=list)
     wall_s: float = 0.0
+    amplitude: Amplitude | None = None
+
+    @property
+    def drive_amplitude(self) -> np.ndarray:
+        """A0 at every point [m]."""
+        return np.array([self.scene.A0 if self.amplitude is None else self.amplitude.at(p.frequency)
+                         for p in self.points])
 
     def column(self, name: str) -> np.ndarray:
         """One attribute of all points as an array."""
         return np.array([getattr(p, name) for p in self.points])
 
 
-def coarse_first(count: int) -> list[int]:
-    """Indices 0..count−1 so that the curve's shape is there early: ends, middle, quarters, …"""
-    step = 1 << max(0, (count - 1).bit_length())
-    order: list[int] = []
-    seen = set()
-    while step >= 1:
-        for i in range(0, count, step):
-            if i not in seen:
-                seen.add(i)
-                order.append(i)
-        step //= 2
-    return order
-
-
-def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray) -> list[Scene]:
-    """The scenes of a curve; `BadInput` for no points, too many, or a frequency out of range."""
+def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray,
+                        amplitude: Amplitude | None = None) -> list[Scene]:
+    """The scenes of a curve; `BadInput` for no points, too many, or a frequency or amplitude out of range."""
     if not 1 <= len(frequencies) <= MOST_POINTS:
         raise BadInput(f"A curve has 1 to {MOST_POINTS} points, not {len(frequencies)}.")
-    return [scene.evolve(f=float(f)) for f in frequencies]
+    if amplitude is None:
+        return [scene.evolve(f=float(f)) for f in frequencies]
+    return [scene.evolve(f=float(f), A0=amplitude.at(float(f))) for f in frequencies]
 
 
 def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
-               stop: Stop | None = None, workers: int | None = None,
-               known: Sequence[CurvePoint] = ()) -> Iterator[CurvePoint]:
+               stop: Stop | None = None, workers: int | None = None) -> Iterator[CurvePoint]:
     """Points of a resonance curve as they are finished.
 
     Parameters
@@ -150,13 +147,11 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
         Once it is set the curve ends, and a running point is given up.
     workers : int, optional
         Threads; one for each core if not given.
-    known : sequence of CurvePoint
-        Points of this curve that are there already; `missing_from` says which of them are used.
 
     Yields
     ------
     CurvePoint
-        One for each frequency that is not known.
+        One for each frequency.
 
     Raises
     ------
@@ -170,41 +165,25 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     >>> [point.frequency for point in points]
     [2000.0, 1800.0]
     """
-    scenes = checked_frequencies(scene, frequencies)
-    used, missing = missing_from(known, [one.f for one in scenes], start)
-    left = [scenes[i] for i in missing]
-    if not left:
-        return
-    if start == "rest":
+    yield from _computed(_parted(scene, frequencies, start)[1], None, start, stop, workers)
+
+
+def _parted(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str,
+            known: Sequence[CurvePoint] = (),
+            amplitude: Amplitude | None = None) -> tuple[list[CurvePoint], list[Scene]]:
+    """The known points that can be used and the scenes that are left, both in the order of computing."""
+    scenes = checked_frequencies(scene, frequencies, amplitude)
+    used, missing = used_and_missing([point.frequency for point in known], [one.f for one in scenes], start)
+    return [known[i] for i in used], [scenes[i] for i in missing]
+
+
+def _computed(left: list[Scene], before: CurvePoint | None, start: str, stop: Stop | None,
+              workers: int | None) -> Iterator[CurvePoint]:
+    """The points of the scenes that are left; where the state is carried along, from that of the point before."""
+    if left and start == "rest":
         yield from _from_rest(left, stop, workers)
-    else:
-        yield from _carried(left, used[-1] if used else None, stop)
-
-
-def missing_from(known: Sequence[CurvePoint], frequencies: Sequence[float],
-                 start: str) -> tuple[list[CurvePoint], list[int]]:
-    """Which known points a curve can use, and the places of the missing frequencies, both in the order of computing.
-
-    From rest every known point is used. Where the state is carried along, only those up to the first that is missing.
-    Raises `BadInput` for an unknown start.
-    """
-    if start not in STARTS:
-        raise unknown_name("start", start, STARTS)
-    count = range(len(frequencies))
-    order = (coarse_first(len(frequencies)) if start == "rest"
-             else sorted(count, key=lambda i: frequencies[i], reverse=start == "down"))
-    there: dict[float, list[CurvePoint]] = {}
-    for point in known:
-        there.setdefault(point.frequency, []).append(point)
-    used: list[CurvePoint] = []
-    missing: list[int] = []
-    for i in order:
-        found = there.get(frequencies[i])
-        if found and (start == "rest" or not missing):
-            used.append(found.pop())
-        else:
-            missing.append(i)
-    return used, missing
+    elif left:
+        yield from _carried(left, before, stop)
 
 
 def _carried(scenes: list[Scene], before: CurvePoint | None, stop: Stop | None) -> Iterator[CurvePoint]:
@@ -256,7 +235,8 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: S
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
                     stop: Stop | None = None, on_point: Callable[[CurvePoint], None] | None = None,
-                    workers: int | None = None, known: Sequence[CurvePoint] = ()) -> Curve:
+                    workers: int | None = None, known: Sequence[CurvePoint] = (),
+                    amplitude: Amplitude | None = None) -> Curve:
     """The resonance curve: largest forces of the steady state over the drive frequency.
 
     Parameters
@@ -276,6 +256,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
         Threads; one for each core if not given.
     known : sequence of CurvePoint
         Points of this curve that are there already, as `on_point` gave them.
+    amplitude : Amplitude, optional
+        The drive amplitude over the frequency; the scene's A0 if not given. The spring k stays as it is.
 
     Returns
     -------
@@ -297,8 +279,9 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     1800.0
     """
     began = time.perf_counter()
-    curve = Curve(scene, start, missing_from(known, [float(f) for f in frequencies], start)[0])
-    for point in iter_curve(scene, frequencies, start, stop, workers, known):
+    used, left = _parted(scene, frequencies, start, known, amplitude)
+    curve = Curve(scene, start, used, amplitude=amplitude)
+    for point in _computed(left, used[-1] if used else None, start, stop, workers):
         curve.points.append(point)
         if on_point is not None:
             on_point(point)

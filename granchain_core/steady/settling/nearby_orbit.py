@@ -13,12 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import NumbersFailed
-from ..kernels.strobes.periodicity import LONGEST_PERIOD
-from ..scene import Scene
-from ..stop import Stop
+from ...errors import NumbersFailed
+from ...kernels.strobes.periodicity import LONGEST_PERIOD
+from ...scene import Scene
+from ...stop import Stop
+from ..regime import changes
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point, sizes
-from .regime import changes
 
 #: Beads up to which the derivative of the map is computed.
 MOST_BEADS = 100

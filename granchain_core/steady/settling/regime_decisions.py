@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..integrate import Engine
-from ..regime import Regime
-from ..scene import Scene
-from .lyapunov import exponents
+from ...integrate import Engine
+from ...regime import Regime
+from ...scene import Scene
+from ..lyapunov import exponents
+from ..regime import agree, clearly_chaotic, departing, regime_from_exponents, slowing
 from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
-from .regime import agree, clearly_chaotic, departing, regime_from_exponents, slowing
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
 EXAMINED_AFTER = 400

@@ -9,27 +9,29 @@ from typing import Any
 
 import numpy as np
 
-from ..integrate import State
-from ..kept import Kept, digest_of
-from ..result import ForceErrors
-from ..scene import Scene
-from .curve import CurvePoint
-from .regime import Regime
+from ...integrate import State
+from ...kept import Kept, digest_of
+from ...result import ForceErrors
+from ...scene import Amplitude, Scene
+from ..regime import Regime
+from .resonance_curve import CurvePoint
 
 _NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_input_force")
 
 
-def curve_digest(scene: Scene, frequencies: np.ndarray, start: str) -> str:
+def curve_digest(scene: Scene, frequencies: np.ndarray, start: str, amplitude: Amplitude | None = None) -> str:
     """Hash of everything that changes a curve; the scene's own frequency does not."""
     same = float(frequencies[0])
+    driven = {} if amplitude is None else {"amplitudes": [amplitude.at(float(f)) for f in frequencies]}
     return digest_of({"scene": scene.evolve(f=same).digest, "frequencies": [float(f) for f in frequencies],
-                      "start": start})
+                      "start": start, **driven})
 
 
-def kept_points(scene: Scene, frequencies: np.ndarray, start: str, out: str | Path) -> Kept[CurvePoint]:
+def kept_points(scene: Scene, frequencies: np.ndarray, start: str, out: str | Path,
+                amplitude: Amplitude | None = None) -> Kept[CurvePoint]:
     """The folder for the points of the curve that is to be written to `out`."""
     words = f"{scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, {start})"
-    return Kept(out, "curve", curve_digest(scene, frequencies, start), words, _packed)
+    return Kept(out, "curve", curve_digest(scene, frequencies, start, amplitude), words, _packed)
 
 
 def points_in(kept: Kept[CurvePoint]) -> list[CurvePoint]:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..dop853.step import growth, shrunk
+from ..dop853.tableau import STAGES
 from ..effects.preload import overlap
 from ..jit import inline_numba
 from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .flow_attempt import accepted_in_time, attempt_in_time, first_change
-from .step import growth, shrunk
-from .tableau import STAGES
+from .attempt import accepted_in_time, attempt_in_time, first_change
 from .time_map import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.

@@ -11,14 +11,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..integrate import Engine, State
-from ..regime import Regime
-from ..result import Cost, Run, run_from
-from ..scene import Scene
-from ..stop import Stop
-from .orbit_errors import errors_between
+from ...integrate import Engine, State
+from ...regime import Regime
+from ...result import Cost, Run, run_from
+from ...scene import Scene
+from ...stop import Stop
+from ..orbit_errors import errors_between
 from .relax import relax
-from .settle import Settling, run_until_settled
+from .settling import Settling, run_until_settled
 
 #: Samples a period of a picture.
 PICTURE_SAMPLES = 96
@@ -190,6 +190,6 @@ def orbit_picture(motion: Settling, samples: int, began: float, origin: str) -> 
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(motion.regime, distance=distance)
     integration /= 1.0 - motion.regime.contraction
-    forces = errors_between(fine, coarse.tops, motion.regime.contraction, distance)
+    forces = errors_between(fine, coarse.maxima, motion.regime.contraction, distance)
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces)
     return Settled(run, regime, start, origin, False, True)

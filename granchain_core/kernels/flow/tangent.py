@@ -15,14 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..contact_cubic import TINY
+from ..dop853.tableau import STAGES, A, C
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import damping
 from ..effects.foundation import foundation_pull
 from ..effects.preload import overlap
 from ..jit import by_slot, inline_llvm, inline_numba, internal
 from ..simd.vector import blank, load, store
-from .flow_attempt import keep_gaps
-from .tableau import STAGES, A, C
+from .attempt import keep_gaps
 from .time_map import rate_at
 
 

@@ -1,0 +1,103 @@
+"""Long calls of a fixed-step kernel in parts of some hundredths of a second.
+
+A kernel reads the stop flag every 4096 steps, which is milliseconds for eleven beads and seconds for ten thousand. How
+a call is divided depends on the numbers of beads and steps alone, so results do not depend on the machine's speed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..kernels.forces.largest import CLOSED
+from ..kernels.forces.peaks import MEMORY, ROWS, next_period
+from ..kernels.samples import Output, Samples, keep_strobe
+from ..kernels.status import CANCELLED, DONE
+from ..lower import Lowered
+from .stepper import empty_samples
+
+#: Steps times bodies in one call of a kernel: 5 to 40 ms.
+_WORK = 1 << 19
+
+
+class InParts(Protocol):
+    """A method with fixed steps, `grid` of them in a period."""
+
+    lowered: Lowered
+    grid: int
+    work: Any
+    pause: Callable[[], None]
+
+    def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: Output) -> tuple[int, int]:
+        """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
+
+
+def steps_in_part(bodies: int) -> int:
+    """Most steps in one call of the kernel."""
+    return max(1, _WORK // bodies)
+
+
+def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,
+                     out: Output) -> tuple[int, int]:
+    """Fill the samples; returns status and number of rows filled."""
+    rows, at_once = len(samples.displacement), max(1, part // stride)
+    row, step = 0, first
+    while row < rows - 1:
+        last = min(rows - 1, row + at_once)
+        closed = int(out.log.counts[CLOSED])
+        some = _rows(samples, row, last + 1)
+        if stride <= part:
+            status, done = stepper.run(y, step, stride, some, out)
+        else:
+            status = _stride(stepper, y, step, stride, part, some, out)
+            done = 2 if status == DONE else 1
+        out.log.closings[closed : int(out.log.counts[CLOSED]), 0] += row  # the kernel counts samples from 0
+        if status != DONE:
+            return status, row + done
+        step = (step + (last - row) * stride) % stepper.grid
+        row = last
+        stepper.pause()
+    return DONE, rows
+
+
+def periods_in_parts(stepper: InParts, y: np.ndarray, part: int, strobes: np.ndarray, maxima: np.ndarray,
+                     out: Output) -> tuple[int, int]:
+    """Advance whole periods from phase 0, filling strobes and largest forces; returns status and periods done."""
+    slope = stepper.work.k[0]
+    keep_strobe(y, slope, strobes[0])
+    for i in range(len(maxima)):
+        next_period(out.log.peaks)
+        status = _stride(stepper, y, 0, stepper.grid, part, empty_samples(stepper.lowered, 2), out)
+        if status != DONE:
+            return status, i
+        keep_strobe(y, slope, strobes[i + 1])
+        maxima[i] = out.log.peaks[:MEMORY:ROWS]
+    return DONE, len(maxima)
+
+
+def _stride(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,
+            out: Output) -> int:
+    """From one sample (2 rows) to the next in several calls; returns the status."""
+    scratch = empty_samples(stepper.lowered, 2)
+    for j in range(0, stride, part):
+        steps = min(part, stride - j)
+        status, _ = stepper.run(y, (first + j) % stepper.grid, steps, scratch, out)
+        for kept, here in zip(samples, scratch, strict=True):
+            if kept is not None:
+                kept[1] = here[1]
+                if j == 0:
+                    kept[0] = here[0]
+        if status != DONE:
+            return status
+        if out.stop[0]:
+            return CANCELLED
+        stepper.pause()
+    return DONE
+
+
+def _rows(samples: Samples, first: int, end: int) -> Samples:
+    """These rows, not copied."""
+    energy = None if samples.energy is None else samples.energy[first:end]
+    return Samples(samples.displacement[first:end], samples.velocity[first:end], samples.force[first:end], energy)

@@ -1,0 +1,26 @@
+"""What to cite for a scene: the software, the paper of the model, and the sources of the effects that it has."""
+
+from __future__ import annotations
+
+from ..version import __version__
+from .description import Description
+
+_SOFTWARE = f"The granchain authors. granchain: driven granular chains, simulated to a stated accuracy, {__version__}."
+_PAPER = ("Y. Zhang, D. Pozharskiy, D. M. McFarland, P. G. Kevrekidis, I. G. Kevrekidis, A. F. Vakakis. Experimental "
+          "Study of Nonlinear Resonances and Anti-resonances in a Forced, Ordered Granular Chain. arXiv:1606.09305 "
+          "(2016).")
+_HERTZ = "H. Hertz. Ueber die Berührung fester elastischer Körper. J. reine angew. Math. 92, 156–171 (1882)."
+_LAWS = {
+    "tsuji": "Y. Tsuji, T. Tanaka, T. Ishida. Lagrangian numerical simulation of plug flow of cohesionless particles "
+             "in a horizontal pipe. Powder Technology 71, 239–250 (1992).",
+    "kuwabara-kono": "G. Kuwabara, K. Kono. Restitution coefficient in a collision between two spheres. Jpn. J. Appl. "
+                     "Phys. 26, 1230–1233 (1987).",
+}
+
+
+def citations(scene: Description) -> list[tuple[str, str]]:
+    """What for, and what to cite, for the model and the effects of a scene."""
+    found = [("software", _SOFTWARE), ("model", _PAPER), ("contact", _HERTZ)]
+    if scene.has_dissipation and scene.dissipation in _LAWS:
+        found.append((f"{scene.dissipation} damping", _LAWS[scene.dissipation]))
+    return found

@@ -1,0 +1,1 @@
+"""Many steady states at once: batches of scenes on all cores."""

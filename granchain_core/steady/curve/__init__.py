@@ -1,0 +1,1 @@
+"""The resonance curve."""

@@ -1,0 +1,1 @@
+"""How one chain comes to its steady state: settling, and the decisions on its regime."""
