@@ -12,12 +12,13 @@ RUN python -m venv /opt/granchain/venv
 ENV PATH=/opt/granchain/venv/bin:$PATH
 
 WORKDIR /opt/granchain/source
-COPY pyproject.toml README.md LICENSE ./
+COPY pyproject.toml hatch_build.py requirements.lock README.md LICENSE ./
 COPY granchain ./granchain
 COPY granchain_core ./granchain_core
+COPY granchain_start ./granchain_start
 COPY app ./app
 COPY assets ./assets
-RUN pip install .
+RUN pip install --require-hashes -r requirements.lock && pip install --no-deps .
 
 # Numba's cache, and the marks of what is compiled (granchain_core/warm.py), hold the place and the time of the sources they
 # were made from. The place: work from another folder, so that
@@ -46,6 +47,8 @@ EXPOSE 5006
 HEALTHCHECK --interval=10s --timeout=5s --start-period=30s --retries=3 \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:5006/liveness', timeout=4)"]
 
-# Browsers may reach it as localhost; for another name add --allow-websocket-origin NAME:PORT to the run command.
-ENTRYPOINT ["granchain", "serve", "--address", "0.0.0.0", "--port", "5006", \
+# Browsers may reach it as localhost; for another name add --allow-websocket-origin NAME:PORT to the run command. Nothing is
+# written outside /tmp and the folder of the kernels, so the container may run read-only:
+#     docker run --rm -p 127.0.0.1:5006:5006 --read-only --tmpfs /tmp --cap-drop ALL --security-opt no-new-privileges granchain
+ENTRYPOINT ["granchain", "serve", "--address", "0.0.0.0", "--port", "5006", "--generate-secret", \
             "--allow-websocket-origin", "localhost:5006", "--allow-websocket-origin", "127.0.0.1:5006"]

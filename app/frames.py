@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -61,6 +62,37 @@ class Frames:
     def beads(self) -> int:
         """How many beads there are."""
         return self.displacement.shape[1]
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """The largest values of one picture or of many [N, N, J, m, m]; an overlap is that of two bodies that touch."""
+
+    input_force: float = 0.0
+    output_force: float = 0.0
+    kinetic_energy: float = 0.0
+    displacement: float = 0.0
+    overlap: float = 0.0
+
+    def widened(self, other: Extremes) -> Extremes:
+        """The larger of both, value by value."""
+        return Extremes(**{name: max(value, getattr(other, name)) for name, value in self.items()})
+
+    def items(self) -> Iterator[tuple[str, float]]:
+        """Name and value of each."""
+        return ((field.name, getattr(self, field.name)) for field in fields(self))
+
+
+def extremes_of(frames: Frames) -> Extremes:
+    """The largest values of a picture; forces with the top of each jump, displacements with the driver's."""
+    places = np.concatenate([frames.drive_displacement[:, None], frames.displacement,
+                             np.zeros((frames.rows, 1))], axis=1)
+    return Extremes(
+        input_force=float(max(frames.input_force.max(), frames.input_jumps[:, 1].max(initial=0.0))),
+        output_force=frames.largest_output,
+        kinetic_energy=float(frames.kinetic_energy.max()),
+        displacement=float(np.abs(places).max()),
+        overlap=float(max((places[:, :-1] - places[:, 1:]).max(), 0.0)))
 
 
 _SERIES = tuple(field.name for field in fields(Frames)

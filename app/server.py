@@ -2,35 +2,125 @@
 
 from __future__ import annotations
 
+import asyncio
+import gc
+import ipaddress
+import secrets
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import panel as pn
 from bokeh.server.server import Server
+from bokeh.settings import settings
+from tornado.web import ErrorHandler
 
 from granchain_core.experiment.measured import MOST_BYTES
 
 from .page.entry import page
+from .page.main_picture import PICTURES_SHARED
+from .pages.curve.sweep import CURVES_SHARED
+from .serve import logs
 from .serve.compiler import COMPILER
+from .serve.guard import Rules, guarded
+from .serve.meters import METERS, Liveness, Metrics
+from .serve.queues import PICTURES, SWEEPS
+from .serve.shared import Shared
+from .serve.turns import TURNS
+from .serve.websocket import guard
 from .session.session import Session
 
-#: The largest message a page sends is an uploaded file, in which JSON may write a character in six bytes.
-LARGEST_MESSAGE = 6 * MOST_BYTES + 100_000
+#: The largest message a page sends is an uploaded file in base64 [bytes].
+LARGEST_MESSAGE = 4 * MOST_BYTES // 3 + 100_000
+#: Until a connection that sends nothing is closed [s]; a request's head must have come by then.
+IDLE = 60
+#: Until a request's body must have come [s], and its largest size [bytes]: only forms for signing in have one.
+BODY, LARGEST_BODY = 30, 100_000
+#: Between two pings of a websocket, and until the answer must have come [s].
+PING = 20
+#: Until a page that was loaded must have its websocket [ms], and between two looks who has left [ms].
+UNCONNECTED, LOOK = 60_000, 1000
 
 
-def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] | None = None) -> None:
+@dataclass(frozen=True)
+class Access:
+    """Who may use the server; docs/security.md has the meaning of each. By default a visitor on this machine.
+
+    `secret` signs sessions, `origins` are the names under which browsers reach the server (`HOST` or `HOST:PORT`),
+    `sign_in` the keyword arguments of Panel's `serve` for basic authentication or OAuth. Behind a `proxy` the visitor's
+    address is in a header.
+    """
+
+    origins: tuple[str, ...] = ()
+    secret: bytes | None = None
+    most_visitors: int = 200
+    embedding: tuple[str, ...] = ()
+    proxy: bool = False
+    sign_in: tuple[tuple[str, str], ...] = ()
+
+
+def is_loopback(address: str) -> bool:
+    """Whether only this machine reaches what listens at the address."""
+    if address == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(address).is_loopback
+    except ValueError:
+        return False
+
+
+def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] | None = None,
+          access: Access | None = None, log_level: str = "warning") -> None:
     """Serve the page until interrupted; `/liveness` answers health checks. Raises `OSError` for a taken port."""
-    server = server_at(port, address, origins)
+    logs.begin(log_level)
+    server = server_at(port, address, origins, access)
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else address
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
+    settings.perform_document_validation.set_value(False)  # 40 ms of every opening, to find mistakes that tests find
+    gc.collect()
+    gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
     server.start()
+    server.io_loop.add_callback(lambda: asyncio.ensure_future(METERS.watch()))
     server.io_loop.start()  # until a signal ends the process (app/cli/ending.py); Bokeh's own waits for its threads
 
 
-def server_at(port: int, address: str, origins: Sequence[str] | None = None) -> Server:
+def server_at(port: int, address: str, origins: Sequence[str] | None = None, access: Access | None = None) -> Server:
     """The server, which listens and does not run yet."""
-    hosts = list(origins or ()) + [f"{host}:{port}" for host in ("localhost", "127.0.0.1", address)]
-    return pn.serve(
-        {"/": page}, port=port, address=address, start=False, show=False, title="granchain", liveness=True,
-        location=False, verbose=False, websocket_origin=hosts, websocket_max_message_size=LARGEST_MESSAGE,
-    )
+    access = access or Access(tuple(origins or ()))
+    names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", address))]
+    secret = access.secret or (None if is_loopback(address) else secrets.token_bytes(32))
+    signed: dict[str, Any] = {"sign_sessions": True, "secret_key": secret} if secret else {}
+    hosts = frozenset(_name_of(origin) for origin in names)
+    rules = Rules(hosts, access.most_visitors, access.embedding)
+    server = pn.serve(
+        {"/": page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
+        verbose=False, websocket_origin=names, websocket_max_message_size=LARGEST_MESSAGE,
+        extra_patterns=[(r"/liveness", Liveness), (r"/metrics", Metrics)],
+        http_server_kwargs={"idle_connection_timeout": IDLE, "body_timeout": BODY, "max_body_size": LARGEST_BODY,
+                            "xheaders": access.proxy},
+        websocket_ping_interval=PING, websocket_ping_timeout=PING,
+        unused_session_lifetime_milliseconds=UNCONNECTED, check_unused_sessions_milliseconds=LOOK,
+        default_handler_class=guarded(ErrorHandler, rules), default_handler_args={"status_code": 404},
+        **signed, **dict(access.sign_in))
+    guard(server, rules)
+    _count_what_is_shared()
+    return server
+
+
+def _count_what_is_shared() -> None:
+    """The queues and caches of all visitors, for `/metrics`."""
+    METERS.gauges.update(queue=lambda: TURNS.waiting + PICTURES.waiting + SWEEPS.waiting,
+                         computing=lambda: PICTURES.busy + SWEEPS.busy)
+    shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
+    for name, cache in shared.items():
+        METERS.gauges.update({f"{name}_cache_hits_total": partial(getattr, cache, "hits"),
+                              f"{name}_cache_misses_total": partial(getattr, cache, "misses"),
+                              f"{name}_cache_bytes": partial(getattr, cache, "used")})
+
+
+def _name_of(origin: str) -> str:
+    """The host of HOST, HOST:PORT or [IPv6]:PORT, as Tornado gives it."""
+    name = origin.lower().rpartition("://")[2]
+    return name[1:].partition("]")[0] if name.startswith("[") else name.partition(":")[0]

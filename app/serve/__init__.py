@@ -1,1 +1,1 @@
-"""The server: websocket, frame pacing, task queues, compilation ahead of time."""
+"""What serving needs: websocket, guards, logs, meters, pace of frames, turns, shared results, compiling beforehand."""

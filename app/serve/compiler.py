@@ -16,10 +16,11 @@ from concurrent.futures import Future, wait
 from pathlib import Path
 
 from granchain_core import Scene
+from granchain_core.stop import Stop
 from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, structure
 
 from .delays import STOP_POLL
-from .queues import COMPILATIONS, CURVES, Stop
+from .queues import COMPILATIONS, LOADING
 
 log = logging.getLogger("granchain")
 
@@ -35,7 +36,7 @@ def compiling_words(what: str, seconds: int) -> str:
 
 def _compile(scene: Scene, piece: str) -> None:
     """Compile in another process or, if none can be started, in this one."""
-    command = [sys.executable, "-m", "app.serve.compiling_process", str(os.getpid()), piece]
+    command = [sys.executable, "-m", f"{__package__}.compiling_process", str(os.getpid()), piece]
     try:  # in a session of its own, where a terminal's Ctrl-C does not reach it; its stderr is the server's
         subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
                        stdout=subprocess.DEVNULL, start_new_session=True)
@@ -99,7 +100,7 @@ class Compiler:
         for piece in PICTURE_PIECES:
             if not self.has(scene, piece):
                 self.ask(scene, piece)
-        CURVES.submit(self._load_all, scene).add_done_callback(_log_failure)
+        LOADING.submit(self._load_all, scene).add_done_callback(_log_failure)
 
     def _load_all(self, scene: Scene) -> None:
         for piece in PICTURE_PIECES:

@@ -1,37 +1,55 @@
 """Where computations of the dashboard run: named queues shared by all visitors, and latest-wins jobs, of which each
 visitor has one for the picture and one for drafts of the curve.
 
-Kernels release the GIL, so threads are enough. Long work has queues of its own, because a picture must never wait for
-it.
+Kernels release the GIL, so threads are enough; fair turns of those that compute pictures are in turns.py. Long work has
+queues of its own, because a picture must never wait for it.
 """
 
 from __future__ import annotations
 
+import heapq
 import os
+import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from queue import SimpleQueue
 from typing import TypeVar
 
 from granchain_core import Cancelled
-from granchain_core.stop import Stop
+
+from .meters import METERS
+from .turns import Account, Turn
 
 Result = TypeVar("Result")
 
 
 class Queue:
-    """Work of one kind, first come, first served, on at most so many threads.
+    """Work of one kind, first come, first served, on at most so many threads, which begin when they are needed.
 
-    The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it.
+    The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. On Linux
+    those of a `patient` queue, with the threads that they begin, run when no picture needs the processor.
     """
 
-    def __init__(self, name: str, workers: int) -> None:
+    def __init__(self, name: str, workers: int, patient: bool = False) -> None:
         self.name = name
         self._workers = workers
+        self._patient = patient
         self._waiting: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
+        self._idle = 0
         self._lock = threading.Lock()
+
+    @property
+    def waiting(self) -> int:
+        """How much work waits for a thread."""
+        return self._waiting.qsize()
+
+    @property
+    def busy(self) -> int:
+        """How many threads are at work."""
+        return len(self._threads) - self._idle
 
     def submit(self, work: Callable[..., Result], *arguments: object) -> Future[Result]:
         """Call `work` as soon as a thread is free; the future has what it returns or raises."""
@@ -43,58 +61,111 @@ class Queue:
             except BaseException as error:
                 future.set_exception(error)
 
-        self._waiting.put(do)
         with self._lock:
-            if len(self._threads) < self._workers:
+            self._waiting.put(do)
+            if self._waiting.qsize() > self._idle and len(self._threads) < self._workers:
                 thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {len(self._threads)}")
                 self._threads.append(thread)
+                self._idle += 1
                 thread.start()
         return future
 
     def _serve(self) -> None:
+        if self._patient and sys.platform == "linux":  # elsewhere it would be the whole process
+            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _PATIENT)
         while True:
-            self._waiting.get()()
+            work = self._waiting.get()
+            with self._lock:
+                self._idle -= 1
+            work()
+            del work  # a thread that waits keeps nothing of the visitor it served last
+            with self._lock:
+                self._idle += 1
 
 
-_CORES = os.cpu_count() or 1
-
-#: More threads than cores: a picture that waits for the compiler keeps its thread, and must not keep other visitors
-#: waiting.
-PICTURES = Queue("pictures", 4 * max(2, _CORES))
+#: Niceness of threads that let pictures go first.
+_PATIENT = 10
+#: One thread for each visitor whose picture is awaited; live steps, energy accounts and drafts are computed in it.
+VISITORS = Queue("visitors", 1000)
+#: Pictures. More threads than cores: who computes is decided by turns (turns.py), and one that waits for the compiler
+#: keeps its thread.
+PICTURES = Queue("pictures", 200)
 #: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
-ANALYSES = Queue("analyses", max(2, _CORES))
+ANALYSES = Queue("analyses", 8, patient=True)
 #: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody.
 FILES = Queue("files", 2)
-#: Resonance curves, and loading kernels before a visitor asks. Maps and branches wait for a curve that is under way,
-#: so curves cannot share their queue.
-CURVES = Queue("curves", max(1, _CORES // 2))
+#: Loading kernels before a visitor asks.
+LOADING = Queue("loading", 1)
+#: Visitors who wait for their resonance curves. Maps and branches wait for a curve that is under way, so curves cannot
+#: share their queue.
+CURVES = Queue("curves", 200)
+#: What computes them. Each uses all cores; the system shares these among them.
+SWEEPS = Queue("sweeps", 8, patient=True)
 #: Work that takes minutes: maps, searches for attractors, branches.
-LONG = Queue("long", 2)
+LONG = Queue("long", 8, patient=True)
 #: Timings, one at a time for all visitors: two at once would disturb each other.
 MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
 COMPILATIONS = Queue("compilations", 2)
 
-Work = Callable[[Stop], Iterator[object]]
+Work = Callable[[Turn], Iterator[object]]
+
+#: How long a first picture is computed before a newer request stops it [s].
+_PATIENCE = 1.0
+
+
+class _Alarms:
+    """One thread that calls what is due later."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._due: list[tuple[float, int, Callable[..., None], tuple[object, ...]]] = []
+        self._count = 0
+        self._thread: threading.Thread | None = None
+
+    def __call__(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` in so many seconds."""
+        with self._changed:
+            self._count += 1
+            heapq.heappush(self._due, (time.monotonic() + seconds, self._count, action, arguments))
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._serve, daemon=True, name="alarms")
+                self._thread.start()
+            self._changed.notify()
+
+    def _serve(self) -> None:
+        while True:
+            with self._changed:
+                while not self._due or self._due[0][0] > time.monotonic():
+                    self._changed.wait(self._due[0][0] - time.monotonic() if self._due else None)
+                _, _, action, arguments = heapq.heappop(self._due)
+            action(*arguments)
+            del action, arguments
+
+
+_later = _Alarms()
 
 
 class LatestWins:
     """One running computation for a session; a newer one replaces whatever waits.
 
-    A computation is an iterator of ever better results. Its first result is always delivered, and only the
-    refinement after it is stopped for a newer request: if everything could be cancelled, nothing would be
+    A computation is an iterator of ever better results. A newer request stops the refinement after the first result at
+    once, and the first result only when it takes longer than a second: if everything were cancelled, nothing would be
     repainted during a drag.
     """
 
-    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None]) -> None:
+    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
+                 account: Account | None = None) -> None:
         self._deliver = deliver
         self._fail = fail
+        self.account = Account() if account is None else account
         self._lock = threading.Lock()
         self._waiting: Work | None = None
         self._running = False
         self._refining = False
         self._closed = False
-        self._stop = Stop()
+        self._began = 0.0
+        self._stop = Turn(self.account)
 
     @property
     def busy(self) -> bool:
@@ -107,12 +178,22 @@ class LatestWins:
             if self._closed:
                 return
             self._waiting = work
-            if self._refining:
+            left = self._began + _PATIENCE - time.monotonic()
+            if self._refining or (self._running and left <= 0.0):
                 self._stop.set()
+            elif self._running:
+                _later(left, self._give_up, self._stop)
             if self._running:
                 return
             self._running = True
-        PICTURES.submit(self._drain)
+            self._began = time.monotonic()
+        VISITORS.submit(self._drain)
+
+    def _give_up(self, stop: Turn) -> None:
+        """The first result has not come for a second: begin with what waits."""
+        with self._lock:
+            if self._stop is stop and self._waiting is not None:
+                stop.set()
 
     def close(self) -> None:
         """Stop: nothing more is computed or delivered."""
@@ -126,7 +207,8 @@ class LatestWins:
             work, self._waiting = self._waiting, None
             self._running = work is not None
             self._refining = False
-            self._stop = Stop()
+            self._began = time.monotonic()
+            self._stop = Turn(self.account)
             if self._closed:
                 self._stop.set()
             return work
@@ -135,12 +217,15 @@ class LatestWins:
         while (work := self._next()) is not None:
             try:
                 for result in work(self._stop):
+                    if self._closed:
+                        break
                     self._deliver(result)
                     with self._lock:
                         self._refining = True
                         if self._waiting is not None or self._closed:
                             break
             except Cancelled:
+                METERS.cancelled += 1
                 continue
             except Exception as error:
                 if not self._closed:

@@ -1,20 +1,25 @@
-"""The websocket: a picture's messages leave together and at once; requests wait until they can be answered.
+"""The websocket: messages leave together and at once; requests wait until they can be answered.
 
 Private attributes of Tornado, Bokeh and Panel, and Panel's undocumented `set_curdoc`, are used in this file only. Each
-saves some milliseconds or keeps a message from being lost; if a release drops one, the public API is used instead.
+saves some milliseconds or keeps a message from being lost; if a release drops one, the public API is used instead. Only
+`guard`, on which safety depends, has no such way.
 """
 
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import weakref
+from collections.abc import Callable
 from typing import Any
 
 import panel as pn
 from bokeh.document import Document
 from bokeh.events import Event
+from bokeh.server.server import Server
 from tornado.iostream import IOStream
+from tornado.web import RequestHandler
+
+from .guard import Rules, guarded
 
 try:
     from panel.io.state import set_curdoc
@@ -64,28 +69,44 @@ def disable_nagle(document: Document) -> None:
         stream.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
 
-@contextmanager
-def batched_messages(document: Document) -> Iterator[None]:
-    """The messages written in this block are handed to the network together when it ends.
+def gather_writes(document: Document) -> None:
+    """Hand what is written in one turn of the event loop to the network together.
 
-    A picture is about twenty small messages; sent singly, each costs 0.3 ms here and a wake-up in the browser.
-    Tornado collects what is written until its buffer is emptied; in the block, emptying waits. Where Tornado empties it
-    in another way, each message goes by itself.
+    A moved knob and its picture are about sixty small writes; sent singly, each costs 0.3 ms here and a wake-up in the
+    browser. Where Tornado empties its buffer in another way than `_handle_write`, each goes by itself.
     """
-    streams = [stream for stream in _streams(document) if hasattr(stream, "_handle_write")]
-    for stream in streams:
-        stream._handle_write = _wait  # type: ignore[method-assign]
-    try:
-        yield
-    finally:
-        for stream in streams:
-            del stream._handle_write
-            if not stream.closed():
-                stream._handle_write()
+    for stream in _streams(document):
+        if hasattr(stream, "_handle_write") and "_handle_write" not in vars(stream):
+            stream._handle_write = _Gathered(stream)  # type: ignore[method-assign]
 
 
-def _wait() -> None:
-    """Replaces a stream's `_handle_write` while a picture is being written."""
+class _Gathered:
+    """Replaces a stream's `_handle_write`: empties the buffer when the present turn of the event loop is over."""
+
+    def __init__(self, stream: IOStream) -> None:
+        self._stream = weakref.ref(stream)
+        self._loop = stream.io_loop
+        self._due = False
+
+    def __call__(self) -> None:
+        """There is something to write."""
+        if not self._due:
+            self._due = True
+            self._loop.add_callback(self._write)
+
+    def _write(self) -> None:
+        self._due = False
+        stream = self._stream()
+        if stream is not None and not stream.closed():
+            type(stream)._handle_write(stream)
+
+
+def guard(server: Server, rules: Rules) -> None:
+    """Put a guard before every handler of the server; if Bokeh keeps them elsewhere, the server does not start."""
+    application = server._tornado
+    for rule in application.wildcard_router.rules:
+        if isinstance(rule.target, type) and issubclass(rule.target, RequestHandler):
+            rule.target = guarded(rule.target, rules)
 
 
 class WithoutBusyIndicator:

@@ -7,8 +7,7 @@ from dataclasses import replace
 from granchain_core import Settled
 from granchain_core.integrate import Engine, certified
 from granchain_core.result import residual
-
-from ..serve.queues import Stop
+from granchain_core.stop import Stop
 
 _FINENESS = 0.01
 """Tolerance per step over the accuracy asked for: small, so that the residual is not the account's own error."""

@@ -46,3 +46,9 @@ class Host(Protocol):
         In live mode the run goes on with the new knobs, unless a state is given. Raises `BadInput` for a mode other
         than "settled" and "live".
         """
+
+    def open(self, scene: Scene, state: State | None, curves: str) -> None:
+        """Open a scene, maybe another preset, settled from `state` or from rest.
+
+        `curves` are those of a link; an empty text leaves them as they are.
+        """

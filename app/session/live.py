@@ -11,9 +11,12 @@ from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.run.live import joined
 
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
+from ..serve.turns import Account, Turn
 
 _LONGEST_STEP = 0.1
 """Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden."""
+_LONGEST_COMPUTED = 0.1
+"""Longest time [s] that one step is to compute."""
 
 
 @dataclass(frozen=True)
@@ -26,17 +29,23 @@ class LivePicture:
 
 
 class LiveRun:
-    """One chain that keeps running, from rest or from `start`; `step` is for a worker thread, the rest for the page."""
+    """One chain that keeps running, from rest or from `start`; `step` and `advance` are for a worker thread, the rest
+    for the page.
 
-    def __init__(self, scene: Scene, start: State | None = None) -> None:
+    While it computes it holds its `turn`.
+    """
+
+    def __init__(self, scene: Scene, used: Account, start: State | None = None) -> None:
         self.samples = samples_for(scene)
-        self._chain = LiveChain(scene, samples=self.samples, start=start)
+        self.turn = Turn(used)
+        self._chain = LiveChain(scene, samples=self.samples, start=start, stop=self.turn)
         self._window = LiveWindow(self.samples)
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None
         self._reset = False
         self._last: float | None = None
         self._owed = 0.0
+        self._most = self.samples
         self._shown = 0
         self._runs: deque[Run] = deque()
 
@@ -54,17 +63,26 @@ class LiveRun:
         """Let no viewing time pass until the next step."""
         self._last = None
 
+    def close(self) -> None:
+        """The visitor left: what is being computed ends."""
+        self.turn.set()
+
     def step(self, periods_per_second: float) -> LivePicture:
-        """Advance by the viewing time since the last step; in slow motion, wait for the next sample."""
+        """Advance by the viewing time since the last step; in slow motion, wait for the next sample.
+
+        No step takes longer than `_LONGEST_COMPUTED`, so that a slow chain lags behind the clock and not behind its
+        knobs.
+        """
         rate = periods_per_second * self.samples
         now = time.perf_counter()
         elapsed = 0.03 if self._last is None else min(now - self._last, _LONGEST_STEP)
         self._owed = min(self._owed, 1.0) + elapsed * rate
         if self._owed < 1.0:
-            time.sleep((1.0 - self._owed) / rate)
+            with self.turn.lent():
+                time.sleep((1.0 - self._owed) / rate)
             self._owed = 1.0
         self._last = time.perf_counter()
-        return self.advance(int(self._owed))
+        return self.advance(min(int(self._owed), self._most))
 
     def window_run(self) -> Run | None:
         """The periods on the screen as one run, to be saved."""
@@ -83,7 +101,9 @@ class LiveRun:
             self._runs.clear()
             self._shown = 0
         self._owed = max(0.0, self._owed - samples)
+        began = time.thread_time()
         run = self._chain.advance(samples)
+        self._most = max(1, int(samples * _LONGEST_COMPUTED / max(time.thread_time() - began, 1e-6)))
         self._shown += samples
         self._remember(run)
         return LivePicture(self._window.add(run), run, self._shown / self.samples)

@@ -12,6 +12,7 @@ from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
+from ..serve.turns import Account
 from .message_checks import is_number, quoted
 from .share import EXTRAS, encode
 from .switches import ACCOUNT, changes
@@ -22,12 +23,18 @@ SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0)
 
 @dataclass
 class Session:
-    """The state of one page; methods change it or raise `BadInput` and leave it as it was."""
+    """The state of one page; methods change it or raise `BadInput` and leave it as it was.
+
+    `used` is the processor time of its pictures, and `insisted` the scene that is computed however long it takes.
+    """
 
     scene: Scene = field(default_factory=lambda: scene("sec2"))
     mode: str = "settled"
     start: str = "rest"
     theme: str = "auto"
+    scale: str = "same"
+    curves: str = "auto"
+    place: dict[str, str] = field(default_factory=dict)
     speed: float = 1.0
     playing: bool = True
     picture: Settled | None = None
@@ -36,11 +43,14 @@ class Session:
     notice: str = ""
     account: bool = False
     remembered: dict[str, Any] = field(default_factory=dict)
+    used: Account = field(default_factory=Account)
+    insisted: Scene | None = None
 
     @property
     def link(self) -> str:
-        """The query string that brings back scene, knobs, mode and start."""
-        return encode(self.scene, {"mode": self.mode, "start": self.start})
+        """The query string that brings back scene, knobs, mode, start, scale and curves."""
+        return encode(self.scene, {"mode": self.mode, "start": self.start, "scale": self.scale,
+                                   "curves": self.curves})
 
     def change(self, name: str, value: object) -> None:
         """Turn knob `name` to `value`."""
@@ -70,6 +80,13 @@ class Session:
         self.picture = None
         self.remembered.clear()
 
+    def open(self, opened: Scene) -> None:
+        """Show a scene, maybe of another preset, settled from rest."""
+        if opened.name != self.scene.name:
+            self.picture = None
+            self.remembered.clear()
+        self.scene, self.mode, self.start = opened, "settled", "rest"
+
     def set_mode(self, mode: object) -> None:
         """`settled` or `live`."""
         self.mode = _one_of("mode", mode, MODES)
@@ -77,6 +94,10 @@ class Session:
     def set_start(self, start: object) -> None:
         """Where settled pictures start: from rest or from where the chain was."""
         self.start = _one_of("start", start, STARTS)
+
+    def set_scale(self, scale: object) -> None:
+        """One scale for all pictures of the scene, or every picture fitted to its frame."""
+        self.scale = _one_of("scale", scale, EXTRAS["scale"])
 
     def set_speed(self, speed: object) -> None:
         """Drive periods shown in a second, limited to what a page can show."""

@@ -1,5 +1,4 @@
-"""Share links: scene name, knobs that differ from its preset, mode, start and look, as one versioned
-query string.
+"""Share links: scene name, knobs that differ from its preset, and how it is shown, as one versioned query string.
 
 A link stores differences only: a changed preset changes what old links mean (tests/session/test_share.py).
 Each field is checked by itself: a bad one is refused with a sentence, and the others are still used.
@@ -7,18 +6,33 @@ Each field is checked by itself: a bad one is refused with a sentence, and the o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import combinations
 from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
 from granchain_core import BadInput, Scene, scene, scene_names
+from granchain_core.errors import unknown_name
 from granchain_core.quantities import QUANTITIES
 
 VERSION = "1"
+#: What may be drawn beside the pictures: curves from rest and by sweeps, and the paper's stated features.
+CURVES = ("rest", "up", "down", "features")
+
+
+def joined(names: Iterable[str]) -> str:
+    """A choice of curves as a link has it."""
+    chosen = set(names)
+    return ".".join(name for name in CURVES if name in chosen) or "none"
+
+
 #: View settings a link may carry; the first value is the default. "look" is the theme; at "auto" the browser chooses.
+#: "curves" has every choice of them; without it a scene shows its own.
 EXTRAS: dict[str, tuple[str, ...]] = {
     "mode": ("settled", "live"),
     "start": ("rest", "previous"),
+    "scale": ("same", "fit"),
+    "curves": ("auto", *sorted({joined(some) for size in range(5) for some in combinations(CURVES, size)})),
     "look": ("auto", "light", "dark", "projector"),
 }
 _LONGEST = 2000
@@ -35,8 +49,12 @@ def encode(shown: Scene, extras: Mapping[str, str]) -> str:
     return urlencode(fields)
 
 
-def decode(query: str) -> tuple[Scene, dict[str, str], list[str]]:
-    """Scene, view settings, and one sentence for every field that was refused."""
+def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple[Scene, dict[str, str], list[str]]:
+    """Scene, view settings, and one sentence for every field that was refused.
+
+    `more` has view settings beside those of `EXTRAS` with their values: what only the page itself knows.
+    """
+    known = {**EXTRAS, **(more or {})}
     if len(query) > _LONGEST:
         return scene(scene_names()[0]), {}, [f"The link is longer than {_LONGEST} characters and was not read."]
     refused: list[str] = []
@@ -47,11 +65,14 @@ def decode(query: str) -> tuple[Scene, dict[str, str], list[str]]:
     extras: dict[str, str] = {}
     # kappa last: it is converted with the link's own A0, and replaces k only if it is valid
     for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
-        if name in EXTRAS:
-            if text in EXTRAS[name]:
+        if name in known:
+            if text in known[name]:
                 extras[name] = text
             else:
-                refused.append(f"{name} = {text[:40]!r} in the link is not one of {', '.join(EXTRAS[name])}.")
+                refused.append(f"{name} = {text[:40]!r} in the link is not one of {', '.join(known[name])}.")
+            continue
+        if name not in QUANTITIES:
+            refused.append(f"In the link: {unknown_name('field', name, ('scene', *known, *QUANTITIES))}")
             continue
         try:
             shown = shown.evolve(**{name: text})

@@ -7,10 +7,12 @@ from collections.abc import Callable
 from typing import Any
 
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
+from granchain_core.stop import Stop
 
 from ..serve.compiler import COMPILER
 from ..serve.delays import PICTURE_POLL
-from ..serve.queues import Queue, Stop
+from ..serve.queues import Queue
+from ..serve.turns import Flag
 from .host import Host
 from .progress import Status
 
@@ -22,7 +24,7 @@ class Job:
     """One run of a task, as its work sees it from a worker thread."""
 
     def __init__(self, host: Host, say: Say) -> None:
-        self.stop: Stop = Stop()
+        self.stop: Stop = Flag()
         self._host = host
         self._say = say
 

@@ -18,8 +18,6 @@ MOST_BEADS = 40
 STRUCTURES = [("linear", "allowed", False, False), ("tsuji", "allowed", False, False), ("linear", "cut", False, False),
               ("kuwabara-kono", "allowed", False, False), ("linear", "allowed", True, True),
               ("none", "allowed", True, False), ("tsuji", "cut", True, True)]
-#: Those that the test suite has time to compile; four of them are tests/numerics/honesty.py's too.
-FEW = STRUCTURES[:5]
 #: Part of the draws in which one knob gets a value that no scene can have.
 _SPOILED = 0.03
 _BAD: tuple[Any, ...] = (float("nan"), float("inf"), -1.0, 1e300, "word", None)

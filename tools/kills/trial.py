@@ -82,7 +82,7 @@ def trial(name: str, count: int, rng: random.Random, folder: Path, minutes: floa
         there = now
         if command.process.returncode == 0:
             counts.completed += 1
-            if wrong := differing(name, whole, out):
+            if wrong := differing(whole, out):
                 counts.fault("wrong numbers", wrong)
             _remove(out)
             there = set()

@@ -5,15 +5,15 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_TIME, _STEP, _LANDING = "kernels/dop853/time_map.py", "kernels/dop853/flow_attempt.py", "kernels/dop853/flow_events.py"
-_FLOW, _TANGENT, _SALTATION = "kernels/dop853/flow.py", "kernels/dop853/tangent.py", "kernels/saltation.py"
+_TIME, _STEP, _LANDING = "kernels/flow/time_map.py", "kernels/flow/attempt.py", "kernels/flow/events.py"
+_FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", "kernels/flow/saltation.py"
 _MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
 
 #: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.
 _WITHOUT_SALTATION = """from .effects.dissipation import damping
 
 
-@jump.of(Tangent)
+@saltate.of(Tangent)
 def _(tangent, slots, c, closes):
     n = tangent.state.shape[0] // 2
     shear = damping(slots.dissipation, 1.0) if closes else -damping(slots.dissipation, 1.0)
@@ -51,7 +51,7 @@ FLOW = (
 )
 
 TANGENTS = (
-    Mutant("no-saltation", _FLOW, "@jump.of(Tangent)\ndef _(tangent, slots, c, closes):\n    pass\n", _WITHOUT_SALTATION,
+    Mutant("no-saltation", _FLOW, "@saltate.of(Tangent)\ndef _(tangent, slots, c, closes):\n    pass\n", _WITHOUT_SALTATION,
            "tangents go on across an event as if the dashpot's force did not jump there", k.COLUMNS, blind=k.LIOUVILLE),
     Mutant("no-saltation-in-second-route", _SALTATION, "shear = tangent.jumps * damping(slots.dissipation, 1.0)",
            "shear = 0.0 * tangent.jumps", "the (u, v) form without its jumps", k.ROUTES),

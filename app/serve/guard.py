@@ -1,0 +1,176 @@
+"""What every request passes before it is answered: host, session, how many; and what every answer carries.
+
+docs/security.md says what is promised. Bokeh's, Panel's and Tornado's handlers are kept; `guarded` derives a class from
+each that looks first.
+"""
+
+from __future__ import annotations
+
+import logging
+import secrets
+import time
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from typing import Any
+
+from bokeh.server.views.session_handler import SessionHandler
+from bokeh.server.views.ws import WSHandler
+from bokeh.util.token import get_session_id
+from tornado.web import HTTPError, RequestHandler
+
+from .meters import METERS
+
+log = logging.getLogger("granchain.requests")
+
+#: Messages a visitor may send: so many a second over a long time, and so many at once. A drag sends 60 a second, and a
+#: message is three frames.
+FRAMES_A_SECOND, FRAMES_AT_ONCE = 600.0, 3000.0
+#: Time in which a session's id is remembered, longer than Bokeh's tokens live [s].
+_REMEMBERED = 600.0
+
+
+@dataclass
+class Rules:
+    """What is let in: hosts (all if empty), most visitors at once, and the origins whose pages may embed this one."""
+
+    hosts: frozenset[str] = frozenset()
+    most_visitors: int = 200
+    embedding: tuple[str, ...] = ()
+    #: Ids of sessions that had their connection, and when [s].
+    connected: dict[str, float] = field(default_factory=dict)
+
+    def headers(self) -> dict[str, str]:
+        """The headers of every answer.
+
+        BokehJS makes functions of text, Panel loads modules from blobs, and both write style into the page: scripts and
+        styles cannot be forbidden there. Nothing may come from another host.
+        """
+        ancestors = " ".join(("'self'", *self.embedding))
+        found = {
+            "Content-Security-Policy":
+                "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
+                "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
+                "connect-src 'self' ws: wss: blob: data:; worker-src 'self' blob:; object-src 'none'; base-uri 'self'; "
+                f"form-action 'self'; frame-ancestors {ancestors}",
+            "X-Content-Type-Options": "nosniff",
+            "Referrer-Policy": "same-origin",
+            "Server": "granchain",
+        }
+        return found if self.embedding else {**found, "X-Frame-Options": "SAMEORIGIN"}
+
+    def serves(self, host: str) -> bool:
+        """Whether requests for this host are answered; the names may have Bokeh's wildcards, such as *.example.org."""
+        return not self.hosts or any(fnmatchcase(host.lower(), name) for name in self.hosts)
+
+    def connects(self, session: str) -> bool:
+        """Remember that this session has its connection; False if it had one before."""
+        now = time.monotonic()
+        for old in [one for one, at in self.connected.items() if at < now - _REMEMBERED]:
+            del self.connected[old]
+        first = session not in self.connected
+        self.connected[session] = now
+        return first
+
+
+class Guard(RequestHandler):
+    """Looks at a request before the handler that it is mixed into; `rules` is set by `guarded`."""
+
+    rules: Rules
+    request_id = ""
+
+    def set_default_headers(self) -> None:
+        """Those of `Rules`, and the request's id."""
+        super().set_default_headers()
+        self.request_id = self.request_id or secrets.token_hex(6)
+        for name, value in self.rules.headers().items():
+            self.set_header(name, value)
+        self.set_header("X-Request-Id", self.request_id)
+
+    async def prepare(self) -> None:
+        """Refuse what is not for this server, or not allowed."""
+        self.check()
+        looked = super().prepare()
+        if looked is not None:
+            await looked
+
+    def check(self) -> None:
+        """Raise `HTTPError` for what is refused."""
+        if not self.rules.serves(self.request.host_name):
+            raise HTTPError(421, "host %r is not served", self.request.host_name[:80])
+        if any(name in self.request.arguments for name in ("bokeh-session-id", "bokeh-token")) \
+                or "Bokeh-Session-Id" in self.request.headers:
+            raise HTTPError(403, "a session id of the client's own")
+        if isinstance(self, SessionHandler) \
+                and len(list(self.application_context.sessions)) >= self.rules.most_visitors:
+            METERS.refused_visitors += 1
+            raise HTTPError(503, "there are %d visitors", self.rules.most_visitors)
+
+    def write_error(self, status_code: int, **_: Any) -> None:
+        """A line for the visitor; what happened is in the log under the same id."""
+        self.set_header("Content-Type", "text/plain; charset=UTF-8")
+        said = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
+                503: "As many visitors are here as this server can answer; please try again in a minute.",
+                500: "Something went wrong inside granchain."}
+        self.finish(f"{said.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n")
+
+    def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
+        """To the log, with the request's id."""
+        words = {"request": self.request_id, "path": self.request.path[:200], "remote": self.request.remote_ip}
+        if isinstance(value, HTTPError):
+            log.warning("refused: %s", value, extra=words)
+        else:
+            METERS.errors += 1
+            log.error("request failed", exc_info=(typ, value, tb), extra=words)
+
+
+class GuardedSocket(Guard):
+    """The same for a websocket: one connection for a session, and not too many messages."""
+
+    _tokens = FRAMES_AT_ONCE
+    _at = 0.0
+
+    def check(self) -> None:
+        """A token of ours too, for the first time."""
+        super().check()
+        offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
+        try:
+            session = get_session_id(offered[1])
+        except Exception:  # whatever a stranger has written there
+            raise HTTPError(403, "no token of ours") from None
+        if not self.rules.connects(session):
+            raise HTTPError(403, "a second connection to one session")
+
+    async def on_message(self, fragment: str | bytes) -> None:
+        """Pass it on, unless there are too many."""
+        now = time.monotonic()
+        self._tokens = min(FRAMES_AT_ONCE, self._tokens + (now - self._at) * FRAMES_A_SECOND) - 1.0
+        self._at = now
+        if self._tokens < 0.0:
+            log.warning("too many messages", extra={"request": self.request_id, "remote": self.request.remote_ip})
+            self.close(1008, "too many messages")  # type: ignore[attr-defined]
+            return
+        await super().on_message(fragment)  # type: ignore[misc]
+
+    def on_close(self) -> None:
+        """The visitor left: what is computed for the page ends at the next look, and is not kept for a minute."""
+        connection = self.connection  # type: ignore[attr-defined]
+        session = None if connection is None else connection.session
+        super().on_close()  # type: ignore[misc]
+        if session is not None:
+            session.request_expiration()
+
+    async def send_message(self, message: Any) -> None:
+        """Errors go out without traceback and with the request's id."""
+        if message.msgtype == "ERROR":
+            METERS.errors += 1
+            log.error("message failed: %s", message.content["text"],
+                      extra={"request": self.request_id, "remote": self.request.remote_ip})
+            message.content = {"text": f"The message could not be handled (request {self.request_id}).",
+                               "traceback": None}
+        await super().send_message(message)  # type: ignore[misc]
+
+
+def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:
+    """The handler, with a guard before it."""
+    guard = GuardedSocket if issubclass(handler, WSHandler) else Guard
+    return type(f"Guarded{handler.__name__}", (guard, handler), {"rules": rules})

@@ -1,0 +1,35 @@
+"""The server's log: one JSON object a line on standard error, with the id of the request where there is one."""
+
+from __future__ import annotations
+
+import json
+import logging
+import sys
+import time
+
+#: What a line may have beside time, level, logger and message.
+_FIELDS = ("request", "path", "remote", "visit")
+
+
+class Lines(logging.Formatter):
+    """A record as one line of JSON."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Time in UTC, level, logger, message, the ids, and what failed."""
+        said = {"time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
+                "level": record.levelname.lower(), "logger": record.name, "message": record.getMessage()}
+        said.update((name, getattr(record, name)) for name in _FIELDS if hasattr(record, name))
+        if record.exc_info:
+            said["failure"] = self.formatException(record.exc_info)
+        return json.dumps(said, ensure_ascii=False)
+
+
+def begin(level: str) -> None:
+    """Everything that is logged in this process from `level` on goes to standard error in such lines."""
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(Lines())
+    logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
+    for name in ("panel", "bokeh", "tornado"):
+        library = logging.getLogger(name)
+        library.handlers, library.propagate = [], True
+        library.setLevel(logging.NOTSET if level == "debug" else max(logging.WARNING, getattr(logging, level.upper())))

@@ -1,0 +1,130 @@
+"""What the server counts, and `/liveness` and `/metrics`, where it is read."""
+
+from __future__ import annotations
+
+import asyncio
+import ipaddress
+import os
+import resource
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+
+from tornado.web import HTTPError, RequestHandler
+
+#: Upper bounds of the histogram of answers [s].
+BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
+#: Between two measurements of how late the event loop is [s], and how many are remembered.
+_EVERY, _KEPT = 0.25, 40
+#: The server is called busy when a knob's message waits longer than this [s].
+_BUSY = 0.3
+
+
+class Meters:
+    """Counts since the start; answers are times from a moved knob to its first picture."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self.visitors = 0
+        self.opened = 0
+        self.pictures = 0
+        self.cancelled = 0
+        self.refused_visitors = 0
+        self.refused_pictures = 0
+        self.errors = 0
+        self.answers = [0] * (len(BUCKETS) + 1)
+        self.answers_total = 0.0
+        self._late: deque[float] = deque(maxlen=_KEPT)
+        self.gauges: dict[str, Callable[[], float]] = {}
+
+    def answered(self, seconds: float) -> None:
+        """A first picture came so long after the knob moved."""
+        place = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
+        with self._lock:
+            self.answers[place] += 1
+            self.answers_total += seconds
+
+    @property
+    def lateness(self) -> float:
+        """How late the event loop was on average in the last ten seconds [s]."""
+        return sum(self._late) / len(self._late) if self._late else 0.0
+
+    @property
+    def busy(self) -> bool:
+        """Whether visitors notice that there are many."""
+        return self.lateness > _BUSY
+
+    async def watch(self) -> None:
+        """Measure how late the event loop is, for as long as it runs."""
+        while True:
+            due = time.monotonic() + _EVERY
+            await asyncio.sleep(_EVERY)
+            self._late.append(max(0.0, time.monotonic() - due))
+
+    def text(self) -> str:
+        """In the text format of Prometheus, version 0.0.4."""
+        lines: list[str] = []
+
+        def add(name: str, kind: str, meaning: str, value: float) -> None:
+            lines.extend((f"# HELP granchain_{name} {meaning}", f"# TYPE granchain_{name} {kind}",
+                          f"granchain_{name} {value:g}"))
+
+        add("visitors", "gauge", "Pages that are open.", self.visitors)
+        add("visits_total", "counter", "Pages opened.", self.opened)
+        add("pictures_total", "counter", "Pictures sent.", self.pictures)
+        add("cancelled_total", "counter", "Computations of pictures that were cancelled.", self.cancelled)
+        add("refused_visitors_total", "counter", "Visitors refused because there were too many.", self.refused_visitors)
+        add("refused_pictures_total", "counter", "Pictures refused because they would take too long.",
+            self.refused_pictures)
+        add("errors_total", "counter", "Unexpected failures; each is in the log.", self.errors)
+        add("event_loop_lateness_seconds", "gauge", "Mean delay of the event loop in the last ten seconds.",
+            self.lateness)
+        add("resident_memory_bytes", "gauge", "Resident memory.", resident_memory())
+        add("threads", "gauge", "Threads.", threading.active_count())
+        for name, read in sorted(self.gauges.items()):
+            add(name, "counter" if name.endswith("_total") else "gauge", name.replace("_", " ").capitalize() + ".",
+                read())
+        lines += ["# HELP granchain_answer_seconds From a moved knob to its first picture.",
+                  "# TYPE granchain_answer_seconds histogram"]
+        total = 0
+        for bound, count in zip((*BUCKETS, float("inf")), self.answers, strict=True):
+            total += count
+            upper = "+Inf" if bound == float("inf") else f"{bound:g}"
+            lines.append(f'granchain_answer_seconds_bucket{{le="{upper}"}} {total}')
+        lines += [f"granchain_answer_seconds_sum {self.answers_total:g}", f"granchain_answer_seconds_count {total}"]
+        return "\n".join(lines) + "\n"
+
+
+METERS = Meters()
+
+
+def resident_memory() -> float:
+    """Memory of this process [bytes]; where the system does not tell, the most it ever had."""
+    try:
+        return float(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        return float(most if sys.platform == "darwin" else 1024 * most)
+
+
+class Liveness(RequestHandler):
+    """`/liveness`: the event loop answers. It makes no page, as Panel's own can be asked to."""
+
+    def get(self) -> None:
+        """True."""
+        self.write({"/liveness": True})
+
+
+class Metrics(RequestHandler):
+    """`/metrics`."""
+
+    def get(self) -> None:
+        """The counts, as text, for who asks from this machine or a private network."""
+        asking = ipaddress.ip_address(self.request.remote_ip or "0.0.0.0")
+        if not (asking.is_loopback or asking.is_private):
+            raise HTTPError(403, "metrics are for private addresses")
+        self.set_header("Content-Type", "text/plain; version=0.0.4; charset=utf-8")
+        self.write(METERS.text())

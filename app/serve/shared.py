@@ -1,0 +1,157 @@
+"""Results that several visitors ask for: computed once while they wait, and kept for the next, in bounded memory.
+
+A class whose pages all stand at the same knobs costs as much as one visitor. A computation ends when the last visitor
+who waits for it has moved on or left.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Generator, Hashable, Iterator
+from typing import Generic, TypeVar
+
+from granchain_core.stop import Stop
+
+from .queues import Queue
+from .turns import Account, Flag, Party, Turn
+
+Item = TypeVar("Item")
+
+#: Between two looks of a visitor who waits [s]; new items wake it at once.
+_LOOK = 0.5
+
+
+class _Computation(Generic[Item]):
+    """What is found so far, by whom it is awaited, and how it ended."""
+
+    def __init__(self) -> None:
+        self.changed = threading.Condition()
+        self.items: list[Item] = []
+        self.done = False
+        self.error: Exception | None = None
+        self.party = Party()
+        self.stop = Turn(self.party)
+
+
+class Shared(Generic[Item]):
+    """Computations by their keys. `kept` chooses what is kept of the items of a finished one, `size` is their memory.
+
+    The finished ones take at most `memory` bytes; the one that has not been asked for longest goes first. With `turns`
+    the computations take turns (turns.py).
+    """
+
+    def __init__(self, queue: Queue, memory: int, size: Callable[[Item], int],
+                 kept: Callable[[list[Item]], list[Item]] = lambda items: items, turns: bool = True) -> None:
+        self._queue, self._memory, self._size, self._kept, self._turns = queue, memory, size, kept, turns
+        self._lock = threading.Lock()
+        self._under_way: dict[Hashable, _Computation[Item]] = {}
+        self._finished: OrderedDict[Hashable, tuple[list[Item], int]] = OrderedDict()
+        self.used = 0
+        self.hits, self.misses = 0, 0
+
+    def follow(self, key: Hashable, compute: Callable[[Turn], Iterator[Item]], stop: Stop,
+               account: Account) -> Generator[Item, None, None]:
+        """The items of `compute`, or of the computation with the same key that is under way or finished.
+
+        A key of None is shared with nobody. Raises `Cancelled` when `stop` is set, and what `compute` raises.
+        """
+        with self._lock:
+            if key in self._finished:
+                self.hits += 1
+                self._finished.move_to_end(key)
+                ready = self._finished[key][0]
+            else:
+                ready = None
+                one = self._joined(key, compute, account)
+        if ready is not None:
+            yield from ready
+            return
+        try:
+            yield from self._awaited(one, stop)
+        finally:
+            self._leave(key, one, account)
+
+    def _joined(self, key: Hashable, compute: Callable[[Turn], Iterator[Item]],
+                account: Account) -> _Computation[Item]:
+        """With the lock held: the computation under way, or a new one."""
+        found = None if key is None else self._under_way.get(key)
+        if found is None:
+            self.misses += 1
+            found = _Computation()
+            found.party.members.append(account)
+            if key is not None:
+                self._under_way[key] = found
+            self._queue.submit(self._compute, key, found, compute)
+        else:
+            self.hits += 1
+            found.party.members.append(account)
+        return found
+
+    def _leave(self, key: Hashable, one: _Computation[Item], account: Account) -> None:
+        with self._lock:
+            one.party.members.remove(account)
+            if not one.party.members and not one.done:
+                one.stop.set()
+                self._forget(key, one)
+
+    def _forget(self, key: Hashable, one: _Computation[Item]) -> None:
+        if self._under_way.get(key) is one:
+            del self._under_way[key]
+
+    @staticmethod
+    def _awaited(one: _Computation[Item], stop: Stop) -> Iterator[Item]:
+        def wake() -> None:
+            with one.changed:
+                one.changed.notify_all()
+
+        if isinstance(stop, Flag):
+            stop.on_set = wake
+        given = 0
+        while True:
+            with one.changed:
+                while not stop and given == len(one.items) and not one.done:
+                    one.changed.wait(_LOOK)
+                new, done = one.items[given:], one.done
+            stop.check()
+            given += len(new)
+            yield from new
+            if done and given == len(one.items):
+                if one.error is not None:
+                    raise one.error
+                return
+
+    def _compute(self, key: Hashable, one: _Computation[Item], compute: Callable[[Turn], Iterator[Item]]) -> None:
+        """In a thread of the queue."""
+        error: Exception | None = None
+        try:
+            one.stop.check()
+            found = compute(one.stop)
+            for item in one.stop.in_turns(found) if self._turns else found:
+                with one.changed:
+                    one.items.append(item)
+                    one.changed.notify_all()
+                one.stop.check()
+        except Exception as problem:
+            error = problem
+        with self._lock:
+            self._forget(key, one)
+            if error is None and key is not None:
+                self._keep(key, self._kept(one.items))
+        with one.changed:
+            one.done, one.error = True, error
+            one.changed.notify_all()
+
+    def _keep(self, key: Hashable, items: list[Item]) -> None:
+        """With the lock held: keep them, and drop the oldest while there is too much."""
+        size = sum(map(self._size, items))
+        if size > self._memory:
+            return
+        if key in self._finished:  # computed a second time, because its last visitor left just before the end
+            self.used -= self._finished.pop(key)[1]
+        self._finished[key] = items, size
+        self.used += size
+        while self.used > self._memory:
+            self.used -= self._finished.popitem(last=False)[1][1]
+
+

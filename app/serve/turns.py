@@ -1,0 +1,206 @@
+"""Fair turns: of the visitors whose pictures wait, the one that has used least time computes next.
+
+Kernels run without the interpreter's lock, so as many computations as there are cores go on at once. Each gives its
+turn up at its pauses, some hundredths of a second apart, if a visitor waits that has used less.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import TypeVar
+
+from granchain_core.stop import Stop
+
+Result = TypeVar("Result")
+
+#: Time in which half of what a visitor has used is forgotten [s].
+_HALF_LIFE = 5.0
+#: A turn that has lasted longer than this does not keep others waiting [s]: not every computation can pause.
+_LONGEST_TURN = 0.1
+
+
+class Account:
+    """The processor time that one visitor has used lately [s]."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock, self._used, self._at = clock, 0.0, clock()
+
+    @property
+    def used(self) -> float:
+        """What it has used, of which half is forgotten every five seconds."""
+        return self._used * math.exp2((self._at - self._clock()) / _HALF_LIFE)
+
+    def charge(self, seconds: float) -> None:
+        """It has used so much more."""
+        self._used, self._at = self.used + seconds, self._clock()
+
+
+class Party(Account):
+    """Several visitors who wait for the same picture: they pay together, with the claim of the one who used least."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.members: list[Account] = []
+
+    @property
+    def used(self) -> float:
+        """What the member has used that used least."""
+        return min((member.used for member in list(self.members)), default=math.inf)
+
+    def charge(self, seconds: float) -> None:
+        """Each member pays its part."""
+        members = list(self.members)
+        for member in members:
+            member.charge(seconds / len(members))
+
+
+class _Wait:
+    """One thread that waits for its turn."""
+
+    def __init__(self, account: Account) -> None:
+        self.account, self.granted = account, threading.Event()
+
+
+class Turns:
+    """Who computes now: at most `at_once`; of those that wait, the account that has used least is next."""
+
+    def __init__(self, at_once: int) -> None:
+        self._at_once = at_once
+        self._lock = threading.Lock()
+        self._running: dict[object, float] = {}
+        self._waiting: list[_Wait] = []
+
+    @property
+    def waiting(self) -> int:
+        """How many wait for their turn."""
+        return len(self._waiting)
+
+    def begin(self, account: Account, stop: Stop) -> object:
+        """Wait for a turn, or until the stop flag is set; returns what `end` needs."""
+        mine = _Wait(account)
+        with self._lock:
+            self._waiting.append(mine)
+            self._grant()
+        while not mine.granted.wait(0.5 * _LONGEST_TURN):
+            with self._lock:
+                if stop and mine in self._waiting:
+                    self._waiting.remove(mine)
+                    break
+                self._grant()
+        return mine
+
+    def end(self, turn: object) -> None:
+        """The turn is over."""
+        with self._lock:
+            self._running.pop(turn, None)
+            self._grant()
+
+    def wanted(self, account: Account) -> bool:
+        """Whether another waits that has used less."""
+        if not self._waiting:
+            return False
+        with self._lock:
+            mine = account.used
+            return any(other.account.used < mine for other in self._waiting)
+
+    def _grant(self) -> None:
+        """With the lock held: give free turns to those who have used least."""
+        late = time.monotonic() - _LONGEST_TURN
+        while self._waiting and sum(began > late for began in self._running.values()) < self._at_once:
+            best = min(self._waiting, key=lambda one: one.account.used)
+            self._waiting.remove(best)
+            self._running[best] = time.monotonic()
+            best.granted.set()
+
+
+TURNS = Turns(max(2, os.cpu_count() or 1))
+
+
+class Flag(Stop):
+    """A stop flag that wakes who waits: `on_set` is called in the thread that sets it."""
+
+    __slots__ = ("on_set",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.on_set: Callable[[], None] | None = None
+
+    def set(self) -> None:
+        """Ask for the end."""
+        super().set()
+        if self.on_set is not None:
+            self.on_set()
+
+
+class Turn(Flag):
+    """The stop flag of a picture's computation, which takes turns with others while it computes."""
+
+    __slots__ = ("_began", "_turn", "_turns", "account")
+
+    def __init__(self, account: Account, turns: Turns = TURNS) -> None:
+        super().__init__()
+        self.account = account
+        self._turns = turns
+        self._turn: object = None
+        self._began = 0.0
+
+    def pause(self) -> None:
+        """Between two parts of the computation: let a visitor go first who has used less."""
+        if self._turn is None:
+            return
+        self._charge()
+        if self._turns.wanted(self.account):
+            self._leave()
+            self._enter()
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """While a turn is held; wait for it first."""
+        self._enter()
+        try:
+            yield
+        finally:
+            self._charge()
+            self._leave()
+
+    @contextmanager
+    def lent(self) -> Iterator[None]:
+        """While this thread waits for something else, another has its turn."""
+        if self._turn is None:
+            yield
+            return
+        self._charge()
+        self._leave()
+        try:
+            yield
+        finally:
+            self._enter()
+
+    def in_turns(self, results: Iterable[Result]) -> Iterator[Result]:
+        """The results, each computed while a turn is held."""
+        found = iter(results)
+        while True:
+            with self.held():
+                try:
+                    result = next(found)
+                except StopIteration:
+                    return
+            yield result
+
+    def _enter(self) -> None:
+        self._turn = self._turns.begin(self.account, self)
+        self._began = time.thread_time()
+
+    def _leave(self) -> None:
+        turn, self._turn = self._turn, None
+        self._turns.end(turn)
+
+    def _charge(self) -> None:
+        now = time.thread_time()
+        self.account.charge(now - self._began)
+        self._began = now

@@ -1,0 +1,41 @@
+"""What one visitor may ask of the machine: the time of a picture and of a curve, estimated before they are computed."""
+
+from __future__ import annotations
+
+import functools
+
+from granchain_core import BadInput, Scene
+from granchain_core.run.budget import check_picture, picture_seconds
+
+from ..frames import PERIODS, samples_for
+
+#: Most that a first picture may take unless the visitor insists [s].
+FIRST_PICTURE = 5.0
+#: Processor time after which the search for the steady state of one picture is given up [s].
+WHOLE_PICTURE = 120.0
+#: Most that a resonance curve may take that nobody asked for [s].
+CURVE = 120.0
+
+#: Drive periods before the first picture, and in it.
+_PERIODS = 2 + PERIODS
+#: Drive periods of all points of a curve: some 75 to 150 points of a hundred periods.
+_CURVE_PERIODS = 10_000
+
+
+def check_first_picture(scene: Scene) -> None:
+    """Raise `OverBudget` if the first picture would take too long; the sentence says what would fit."""
+    check_picture(scene, _PERIODS, samples_for(scene), FIRST_PICTURE)
+
+
+class TooLong(BadInput):
+    """The steady state was not found within the time of one picture."""
+
+    def __init__(self) -> None:
+        super().__init__(f"After {WHOLE_PICTURE:g} s of computing this chain has not settled; the picture shows how "
+                         "far it has come.")
+
+
+@functools.lru_cache(maxsize=64)
+def curve_affordable(scene: Scene) -> bool:
+    """Whether the page computes the curve by itself; `scene` has the frequency in the middle of its range."""
+    return picture_seconds(scene, _CURVE_PERIODS, 1) <= CURVE

@@ -1,0 +1,202 @@
+"""Guided stories, read from assets/stories/*.toml: scenes to look at, a question, and an answer.
+
+Its numbers are those of the file, which tests/session/test_story_files.py computes.
+The format is documented in docs/stories.md. Nothing in a file is trusted: what is wrong is a sentence that says where.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from granchain_core import BadInput, Run, Scene, Settled, scene, settle
+from granchain_core.errors import unknown_name
+from granchain_core.stop import Stop
+
+from ..format import prefixed
+from ..frames import samples_for
+from .share import EXTRAS
+
+FOLDER = Path(__file__).resolve().parents[2] / "assets" / "stories"
+
+#: What a step may point to: the parts of the main page by the names of their elements.
+LOOKS = ("chain", "left", "map", "right", "curve")
+#: How far a computed force may be from the one a story tells, where the motion repeats and where it does not: there the
+#: largest force depends on the periods that are recorded.
+TOLERANCE, IRREGULAR = 5e-3, 0.1
+_STORY = ("title", "about", "order", "steps")
+_STEP = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "expect")
+_EXPECT = ("regime", "period", "output", "input")
+_NUMBER = re.compile(r"\{(?:(\d+)\.)?(\w+)\}")
+
+
+@dataclass(frozen=True)
+class Expect:
+    """What the motion of a step is: regime and period, largest output and input force [N]."""
+
+    regime: str
+    period: int | None
+    output: float
+    input: float
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step. `via` are frequencies [Hz] at which the chain is settled before, one after the other, from rest."""
+
+    say: str
+    ask: str
+    answer: str
+    scene: Scene
+    expect: Expect
+    via: tuple[float, ...] = ()
+    look: str = ""
+    curves: str = ""
+
+
+@dataclass(frozen=True)
+class Story:
+    """A sequence of steps under a title."""
+
+    name: str
+    title: str
+    about: str
+    order: int
+    steps: tuple[Step, ...] = field(repr=False)
+
+
+def stories(folder: Path = FOLDER) -> tuple[tuple[Story, ...], tuple[str, ...]]:
+    """All stories in their order, and one sentence for every file that cannot be used."""
+    found, refused = [], []
+    for path in sorted(folder.glob("*.toml")):
+        try:
+            found.append(read_story(path))
+        except BadInput as problem:
+            refused.append(f"{path.name}: {problem}")
+    return tuple(sorted(found, key=lambda one: (one.order, one.name))), tuple(refused)
+
+
+def read_story(path: Path) -> Story:
+    """The story in a file. Raises `BadInput` with one sentence for the first thing that is wrong."""
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
+        raise BadInput(f"it is not a TOML file: {problem}.") from None
+    _known(data, _STORY, "a story")
+    steps = data.get("steps")
+    if not isinstance(steps, list) or not steps:
+        raise BadInput("a story needs at least one [[steps]].")
+    told = [_step(number, one) for number, one in enumerate(steps, 1)]
+    order = data.get("order", 100)
+    if not isinstance(order, int):
+        raise BadInput("order must be a whole number.")
+    story = Story(path.stem, _text(data, "title", "the story"), _text(data, "about", "the story"), order, tuple(told))
+    for number in range(1, len(told) + 1):
+        for words in ("say", "ask", "answer"):
+            told_words(story, number, words)
+    return story
+
+
+def told_words(story: Story, number: int, words: str) -> str:
+    """`say`, `ask` or `answer` of step `number`, from 1, with its numbers: {output}, {input}, {2.output} of step 2."""
+
+    def value(match: re.Match[str]) -> str:
+        place = int(match[1] or number)
+        if not 1 <= place <= len(story.steps):
+            raise BadInput(f"step {number}: {match[0]} is of step {place}, but there are {len(story.steps)}.")
+        step = story.steps[place - 1]
+        numbers = {"output": _force(step.expect.output), "input": _force(step.expect.input),
+                   "share": f"{100 * step.expect.output / step.expect.input:.0f} %",
+                   "f": f"{step.scene.f:g} Hz"}
+        if match[2] not in numbers:
+            raise unknown_name("number", match[2], tuple(numbers))
+        return numbers[match[2]]
+
+    return _NUMBER.sub(value, getattr(story.steps[number - 1], words))
+
+
+def settled_step(step: Step, stop: Stop | None = None) -> Settled:
+    """The motion of a step, which starts at rest or comes through its `via`."""
+    start = None
+    for frequency in step.via:
+        start = settle(step.scene.evolve(f=frequency), start=start, stop=stop).state
+    return settle(step.scene, start=start, samples=samples_for(step.scene), stop=stop)
+
+
+def differences(step: Step, run: Run) -> list[str]:
+    """What of a run is not as the step tells, in sentences."""
+    found = []
+    allowed = TOLERANCE if step.expect.period else IRREGULAR
+    if (run.regime.name, run.regime.period) != (step.expect.regime, step.expect.period):
+        found.append(f"it is {run.regime.sentence}, not {step.expect.regime} {step.expect.period or ''}".rstrip() + ".")
+    for name, told, computed in (("output", step.expect.output, run.max_output_force),
+                                 ("input", step.expect.input, run.max_input_force)):
+        if abs(computed - told) > allowed * computed:
+            found.append(f"the largest {name} force is {computed:.4g} N, not {told:.4g} N.")
+    return found
+
+
+def _force(newtons: float) -> str:
+    factor, letter = prefixed(newtons)
+    return f"{newtons / factor:.3g} {letter}N"
+
+
+def _step(number: int, data: Any) -> Step:
+    try:
+        if not isinstance(data, dict):
+            raise BadInput("it is not a table.")
+        _known(data, _STEP, "a step")
+        shown = scene(_text(data, "scene", "it")).evolve(**_table(data, "set"))
+        via = data.get("via", [])
+        if not isinstance(via, list):
+            raise BadInput("via must be a list of frequencies in Hz.")
+        for frequency in via:
+            shown.evolve(f=frequency)
+        return Step(_text(data, "say", "it"), str(data.get("ask", "")), str(data.get("answer", "")), shown,
+                    _expect(_table(data, "expect")), tuple(map(float, via)),
+                    _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *EXTRAS["curves"])))
+    except BadInput as problem:
+        raise BadInput(f"step {number}: {problem}") from None
+
+
+def _expect(data: dict[str, Any]) -> Expect:
+    _known(data, _EXPECT, "expect")
+    regime = _one_of(data, "regime", ("periodic", "quasi-periodic", "chaotic"))
+    period = data.get("period")
+    if (period is None) == (regime == "periodic") or not isinstance(period, (int, type(None))):
+        raise BadInput("a periodic motion, and no other, has a period, a whole number of drive periods.")
+    for name in ("output", "input"):
+        if not isinstance(data.get(name), float) or not data[name] > 0.0:
+            raise BadInput(f"expect needs {name}, the largest {name} force in N, as a number with a point.")
+    return Expect(regime, period, data["output"], data["input"])
+
+
+def _known(data: Mapping[str, Any], names: Sequence[str], what: str) -> None:
+    for name in data:
+        if name not in names:
+            raise unknown_name(f"field of {what}", name, tuple(names))
+
+
+def _text(data: Mapping[str, Any], name: str, what: str) -> str:
+    value = data.get(name)
+    if not isinstance(value, str) or not value.strip():
+        raise BadInput(f"{what} needs {name}, a text.")
+    return value.strip()
+
+
+def _table(data: Mapping[str, Any], name: str) -> dict[str, Any]:
+    value = data.get(name, {})
+    if not isinstance(value, dict):
+        raise BadInput(f"{name} must be a table.")
+    return value
+
+
+def _one_of(data: Mapping[str, Any], name: str, known: tuple[str, ...]) -> str:
+    value = data.get(name, "")
+    if value not in known:
+        raise unknown_name(name, str(value), tuple(one for one in known if one))
+    return str(value)

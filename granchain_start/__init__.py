@@ -1,0 +1,25 @@
+"""What the command `granchain` runs: the package `app` of the tree, which is installed as `granchain_app`.
+
+A package called `app` would collide with everybody's. Nothing else is imported here: app/cli begins with what signals
+do.
+"""
+
+from __future__ import annotations
+
+
+def entry() -> int:
+    """Run the command line; returns the exit status."""
+    try:
+        try:
+            from granchain_app.cli import entry as begin
+        except ModuleNotFoundError as missing:
+            if missing.name != "granchain_app":
+                raise
+            from app.cli import entry as begin
+        status: int = begin()
+        return status
+    except KeyboardInterrupt:  # signals were not taken over yet
+        import os
+
+        os.write(2, b"Cancelled.\n")
+        os._exit(130)

@@ -1,0 +1,51 @@
+"""The largest forces, energy and motion of every scene over its range of f: what the dashboard draws its pictures to.
+
+Every scene of `assets/scenes` is settled from rest at POINTS equally spaced frequencies of its slider, with the knobs of
+its preset, and the largest values over all of them become its table in `assets/scales.toml`. Run it when a scene is new
+or changed:
+
+    python -m tools.scales
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from app.frames import Extremes, extremes_of, samples_for, settled_frames
+from app.page.scales import FILE
+from app.session.session import slider_range
+from granchain_core import Scene, scene, scene_names, settle
+
+POINTS = 150
+
+_HEAD = """\
+# The largest values of every scene over its range of f, from rest, at the knobs of its preset, in SI units
+# (N, N, J, m, m). Written by `python -m tools.scales`; do not edit.
+"""
+
+
+def over_frequencies(chain: Scene, points: int = POINTS) -> Extremes:
+    """The largest values of a scene's settled pictures over its range of f."""
+    found: Extremes | None = None
+    for frequency in np.linspace(*slider_range(chain, "f"), points):
+        at = chain.evolve(f=float(frequency))
+        here = extremes_of(settled_frames(settle(at, samples=samples_for(at)).run))
+        found = here if found is None else found.widened(here)
+    assert found is not None, "a range has points"
+    return found
+
+
+def main() -> None:
+    """Write `assets/scales.toml`."""
+    tables = [_HEAD]
+    for name in scene_names():
+        rows = (f"{field} = {value:.3g}" for field, value in over_frequencies(scene(name)).items())
+        tables.append("\n".join((f"[{name}]", *rows)) + "\n")
+        print(tables[-1])
+    Path(FILE).write_text("\n".join(tables), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

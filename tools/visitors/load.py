@@ -1,0 +1,83 @@
+"""Viewers who each move a knob once a second, and the time until the picture for it comes."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import random
+import time
+
+from .started import Started
+from .viewer import Viewer, query_of
+
+#: Nine of these kept everybody else from any picture for a minute.
+BOMB = query_of(N=10000, f=0.1, A0=1e-4)
+_BOMBS = 9
+
+
+class Answers:
+    """What the viewers of one run saw: times until a picture [s], moves unanswered when the next came."""
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+        self.late = 0
+        self.openings: list[float] = []
+
+    def part(self, share: float, times: list[float]) -> float:
+        """The time below which this share lies [ms]."""
+        return 1e3 * sorted(times)[min(len(times) - 1, int(share * len(times)))] if times else float("nan")
+
+    @property
+    def row(self) -> str:
+        """The row of a table."""
+        return (f"{self.part(0.5, self.times):.0f} | {self.part(0.95, self.times):.0f} | {len(self.times)} | {self.late} | "
+                f"{self.part(0.5, self.openings) / 1e3:.2f} | {max(self.openings, default=float('nan')):.2f}")
+
+
+async def run(server: Started, count: int, minutes: float, bomb: bool, same: bool, seed: int) -> None:
+    """Open the pages, move for so many minutes, print a row of the table in docs/reliability.md."""
+    answers, bombs = Answers(), [Viewer(server.address, BOMB) for _ in range(_BOMBS if bomb else 0)]
+    for one in bombs:
+        asyncio.get_running_loop().create_task(_insist(one))
+    viewers = [Viewer(server.address) for _ in range(count)]
+    began = time.perf_counter()
+    await asyncio.gather(*(one.open() for one in viewers))
+    all_open = time.perf_counter() - began
+    answers.openings = [one.opened_in for one in viewers]
+    await asyncio.sleep(3.0)
+    load, used = os.getloadavg()[0], server.processor_time if server.process else 0.0
+    end = time.perf_counter() + 60.0 * minutes
+    await asyncio.gather(*(_moves(one, end, random.Random(seed if same else f"{seed} {number}"), answers, same)
+                           for number, one in enumerate(viewers)))
+    used = (server.processor_time - used) / (60.0 * minutes) if server.process else float("nan")
+    print("viewers | bomb | p50 ms | p95 ms | answered | after a second | opening p50 s | slowest opening s | all open s "
+          "| processors used | load before")
+    print(f"{count} | {'yes' if bomb else 'no'} | {answers.row} | {all_open:.1f} | {used:.2f} | {load:.1f}", flush=True)
+    await asyncio.gather(*(one.leave() for one in [*viewers, *bombs]))
+
+
+async def _moves(viewer: Viewer, end: float, chance: random.Random, answers: Answers, same: bool) -> None:
+    """One move a second; viewers of a class that moves together do so at the same instants."""
+    if not same:
+        await asyncio.sleep(chance.random())
+    due = time.perf_counter()
+    while due < end:
+        taken = await viewer.move("f", 300.0 + chance.randrange(1, 5000) / 10 + 0.01)
+        if taken is None:
+            answers.late += 1
+        else:
+            answers.times.append(taken)
+            answers.late += taken > 1.0
+        due = max(due + 1.0, time.perf_counter())
+        await asyncio.sleep(max(0.0, due - time.perf_counter()))
+
+
+async def _insist(viewer: Viewer) -> None:
+    """Open a page whose picture takes hours, and press the button that asks for it all the same."""
+    opening = asyncio.get_running_loop().create_task(viewer.open(3600.0))
+    for _ in range(100):
+        await asyncio.sleep(1.0)
+        if any("would take" in said for said in viewer.sentences):
+            await viewer.say(do="insist")
+            break
+    await asyncio.wait([opening])

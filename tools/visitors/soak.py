@@ -1,0 +1,52 @@
+"""Visits that open, move and leave for a long time: memory, descriptors and threads of the server afterwards."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import random
+import time
+from pathlib import Path
+
+import numpy as np
+
+from .started import Started
+from .viewer import Viewer
+
+#: Visitors at once.
+_AT_ONCE = 4
+#: Visits between two rows of the table. They move to forty frequencies, whose pictures are soon kept for all.
+_EVERY = 25
+
+
+async def run(server: Started, minutes: float, seed: int) -> None:
+    """Visit for so many minutes and print a row now and then; at the end the slopes over the second half."""
+    rows: list[tuple[int, float, int, int]] = []
+    end, visits, chance = time.monotonic() + 60.0 * minutes, 0, random.Random(seed)
+    print("visits | memory MB | descriptors | threads | load")
+    while time.monotonic() < end:
+        await asyncio.gather(*(_visit(server.address, random.Random(chance.random())) for _ in range(_AT_ONCE)))
+        visits += _AT_ONCE
+        if visits % _EVERY < _AT_ONCE:
+            rows.append((visits, *figures(server.number)))
+            print(f"{visits} | {rows[-1][1]:.1f} | {rows[-1][2]} | {rows[-1][3]} | {os.getloadavg()[0]:.1f}", flush=True)
+    half = np.array(rows[len(rows) // 2 :], dtype=float)
+    if len(half) > 2:
+        slopes = [float(np.polyfit(half[:, 0], half[:, column], 1)[0]) for column in (1, 2, 3)]
+        print(f"a visit in the second half: {slopes[0]:.4f} MB, {slopes[1]:.4f} descriptors, {slopes[2]:.4f} threads")
+
+
+async def _visit(address: str, chance: random.Random) -> None:
+    viewer = Viewer(address)
+    await viewer.open()
+    for _ in range(3):
+        await viewer.move("f", 300.51 + 10 * chance.randrange(40))
+    if chance.random() < 0.5:  # half of them leave while something is computed
+        await viewer.say(do="set", name="N", value=chance.randrange(8, 12), seq=2)
+    await viewer.leave()
+
+
+def figures(process: int) -> tuple[float, int, int]:
+    """Resident memory [MB], open descriptors and threads of a process."""
+    words = dict(line.split(":", 1) for line in Path(f"/proc/{process}/status").read_text().splitlines() if ":" in line)
+    return int(words["VmRSS"].split()[0]) / 1024, len(os.listdir(f"/proc/{process}/fd")), int(words["Threads"])

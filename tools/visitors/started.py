@@ -1,0 +1,66 @@
+"""A dashboard started for the tool, or one that runs already."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+class Started:
+    """`with Started(None, log) as server:` gives a server that is ended afterwards; `address` names another one."""
+
+    def __init__(self, address: str | None, log: Path) -> None:
+        self._log = log
+        self.process: subprocess.Popen[bytes] | None = None
+        self.address = address or f"http://127.0.0.1:{_free_port()}"
+        self._ours = address is None
+
+    def __enter__(self) -> Started:
+        if self._ours:
+            port = self.address.rpartition(":")[2]
+            with self._log.open("wb") as output:
+                self.process = subprocess.Popen([sys.executable, "-m", "app.cli", "serve", "--port", port], cwd=ROOT,
+                                                stdout=output, stderr=output)
+        end = time.monotonic() + 60
+        while True:
+            try:
+                with urllib.request.urlopen(f"{self.address}/liveness", timeout=5):
+                    return self
+            except OSError:
+                if time.monotonic() > end:
+                    raise
+                time.sleep(0.2)
+
+    def __exit__(self, *_: object) -> None:
+        if self.process is not None:
+            self.process.terminate()
+            self.process.wait(timeout=30)
+            tracebacks = self._log.read_text(errors="replace").count("Traceback")
+            print(f"tracebacks in the server's log: {tracebacks}")
+            if tracebacks:
+                print(self._log.read_text(errors="replace")[-6000:])
+
+    @property
+    def number(self) -> int:
+        """The process, whose figures are read; only of a server started here."""
+        assert self.process is not None, "figures of a process need a server that this tool starts"
+        return self.process.pid
+
+    @property
+    def processor_time(self) -> float:
+        """Processor time used so far [s]."""
+        fields = Path(f"/proc/{self.number}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
