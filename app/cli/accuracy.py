@@ -69,8 +69,8 @@ def _show_accuracy(found: Any) -> None:
 
 
 def _drawn(found: Any, asked: float, theme: Any) -> Any:
-    from app.pictures.accuracy import Annotations
-    from app.pictures.accuracy import accuracy as drawn
+    from ..pictures.accuracy import Annotations
+    from ..pictures.accuracy import accuracy as drawn
 
     best = found.cheapest(asked)
     cheapest = None if best is None else (best.wall_s, best.error)

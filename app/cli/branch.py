@@ -196,7 +196,7 @@ class _Progress:
 
 
 def _drawn(found: Branch, theme: Any) -> Any:
-    from app.pictures.branches import branches
+    from ..pictures.branches import branches
 
     return branches([found], theme)
 

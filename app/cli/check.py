@@ -1,4 +1,4 @@
-"""`granchain check`: the hard cases with figure, bar and verdict."""
+"""`granchain check`: the hard cases: each value, its limit and the verdict."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import re
 import time
 from typing import TYPE_CHECKING, Any
 
-from app.cli.common import finite_or_null, say, show_json
-from app.cli.options import add_json
-from app.cli.picture import add_option as add_picture
-from app.cli.picture import check_picture, write_picture
+from .common import finite_or_null, say, show_json
+from .options import add_json
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
 
 if TYPE_CHECKING:
     from granchain_core.hard import Check
@@ -36,7 +36,7 @@ def do(arguments: argparse.Namespace) -> int:
         _say_case(f"{len(found):2}/{len(CASES)}", name, rows)
     every = in_order(found)
     if arguments.json:
-        show_json({"rows": [{"case": row.case, "figure": finite_or_null(row.figure), "bar": row.bar,
+        show_json({"rows": [{"case": row.case, "figure": finite_or_null(row.value), "bar": row.limit,
                              "passed": row.passed, "seconds": row.seconds} for row in every]})
     else:
         _show_cases(found)
@@ -54,7 +54,7 @@ def _say_case(number: str, name: str, rows: list[Check]) -> None:
     say(f"{number}  {name}: {verdict}, {rows[0].seconds:.1f} s")
     for row in rows:
         if not row.passed:
-            say(f"       {row.figure:.2e} is above {row.bar:.1e}: {row.case.removeprefix(name + ': ')} {row.note}")
+            say(f"       {row.value:.2e} is above {row.limit:.1e}: {row.case.removeprefix(name + ': ')} {row.note}")
 
 
 def _show_cases(found: dict[str, list[Check]]) -> None:
@@ -66,7 +66,7 @@ def _show_cases(found: dict[str, list[Check]]) -> None:
         for row in found[case.name]:
             mark = "ok  " if row.passed else "FAIL"
             note = f"  ({row.note})" if row.note else ""
-            print(f"  {mark} {row.figure:9.2e} ≤ {row.bar:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
+            print(f"  {mark} {row.value:9.2e} ≤ {row.limit:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
 
 
 def _drawn(theme: Any) -> Any:
@@ -74,8 +74,9 @@ def _drawn(theme: Any) -> Any:
     from bokeh.layouts import column
     from bokeh.models import Div
 
-    from app.pictures.check import check as drawn
     from granchain_core.hard.table import CASES
+
+    from ..pictures.check import check as drawn
 
     shown = [(case.name, case.picture()) for case in CASES if case.picture is not None]
     models = [model for name, picture in shown for model in (Div(text=heading(name)), drawn(picture, theme))]

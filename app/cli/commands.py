@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
 
-from app.cli.common import say, show_json
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import OverBudget, outcome_of, unknown_name
 
 from . import ending
+from .common import say, show_json
 
 DONE, BAD_INPUT, FAILED = 0, 2, 3
 
@@ -42,7 +42,13 @@ _COMMANDS = {
     "check": "the hard cases: figure, bar and verdict; status 3 if one fails",
     "curve": "resonance curve: largest forces over frequency",
     "map": "regime and largest forces over two knobs",
+    "spectrum": "lines of a force, and the transfer from input to output",
+    "lyapunov": "all Lyapunov exponents, and the dimension of the attractor",
+    "strobes": "strobes over a knob: the bifurcation diagram",
+    "basins": "to which steady state each start of a plane leads",
+    "fit": "parameters of a scene from a measurement, with intervals and a verdict",
     "figure": "a figure of the paper with our numbers",
+    "cite": "what to cite for the effects of a scene",
 }
 
 
@@ -55,7 +61,7 @@ def parser_for(words: Sequence[str]) -> _Parser:
     for name, about in _COMMANDS.items():
         command = known.add_parser(name, help=about, description=about, allow_abbrev=False)
         if name == asked_for:
-            module = import_module(f"app.cli.{name}")
+            module = import_module(f".{name}", __package__)
             module.add_options(command)
             command.set_defaults(do=module.do)
     return parser

@@ -7,9 +7,10 @@ import math
 import sys
 from typing import TYPE_CHECKING, Any
 
-from granchain_core import BadInput, Scene
+from granchain_core import Amplitude, BadInput, Scene
 
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
+from .data_options import add_answers, with_answers
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
 from .picture import add_option as add_picture
@@ -26,6 +27,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="high", type=number, required=True, metavar="F", help="highest frequency [Hz]")
     parser.add_argument("--points", type=whole, required=True, metavar="n")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
+    parser.add_argument("--amplitude", metavar="FILE|constant-velocity=V|constant-acceleration=a",
+                        help="drive amplitude over the frequency: a measured table, or what stays constant [SI]")
+    add_answers(parser)
     add_resume(parser, "curve")
     add_picture(parser)
 
@@ -34,7 +38,8 @@ def do(arguments: argparse.Namespace) -> None:
     """Compute the resonance curve of a scene."""
     import numpy as np
 
-    from granchain_core.steady.curve import MOST_POINTS
+    from granchain_core.experiment import read_amplitude
+    from granchain_core.steady.curve.resonance_curve import MOST_POINTS
     from granchain_core.store import check_writable
 
     chosen = chosen_scene(arguments)
@@ -45,7 +50,11 @@ def do(arguments: argparse.Namespace) -> None:
     low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
     if low > high:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
-    swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points))
+    amplitude = None if arguments.amplitude is None else with_answers(
+        arguments, lambda answers: read_amplitude(arguments.amplitude, answers))
+    if amplitude is not None:
+        say(f"The drive has {amplitude.words}; k stays {chosen.k:g} N/m.")
+    swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points), amplitude)
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", lambda theme: _drawn_curve(swept, theme))
     if arguments.json:
         show_json(_curve_json(swept))
@@ -53,17 +62,18 @@ def do(arguments: argparse.Namespace) -> None:
         _show_curve(swept)
 
 
-def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any) -> Curve:
+def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, amplitude: Amplitude | None) -> Curve:
     """The curve, of which only points that are not there yet are computed, and its file."""
-    from granchain_core.steady.curve import resonance_curve
-    from granchain_core.steady.kept_points import curve_digest, kept_points, points_in
+    from granchain_core.steady.curve.kept_points import curve_digest, kept_points, points_in
+    from granchain_core.steady.curve.resonance_curve import resonance_curve
     from granchain_core.store import save_curve
     from granchain_core.store.curves import load_curve
 
-    digest = curve_digest(chosen, frequencies, arguments.start)
+    digest = curve_digest(chosen, frequencies, arguments.start, amplitude)
     there = finished(arguments, "curve", load_curve,
-                     lambda found: curve_digest(found.scene, found.column("frequency"), found.start) == digest)
-    kept = kept_points(chosen, frequencies, arguments.start, arguments.out) if arguments.out else None
+                     lambda found: curve_digest(found.scene, found.column("frequency"), found.start,
+                                                found.amplitude) == digest)
+    kept = kept_points(chosen, frequencies, arguments.start, arguments.out, amplitude) if arguments.out else None
     known: list[CurvePoint] = []
     if kept is not None:
         if there is not None:
@@ -86,7 +96,7 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any) -> Cu
 
     with keeping(kept, lambda: f"{done[0]} of {len(frequencies)} points"):
         swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start, stop=stop,
-                                                           on_point=count, known=known))
+                                                           on_point=count, known=known, amplitude=amplitude))
     if kept is not None:
         with unbroken():
             save_curve(swept, arguments.out)
@@ -104,6 +114,7 @@ def _curve_json(swept: Any) -> dict[str, Any]:
         "error_estimate": [p.force_errors.output for p in swept.points],
         "error_estimate_elastic": [p.force_errors.elastic for p in swept.points],
         "error_estimate_input": [p.force_errors.input for p in swept.points], "wall_s": swept.wall_s,
+        **({} if swept.amplitude is None else {"drive_amplitude": [float(a) for a in swept.drive_amplitude]}),
     }
 
 
@@ -119,6 +130,6 @@ def _show_curve(swept: Any) -> None:
 
 
 def _drawn_curve(swept: Any, theme: Any) -> Any:
-    from app.pictures.curve import curve as drawn
+    from ..pictures.curve import curve as drawn
 
     return drawn([swept], theme)

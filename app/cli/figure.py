@@ -12,6 +12,7 @@ from typing import Any
 from granchain_core import BadInput
 
 from .common import in_background, say, show_percent
+from .data_options import add_answers, with_answers
 
 _KINDS = (".html", ".htm", ".png", ".svg", ".csv")
 
@@ -21,8 +22,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("number", metavar="N", help="1 to 12, 3a or 3b; 'list' says what each shows")
     parser.add_argument("--out", metavar="FILE", help="FILE.html, .png, .svg or .csv; figure-N.html by default")
     parser.add_argument("--data", action="append", default=[], metavar="[HZ=]FILE",
-                        help="your measurement over it: a CSV whose header names columns and units, beginning with "
-                             "time_s (a series; HZ is its frequency in the paper) or frequency_Hz (curve, shaker)")
+                        help="your measurement over it: a curve, the shaker's amplitude, or a series (HZ is its "
+                             "frequency in the paper); CSV in any dialect, WebPlotDigitizer, HDF5, netCDF-4")
+    add_answers(parser)
     parser.add_argument("--theme", default="light", metavar="light|dark|projector", help="colours of the picture")
 
 
@@ -39,7 +41,8 @@ def do(arguments: argparse.Namespace) -> None:
     out = arguments.out or f"figure-{figure.number}.html"
     kind = _checked(out, arguments.theme)
     check_writable(out)
-    given = read_given(figure.number, figure.takes, figure.frequencies, arguments.data)
+    given = with_answers(arguments, lambda answers: read_given(figure.number, figure.takes, figure.frequencies,
+                                                               arguments.data, answers))
     for sentence in given.sentences:
         say(sentence)
     progress = show_percent if sys.stderr.isatty() else _quiet
@@ -60,12 +63,12 @@ def _checked(name: str, theme: str) -> str:
     if kind not in _KINDS:
         raise BadInput(f"A figure is written as .html, .png, .svg or .csv; name it "
                        f"{Path(name).with_suffix('.html')}, not {name}.")
-    from app.pictures.theme import THEMES
+    from ..pictures.theme import THEMES
 
     if theme not in THEMES:
         raise unknown_name("theme", theme, THEMES)
     if kind in (".png", ".svg"):
-        from app.pictures.browser import browser
+        from ..pictures.browser import browser
 
         browser()
     return kind
@@ -75,10 +78,10 @@ def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
     """The content of the file."""
     if kind == ".csv":
         return table_of(result).encode("utf-8")
-    from app.pictures.browser import png_of, svg_of
-    from app.pictures.file import captioned_page
-    from app.pictures.paper import paper_figure, size_of
-    from app.pictures.theme import THEMES
+    from ..pictures.browser import png_of, svg_of
+    from ..pictures.file import captioned_page
+    from ..pictures.paper import paper_figure, size_of
+    from ..pictures.theme import THEMES
 
     colours = THEMES[theme]
     drawn, title = paper_figure(result, colours), f"Figure {figure.number}: {figure.title}"

@@ -8,9 +8,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
-from app.cli.common import say
 from granchain_core import BadInput, Cancelled
 from granchain_core.kept import Kept, folder_of
+
+from .common import say
 
 Result = TypeVar("Result")
 

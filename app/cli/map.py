@@ -11,12 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from app.cli.common import chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
-from app.cli.foundation import kept_along
-from app.cli.keeping import add_resume, finished, keeping
-from app.cli.options import add_json, add_scene
-from app.cli.picture import add_option as add_picture
-from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput, Cancelled
 from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
 from granchain_core.diagram.blocks import Blocks
@@ -24,7 +18,13 @@ from granchain_core.diagram.cells import ERRORS, REGIMES, cell_of
 from granchain_core.diagram.grid import MOST_CELLS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
-from granchain_core.text import number_in, whole_in
+
+from .common import chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
+from .foundation import kept_along
+from .keeping import add_resume, finished, keeping
+from .options import add_json, add_scene, values_from
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -43,34 +43,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def axis_from(option: str, text: str) -> Axis:
     """The axis that KNOB=a:b:n or KNOB=a:b:n:log describes."""
-    knob, equals, values = text.partition("=")
-    parts = values.split(":")
-    logarithmic = len(parts) == 4 and parts[3] == "log"
-    if not equals or not (len(parts) == 3 or logarithmic):
-        raise BadInput(f"{option} {text[:60]!r} must have the form KNOB=a:b:n or KNOB=a:b:n:log, for example "
-                       "f=30:3000:100.")
-    ends = Axis.of(knob, sorted({_number(option, part) for part in parts[:2]})).values
-    count = whole_in(parts[2])
-    if count is None:
-        raise BadInput(f"{option}: the number of points {parts[2][:40]!r} must be a whole number from 1 to "
-                       f"{MOST_CELLS}.")
-    if not 1 <= count <= MOST_CELLS:
-        raise BadInput(f"{option}: {count} points are outside 1 to {MOST_CELLS}; the nearest valid value is "
-                       f"{min(max(count, 1), MOST_CELLS)}.")
-    if (count == 1) != (len(ends) == 1):
-        raise BadInput(f"{option} {text[:60]!r}: from {parts[0]} to {parts[1]} there are "
-                       f"{'one point' if len(ends) == 1 else 'at least two points'}, not {count}.")
-    if logarithmic and ends[0] <= 0.0:
-        raise BadInput(f"{option} {text[:60]!r}: logarithmic spacing needs both ends above 0; leave out :log.")
-    spaced = np.geomspace if logarithmic else np.linspace
-    return Axis.of(knob, spaced(ends[0], ends[-1], count).tolist())
-
-
-def _number(option: str, text: str) -> float:
-    found = number_in(text)
-    if found is None:
-        raise BadInput(f"{option}: {text[:40]!r} is not a number.")
-    return found
+    knob, ends, spaced = values_from(option, text, MOST_CELLS)
+    allowed = Axis.of(knob, sorted(set(ends))).values
+    return Axis.of(knob, spaced(allowed[0], allowed[-1]).tolist())
 
 
 def do(arguments: argparse.Namespace) -> None:
@@ -108,7 +83,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
 
 
 def _refuse_too_many(grid: Grid) -> None:
-    from app.pictures.diagram import MOST_DRAWN_CELLS as MOST_DRAWN
+    from ..pictures.diagram import MOST_DRAWN_CELLS as MOST_DRAWN
 
     if grid.size > MOST_DRAWN:
         raise BadInput(f"--picture draws up to {MOST_DRAWN} cells and this map has {grid.size}; take fewer points on "
@@ -119,7 +94,7 @@ def _drawn(found: Diagram, theme: Any) -> Any:
     """The map of forces above the map of regimes."""
     from bokeh.layouts import column
 
-    from app.pictures.diagram import diagram
+    from ..pictures.diagram import diagram
 
     return column(*(diagram(found, theme, shown) for shown in ("force", "regime")), sizing_mode="stretch_both")
 

@@ -6,11 +6,12 @@ import argparse
 from dataclasses import asdict
 from typing import Any
 
-from app.cli.common import chosen_scene, in_background, say, show_json
-from app.cli.options import add_result
-from app.cli.picture import add_option as add_picture
-from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput
+
+from .common import chosen_scene, in_background, say, show_json
+from .options import add_result
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -72,7 +73,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _drawn(seen: Any, theme: Any) -> Any:
-    from app.pictures.observation import observation
+    from ..pictures.observation import observation
 
     return observation(seen, theme)
 

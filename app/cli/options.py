@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
+from typing import Any
 
+from granchain_core import BadInput
 from granchain_core.text import number_in, whole_in
 
 
@@ -40,3 +43,36 @@ def add_result(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--accuracy", metavar="E", help="the same as --set accuracy=E")
     parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")
     add_json(parser)
+
+
+def values_from(option: str, text: str, most: int) -> tuple[str, tuple[float, float], Callable[[float, float], Any]]:
+    """NAME=a:b:n or NAME=a:b:n:log: the name, both ends, and what spaces n values from one number to another."""
+    import numpy as np
+
+    name, equals, values = text.partition("=")
+    parts = values.split(":")
+    logarithmic = len(parts) == 4 and parts[3] == "log"
+    if not equals or not (len(parts) == 3 or logarithmic):
+        raise BadInput(f"{option} {text[:60]!r} must have the form KNOB=a:b:n or KNOB=a:b:n:log, for example "
+                       "f=30:3000:100.")
+    ends = (_end(option, parts[0]), _end(option, parts[1]))
+    count = whole_in(parts[2])
+    if count is None:
+        raise BadInput(f"{option}: the number of points {parts[2][:40]!r} must be a whole number from 1 to {most}.")
+    if not 1 <= count <= most:
+        raise BadInput(f"{option}: {count} points are outside 1 to {most}; the nearest valid value is "
+                       f"{min(max(count, 1), most)}.")
+    if (count == 1) != (ends[0] == ends[1]):
+        raise BadInput(f"{option} {text[:60]!r}: from {parts[0]} to {parts[1]} there are "
+                       f"{'one point' if ends[0] == ends[1] else 'at least two points'}, not {count}.")
+    if logarithmic and min(ends) <= 0.0:
+        raise BadInput(f"{option} {text[:60]!r}: logarithmic spacing needs both ends above 0; leave out :log.")
+    spaced = np.geomspace if logarithmic else np.linspace
+    return name, ends, lambda low, high: spaced(low, high, count)
+
+
+def _end(option: str, text: str) -> float:
+    found = number_in(text)
+    if found is None:
+        raise BadInput(f"{option}: {text[:40]!r} is not a number.")
+    return found

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from app.cli.common import chosen_scene, in_background, show_json
-from app.cli.options import add_json, add_scene, whole
-from app.cli.picture import add_option as add_picture
-from app.cli.picture import check_picture, write_picture
 from granchain_core import BadInput, Scene
 from granchain_core.integrate import State
+
+from .common import chosen_scene, in_background, show_json
+from .options import add_json, add_scene, whole
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
 
 STARTS = ("settled", "rest", "random")
 
@@ -56,7 +57,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _drawn(found: Any, theme: Any) -> Any:
-    from app.pictures.multipliers import multipliers
+    from ..pictures.multipliers import multipliers
 
     return multipliers(found, theme)
 

@@ -30,7 +30,7 @@ def write_picture(name: str | None, title: str, draw: Callable[[Any], Any]) -> N
     """Write the figure that `draw` makes for a theme, if a picture was asked for."""
     if name is None:
         return
-    from app.pictures.file import page_of
-    from app.pictures.theme import THEMES
+    from ..pictures.file import page_of
+    from ..pictures.theme import THEMES
 
     Path(name).write_text(page_of(draw(THEMES["light"]), title), encoding="utf-8")

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import os
+import secrets
+from pathlib import Path
 
-from app.cli.options import whole
 from granchain_core import BadInput
+
+from .options import whole
+
+LEVELS = ("debug", "info", "warning", "error")
+#: Shortest secret [bytes].
+_SHORTEST = 16
+#: What Panel reads from the environment when a provider is named.
+_OAUTH = {"oauth_key": "PANEL_OAUTH_KEY", "oauth_secret": "PANEL_OAUTH_SECRET",
+          "oauth_redirect_uri": "PANEL_OAUTH_REDIRECT_URI", "oauth_encryption_key": "PANEL_OAUTH_ENCRYPTION"}
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -14,16 +25,81 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--address", default="127.0.0.1")
     parser.add_argument("--allow-websocket-origin", action="append", metavar="HOST",
                         help="host name under which browsers may reach a dashboard behind a proxy")
+    parser.add_argument("--secret-file", metavar="FILE",
+                        help="a file whose content signs sessions; BOKEH_SECRET_KEY in the environment does the same")
+    parser.add_argument("--generate-secret", action="store_true",
+                        help="sign sessions with a secret of this process's own")
+    parser.add_argument("--allow-embedding", action="append", metavar="ORIGIN",
+                        help="an origin, such as https://courses.example.org, whose pages may show it in a frame")
+    parser.add_argument("--most-visitors", type=whole, default=200, help="pages that may be open at once")
+    parser.add_argument("--behind-proxy", action="store_true",
+                        help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets")
+    parser.add_argument("--basic-auth", metavar="FILE",
+                        help="a JSON file of user names and passwords (Panel's basic_auth)")
+    parser.add_argument("--oauth-provider", metavar="NAME",
+                        help="sign in with a provider that Panel knows; PANEL_OAUTH_KEY and …_SECRET are its")
+    parser.add_argument("--log-level", choices=LEVELS, default="warning", help="of the log on standard error")
 
 
 def do(arguments: argparse.Namespace) -> None:
     """Open the dashboard."""
-    from app.server import serve as serve_page
+    from ..server import Access, is_loopback
+    from ..server import serve as serve_page
 
     if not 0 <= arguments.port <= 65535:
         raise BadInput(f"port {arguments.port} is outside 0 to 65535; the usual one is 5006.")
+    if not 1 <= arguments.most_visitors <= 10_000:
+        raise BadInput(f"--most-visitors {arguments.most_visitors} is outside 1 to 10000; the usual number is 200.")
+    secret, sign_in = _secret(arguments), _sign_in(arguments)
+    if not is_loopback(arguments.address) and not (arguments.allow_websocket_origin and secret):
+        raise BadInput(
+            f"The address {arguments.address} can be reached from other machines, so the server needs the names under "
+            "which browsers reach it, and a secret that signs sessions: add --allow-websocket-origin "
+            "HOST:PORT, and --generate-secret or --secret-file FILE (docs/security.md).")
+    access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.most_visitors,
+                    tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()))
     try:
-        serve_page(arguments.port, arguments.address, arguments.allow_websocket_origin)
+        serve_page(arguments.port, arguments.address, access=access, log_level=arguments.log_level)
     except OSError as problem:
         raise BadInput(f"Cannot listen on {arguments.address}:{arguments.port}: {problem.strerror or problem}; "
                        f"try --port {arguments.port + 1}.") from None
+
+
+def _secret(arguments: argparse.Namespace) -> bytes | None:
+    """What signs sessions, if anything."""
+    if arguments.secret_file is not None:
+        return _long_enough(_content(arguments.secret_file).strip(), f"the file {arguments.secret_file}")
+    if given := os.environ.get("BOKEH_SECRET_KEY"):
+        return _long_enough(given.encode(), "BOKEH_SECRET_KEY")
+    return secrets.token_bytes(32) if arguments.generate_secret else None
+
+
+def _long_enough(secret: bytes, where: str) -> bytes:
+    if len(secret) < _SHORTEST:
+        raise BadInput(f"The secret in {where} has {len(secret)} bytes; at least {_SHORTEST} are needed: "
+                       "head -c 32 /dev/urandom | base64 makes one.")
+    return secret
+
+
+def _content(name: str) -> bytes:
+    try:
+        with Path(name).open("rb") as file:
+            return file.read(10_000)
+    except OSError as problem:
+        raise BadInput(f"The file {name} cannot be read: {problem.strerror or problem}.") from None
+
+
+def _sign_in(arguments: argparse.Namespace) -> dict[str, str]:
+    """What Panel's `serve` is told of signing in; its cookies are signed with a secret of their own."""
+    if arguments.basic_auth is None and arguments.oauth_provider is None:
+        return {}
+    found = {"cookie_secret": os.environ.get("PANEL_COOKIE_SECRET") or secrets.token_hex(32)}
+    if arguments.basic_auth is not None:
+        _content(arguments.basic_auth)
+        return {**found, "basic_auth": arguments.basic_auth}
+    missing = [name for name in ("PANEL_OAUTH_KEY", "PANEL_OAUTH_SECRET") if not os.environ.get(name)]
+    if missing:
+        raise BadInput(f"--oauth-provider needs {' and '.join(missing)} in the environment.")
+    found["oauth_provider"] = arguments.oauth_provider
+    found.update((name, os.environ[variable]) for name, variable in _OAUTH.items() if os.environ.get(variable))
+    return found

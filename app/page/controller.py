@@ -8,15 +8,19 @@ from functools import partial
 from typing import Any
 
 from bokeh.document import Document
+from panel.io import unlocked
 
-from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
+from granchain_core import BadInput, NumbersFailed, OverBudget, Scene, Settled, State
 
 from ..pages.curve.page import Curves
 from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..pictures.theme import Theme
-from ..serve.websocket import disable_nagle, with_document_lock
+from ..serve.compiler import COMPILER
+from ..serve.meters import METERS
+from ..serve.websocket import disable_nagle, gather_writes, with_document_lock
 from ..session.activities import Activity, account_activity, picture_activities
+from ..session.budget import TooLong
 from ..session.hooks import Actions, all_actions
 from ..session.live import LiveRun
 from ..session.message_checks import is_number, quoted
@@ -41,11 +45,16 @@ class Controller:
 
     def __init__(self, document: Document, session: Session) -> None:
         self._document = document
+        self._left = False
+        self._insistable: Scene | None = None
+        METERS.visitors += 1
+        METERS.opened += 1
         self.session = session
         self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
-        self.pictures = Pictures(document, self, views, self.note, self._arrived)
+        self.pictures = Pictures(self, views, self.note, self._arrived)
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
-        self.choices = DisplayChoices(session, views, self.curves, self._theme_changed)
+        self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self._header,
+                                      self.pictures.redraw)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
         own: Actions = {
@@ -54,7 +63,7 @@ class Controller:
             "narrow": lambda m: views.fit(bool(m.get("value"))),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene,
-            "dismiss-sentence": self._dismiss_sentence,
+            "dismiss-sentence": self._dismiss_sentence, "insist": self._insist,
         }
         playback = Playback(session, self.pictures, self._compute, self._header, self.say)
         self.owners: dict[str, Actions] = {
@@ -63,6 +72,7 @@ class Controller:
             **{f"page `{row.name}`": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
         }
         self._actions = all_actions(self.owners)
+        views.tabs.update_state(place=session.place)
 
     # Coming in and going out
 
@@ -78,22 +88,28 @@ class Controller:
         self.say(f"The page sent a request {message['name']} that is not known here; reload the page.")
 
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
-        try:
-            action(*arguments)
-        except Exception as error:
-            self.failed(error)
+        if self._left:
+            return
+        with unlocked():  # what one message changes leaves as one message
+            try:
+                action(*arguments)
+            except Exception as error:
+                self.failed(error)
 
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """Call `action` with the document locked, as soon as that is possible; this may be called from any thread."""
-        self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
+        if not self._left:
+            self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
         """Call `action` with the document locked, so many seconds from now."""
-        self._document.add_timeout_callback(partial(self._guarded, action, *arguments), round(1e3 * seconds))
+        if not self._left:
+            self._document.add_timeout_callback(partial(self._guarded, action, *arguments), round(1e3 * seconds))
 
     def say(self, sentence: str) -> None:
         """Show the visitor one sentence until the next valid action; an empty one removes it."""
         self.session.sentence = sentence
+        self._insistable = None
         self._show_sentences()
 
     def note(self, notice: str) -> None:
@@ -102,21 +118,29 @@ class Controller:
         self._show_sentences()
 
     def _show_sentences(self) -> None:
-        self.views.status_line.update_state(sentence=f"{self.session.sentence} {self.session.notice}".strip())
+        self.views.status_line.update_state(sentence=f"{self.session.sentence} {self.session.notice}".strip(),
+                                            insist=self._insistable is not None)
 
     def failed(self, error: Exception) -> None:
         """Say in one sentence what happened; the last good picture stays."""
         if isinstance(error, BadInput):
             self.say(str(error))
+            if isinstance(error, (OverBudget, TooLong)):
+                METERS.refused_pictures += 1
+                self._insistable = self.session.scene
+                self._show_sentences()
         elif isinstance(error, NumbersFailed):
             self.note(error.sentence)
         else:
+            METERS.errors += 1
             log.error("unexpected failure", exc_info=error)
             self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
                      "stays. Move the knob back or reset, and please report it.")
 
     def close(self, session_context: object) -> None:
-        """The visitor left."""
+        """The visitor left: everything that is computed for this page ends, and nothing is called any more."""
+        self._left = True
+        METERS.visitors -= 1
         self.pictures.close()
         self.curves.close()
         self.files.close()
@@ -147,7 +171,24 @@ class Controller:
         if mode == "settled":
             self.pictures.live = None
         elif state is not None or self.pictures.live is None:
-            self.pictures.live = LiveRun(scene, state)
+            self.pictures.live = LiveRun(scene, self.session.used, state)
+        self._header()
+        self._send_knob_values()
+        self._scene_changed(state)
+
+    def open(self, scene: Scene, state: State | None, curves: str) -> None:
+        """Open a scene, maybe another preset, settled from `state` or from rest, with the curves of a link."""
+        session = self.session
+        another = scene.name != session.scene.name
+        session.open(scene)
+        self.pictures.live = None
+        self.say("")
+        if another:
+            session.curves = curves or "auto"
+            self._new_scene(state)
+            return
+        if curves:
+            session.curves = self.curves.select(scene, curves)
         self._header()
         self._send_knob_values()
         self._scene_changed(state)
@@ -171,20 +212,24 @@ class Controller:
 
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
+        gather_writes(self._document)
         self.views.fit(bool(message.get("narrow")))
+        self.views.scales.fit = self.session.scale == "fit"
+        COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.choose({"value": message.get("theme")})
         self._new_scene()
 
-    def _new_scene(self) -> None:
+    def _new_scene(self, start: State | None = None) -> None:
         scene = self.session.scene
+        self.views.scales.forget()
         self.views.knobs.state = knob_state(scene)
         self.views.tabs.update_state(look_at=scene.look_at, paper=scene.paper)
-        self._header()
         self._tell_pages()
-        self.curves.open(scene)
+        self.session.curves = self.curves.open(scene, self.session.curves)
+        self._header()
         if self.session.mode == "live":
-            self.pictures.live = LiveRun(scene)
-        self._compute()
+            self.pictures.live = LiveRun(scene, self.session.used)
+        self._compute(start)
 
     def _compute(self, start: State | None = None) -> None:
         for page in self.pages:
@@ -241,8 +286,16 @@ class Controller:
 
     def _scene(self, message: dict[str, Any]) -> None:
         self.session.choose(message.get("name"))
+        self.session.curves = "auto"
         self.say("")
         self._new_scene()
+
+    def _insist(self, _: dict[str, Any]) -> None:
+        """Compute what was refused because it takes long; the other visitors still have their turns."""
+        if self._insistable == self.session.scene:
+            self.session.insisted = self.session.scene
+            self.say("")
+            self._compute()
 
     def _dismiss_sentence(self, _: dict[str, Any]) -> None:
         self.session.notice = ""

@@ -1,4 +1,4 @@
-"""The visitor's display choices: theme, locked colour scale, and which curves are drawn."""
+"""The visitor's display choices: theme, scale of the pictures, and which curves are drawn."""
 
 from __future__ import annotations
 
@@ -13,16 +13,19 @@ from .layout import Views
 
 
 class DisplayChoices:
-    """Display choices, which start no computation except, perhaps, another curve."""
+    """Display choices; of them only a chosen curve, and the scale of a paused live run, start a computation."""
 
     def __init__(self, session: Session, views: Views, curves: Curves,
-                 theme_changed: Callable[[Theme], None]) -> None:
+                 theme_changed: Callable[[Theme], None], header: Callable[[], None],
+                 redraw: Callable[[], None]) -> None:
         self._session = session
         self._views = views
         self._curves = curves
         self._theme_changed = theme_changed
+        self._header = header
+        self._redraw = redraw
         self.actions: Actions = {
-            "theme": self.choose, "lock-scale": self._lock_scale,
+            "theme": self.choose, "scale": self._scale,
             "curve": self._curve, "curve-stop": lambda _: curves.stop(),
             "curve-visible": lambda m: curves.visible(bool(m.get("value")), session.scene),
         }
@@ -36,8 +39,13 @@ class DisplayChoices:
             self._views.apply_theme(theme)
             self._theme_changed(theme)
 
-    def _lock_scale(self, message: dict[str, Any]) -> None:
-        self._views.energy.locked = bool(message.get("value"))
+    def _scale(self, message: dict[str, Any]) -> None:
+        self._session.set_scale(message.get("value"))
+        self._views.scales.fit = self._session.scale == "fit"
+        self._header()
+        self._redraw()
 
     def _curve(self, message: dict[str, Any]) -> None:
         self._curves.choose(str(message.get("name")), bool(message.get("value")), self._session.scene)
+        self._session.curves = self._curves.selection(self._session.scene)
+        self._header()

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import weakref
+from collections.abc import Callable
 from urllib.parse import urlsplit
 
 import panel as pn
 from bokeh.document import Document
 
-from ..serve.compiler import COMPILER
 from ..session.session import Session
 from ..session.share import decode
 from .controller import Controller
+from .table import overlay_names, tab_names
 
 
 def page() -> pn.Template:
@@ -20,13 +22,28 @@ def page() -> pn.Template:
     if document is None:
         raise RuntimeError("the page is made inside a request; serve it, do not call it")
     session, sentences = session_from_address(_query(document))
-    COMPILER.prepare(session.scene)
     controller = Controller(document, session)
-    pn.config.exception_handler = controller.failed
+    pn.config.exception_handler = _handler(controller)
     if sentences:
         controller.say(" ".join(sentences))
     pn.state.on_session_destroyed(controller.close)
     return controller.views.template()
+
+
+def _handler(controller: Controller) -> Callable[[Exception], None]:
+    """Tells the controller of a failure, and does not keep it alive.
+
+    Panel keeps the handler for as long as there is a document, and the controller has the document: no page would ever
+    be forgotten.
+    """
+    there = weakref.WeakMethod(controller.failed)
+
+    def failed(error: Exception) -> None:
+        tell = there()
+        if tell is not None:
+            tell(error)
+
+    return failed
 
 
 def _query(document: Document) -> str:
@@ -44,9 +61,13 @@ def session_from_address(query: str) -> tuple[Session, list[str]]:
     session = Session()
     if not query.strip("?"):
         return session, []
-    scene, extras, sentences = decode(query)
+    places = {"tab": tab_names(), "page": overlay_names()}
+    scene, extras, sentences = decode(query, places)
     session.scene = scene
     session.mode = extras.get("mode", session.mode)
     session.start = extras.get("start", session.start)
+    session.scale = extras.get("scale", session.scale)
+    session.curves = extras.get("curves", session.curves)
+    session.place = {name: extras[name] for name in places if name in extras}
     session.theme = extras.get("look", session.theme)
     return session, sentences

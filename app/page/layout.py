@@ -27,8 +27,10 @@ from ..parts.trains import WIDEST_TITLES, Trains
 from ..pictures.curve import KEY
 from ..pictures.regimes import REGIMES, SYMBOLS
 from ..pictures.theme import Theme, style_sheet
-from .table import PAGES, described_pages
+from .scales import Scales
+from .table import GROUPS, PAGES, described_pages
 from .tabs import Tabs
+from .template import PageTemplate
 
 _HERE = Path(__file__).resolve().parent
 
@@ -38,6 +40,7 @@ class Views:
 
     def __init__(self, received: Callable[[dict[str, Any]], None], choose: Callable[[object], None]) -> None:
         self.time = Range1d(start=1.0, end=0.0)
+        self.scales = Scales()
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
         self.equation = Equation(received)
@@ -47,7 +50,7 @@ class Views:
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
-            "largest_file": MOST_BYTES, "lines": KEY, "pages": described_pages(), "regimes": [
+            "largest_file": MOST_BYTES, "lines": KEY, "pages": described_pages(), "groups": GROUPS, "regimes": [
                 {"name": name, "symbol": SYMBOLS[style[0]], "colour": style[1]} for name, style in REGIMES.items()]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
@@ -58,6 +61,7 @@ class Views:
         with unlocked():  # sent like the pictures, which write the same titles, so that neither overtakes the other
             self.trains.fit(narrow)
             self.energy.fit(narrow)
+            self.curve.fit(narrow)
 
     def apply_theme(self, theme: Theme) -> None:
         """Draw the figures of all pages in another theme."""
@@ -66,7 +70,7 @@ class Views:
 
     def template(self) -> pn.Template:
         """The page; its layout is a CSS grid in page.css."""
-        page = pn.Template((_HERE / "page.html").read_text(encoding="utf-8"))
+        page = PageTemplate((_HERE / "page.html").read_text(encoding="utf-8"))
         page.add_variable("page_css", style_sheet() + (_HERE / "page.css").read_text(encoding="utf-8"))
         page.add_variable("page_js", text("page.js") + text("connection.js"))
         page.add_variable("frame_top", TOP)

@@ -2,24 +2,57 @@
 
 from __future__ import annotations
 
+import math
+import threading
+import time
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from functools import partial
 
-from bokeh.document import Document
+import numpy as np
 
 from granchain_core import Cancelled, Run, Scene, Settled, State, settling
 from granchain_core.warm import LIVE
 
 from ..frames import samples_for
 from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
+from ..serve.meters import METERS
 from ..serve.pacing import FramePacer
-from ..serve.queues import LatestWins, Stop
-from ..serve.websocket import batched_messages
+from ..serve.queues import PICTURES, LatestWins
+from ..serve.shared import Shared
+from ..serve.turns import Turn
+from ..session.budget import WHOLE_PICTURE, TooLong, check_first_picture
 from ..session.energy_residual import with_account
 from ..session.host import Host
 from ..session.live import LivePicture, LiveRun
 from .layout import Views
 from .show import show_live, show_settled
+
+
+def size_of(picture: Settled) -> int:
+    """Memory of a picture [bytes], which is that of its arrays and a little."""
+    arrays = [*vars(picture.run).values(), picture.state.displacement, picture.state.velocity]
+    return 4096 + sum(one.nbytes for one in arrays if isinstance(one, np.ndarray))
+
+
+#: Pictures of all visitors: the last of each stays for the next who asks, in at most so many bytes.
+PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of,
+                                          lambda pictures: pictures[-1:])
+
+
+def _computed(scene: Scene, start: State | None, most: float, stop: Turn) -> Iterator[Settled]:
+    """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
+    began = time.thread_time()
+    pictures = settling(scene, start=start, samples=samples_for(scene), stop=stop)
+    yield next(pictures)
+    with stop.lent():
+        compiled = all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES)
+    if not compiled:
+        raise Cancelled
+    for picture in pictures:
+        yield picture
+        if time.thread_time() - began > most and not picture.final:
+            raise TooLong
 
 
 class Pictures:
@@ -28,17 +61,19 @@ class Pictures:
     `arrived` is called with every settled picture, before it is sent.
     """
 
-    def __init__(self, document: Document, host: Host, views: Views, note: Callable[[str], None],
+    def __init__(self, host: Host, views: Views, note: Callable[[str], None],
                  arrived: Callable[[Settled], None]) -> None:
-        self._document = document
         self._host = host
         self._session = host.session
         self._views = views
         self._note = note
         self._settled_arrived = arrived
-        self._jobs = LatestWins(partial(host.next_tick, self._arrived), partial(host.next_tick, host.failed))
+        self._jobs = LatestWins(self._found, partial(host.next_tick, self._failed), self._session.used)
         self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
         self.live: LiveRun | None = None
+        self._lock = threading.Lock()
+        self._newest: Settled | LivePicture | None = None
+        self._asked: float | None = None
 
     @property
     def busy(self) -> bool:
@@ -53,11 +88,14 @@ class Pictures:
     def close(self) -> None:
         """The visitor left."""
         self._jobs.close()
+        if self.live is not None:
+            self.live.close()
 
     # Computing
 
     def compute(self, start: State | None = None) -> None:
         """Compute a picture for the knobs as they are now, from `start` or from where the visitor chose."""
+        self._asked = self._asked or time.monotonic()
         if self._session.mode == "live":
             if self.live is not None:
                 self.live.change(self._session.scene)
@@ -80,19 +118,29 @@ class Pictures:
 
     # In a worker thread
 
-    def _settled(self, scene: Scene, start: State | None, stop: Stop) -> Iterator[Settled]:
+    def _settled(self, scene: Scene, start: State | None, stop: Turn) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
+        if scene != self._session.insisted:
+            check_first_picture(scene)
         self._await_live_kernels(scene, stop)
-        self._session.started_from = start or self._session.previous_state()
-        pictures = settling(scene, start=self._session.started_from, samples=samples_for(scene), stop=stop)
-        yield next(pictures)
-        if all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES):
+        origin = start or self._session.previous_state()
+        self._host.next_tick(self._begun_from, origin)
+        key = None if origin is not None or scene == self._session.insisted else scene
+        most = math.inf if scene == self._session.insisted else WHOLE_PICTURE
+        with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, origin, most), stop,
+                                            self._session.used)) as pictures:
             for picture in pictures:
                 yield picture
-                if picture.final and self._session.account:
-                    yield with_account(picture, stop)
+        if self._session.account:
+            with stop.held():
+                picture = with_account(picture, stop)
+            yield picture
 
-    def _await_live_kernels(self, scene: Scene, stop: Stop) -> None:
+    def _begun_from(self, origin: State | None) -> None:
+        """With the document locked, before the first picture arrives: where the motion begins."""
+        self._session.started_from = origin
+
+    def _await_live_kernels(self, scene: Scene, stop: Turn) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
         if not COMPILER.has(scene, LIVE):
             words = compiling_words("the kernels for this set of effects", 10).capitalize()
@@ -102,18 +150,38 @@ class Pictures:
             if not COMPILER.await_piece(scene, LIVE, stop):
                 raise Cancelled
 
-    def _live_step(self, samples: int | None, stop: Stop) -> Iterator[LivePicture]:
-        live = self.live
+    def _live_step(self, samples: int | None, stop: Turn) -> Iterator[LivePicture]:
+        live, scene = self.live, self._session.scene
         if live is not None:
-            self._await_live_kernels(self._session.scene, stop)
-            yield live.advance(samples) if samples else live.step(self._session.speed)
+            if scene != self._session.insisted:
+                check_first_picture(scene)
+            self._await_live_kernels(scene, stop)
+            with live.turn.held():
+                picture = live.advance(samples) if samples else live.step(self._session.speed)
+            yield picture
+
+    def _found(self, picture: object) -> None:
+        """A picture is ready. One that comes before the last was looked at takes its place: the server is busy then."""
+        assert isinstance(picture, (Settled, LivePicture))
+        with self._lock:
+            first, self._newest = self._newest is None, picture
+        if first:
+            self._host.next_tick(self._look)
 
     # To the browser
+
+    def _look(self) -> None:
+        with self._lock:
+            picture, self._newest = self._newest, None
+        if picture is not None:
+            self._arrived(picture)
 
     def _arrived(self, picture: Settled | LivePicture) -> None:
         live = isinstance(picture, LivePicture)
         if live != (self._session.mode == "live") or picture.run.scene.name != self._session.scene.name:
             return
+        METERS.pictures += 1
+        self._answered()
         if isinstance(picture, Settled):
             self._session.picture = picture
             self._settled_arrived(picture)
@@ -121,16 +189,36 @@ class Pictures:
             self._note("")
         self._pacer.offer(picture)
 
+    def _failed(self, error: Exception) -> None:
+        """There is no picture, and the next one is timed from its own request."""
+        self._asked = None
+        self._host.failed(error)
+
+    def _answered(self) -> None:
+        """Count how long the first picture took, and say so where the server is busy with many visitors."""
+        if self._asked is None:
+            return
+        seconds, self._asked = time.monotonic() - self._asked, None
+        METERS.answered(seconds)
+        words = f"The server is busy: pictures follow every {seconds:.1f} s." if METERS.busy else ""
+        self._views.status_line.update_state(busy=words)
+
     def _send(self, number: int, picture: Settled | LivePicture) -> None:
-        with batched_messages(self._document):
-            if isinstance(picture, Settled):
-                show_settled(self._views, number, picture)
-            else:
-                show_live(self._views, number, picture, self._session.playing)
+        if isinstance(picture, Settled):
+            show_settled(self._views, number, picture)
+        else:
+            show_live(self._views, number, picture, self._session.playing)
 
     def painted(self, number: object) -> None:
         """The browser says that picture `number` is on the screen."""
         self._pacer.painted(number)
+
+    def redraw(self) -> None:
+        """Send the picture on the screen again, to be drawn otherwise; a running chain sends by itself."""
+        if self.live is None and self._session.picture is not None:
+            self._pacer.offer(self._session.picture)
+        elif self.live is not None and not self._session.playing:
+            self.advance(1)
 
     def restart(self) -> None:
         """The page is visible again: forget outstanding acknowledgements, which will never come."""

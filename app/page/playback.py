@@ -29,7 +29,7 @@ class Playback:
 
     def _mode(self, message: dict[str, Any]) -> None:
         self._session.set_mode(message.get("value"))
-        self._pictures.live = LiveRun(self._session.scene) if self._session.mode == "live" else None
+        self._pictures.live = LiveRun(self._session.scene, self._session.used) if self._session.mode == "live" else None
         self._header()
         self._compute()
 

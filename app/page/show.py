@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from panel.io import unlocked
 
 from granchain_core import Scene, Settled
 
 from ..format import prefixed
-from ..frames import Frames, settled_frames
+from ..frames import Frames, round_up, settled_frames
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
 from ..session.live import LivePicture
@@ -47,6 +49,8 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
           live: bool = False, running: bool = False) -> None:
     views.time.update(start=float(time[-1]), end=float(time[0]))
-    views.trains.update(frames, time)
-    scale = views.energy.update(frames, time, unit, live)
-    views.chain.send(**frames_message(number, frames, scene, scale, live, running))
+    high = views.scales.of(frames, scene)
+    high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
+    views.trains.update(frames, time, high)
+    views.energy.update(frames, time, unit, high.kinetic_energy)
+    views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, live, running))

@@ -18,8 +18,11 @@ from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer
 from ..pages.paper.page import PaperPage
 from ..pages.paper.view import Paper
+from ..pages.probe.page import ProbePage
+from ..pages.probe.view import Probe
 from ..pages.stability.page import StabilityPage
 from ..pages.stability.view import Stability
+from ..pages.stories.page import StoriesPage
 from ..parts.component import Component
 from ..session.hooks import Page
 from ..session.host import Host
@@ -30,8 +33,9 @@ class Row:
     """One page: its name in messages, the title of its tab, what is computed and how it is drawn.
 
     `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
-    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height. A
-    page that `reports_visibility` gets the message "NAME-visible" whenever its tab comes on the screen or leaves it.
+    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height.
+    `group` is one of `GROUPS`. A page that `reports_visibility` gets the message "NAME-visible" whenever its tab comes
+    on the screen or leaves it.
     """
 
     name: str
@@ -41,25 +45,43 @@ class Row:
     placeholder: str = ""
     taller: bool = True
     reports_visibility: bool = False
+    group: str = "explore"
 
 
-#: In the order of the tabs.
+#: The groups of tabs, and the tabs that belong to no page; "data" stands apart from them.
+GROUPS = ("understand", "explore", "trust")
+OWN_TABS = {"look at": "understand", "regimes": "understand", "data": ""}
+
+#: In the order of the tabs; the first is open when nothing else is said.
 PAGES = (
+    Row("stories", "stories", StoriesPage, None, group="understand"),
+    Row("probe", "probe", ProbePage, Probe),
     Row("stability", "stability", StabilityPage, Stability),
-    Row("accuracy", "accuracy", AccuracyPage, Accuracy),
+    Row("accuracy", "accuracy", AccuracyPage, Accuracy, group="trust"),
     Row("map", "map", MapPage, None, reports_visibility=True),
-    Row("effects", "effects", EffectsPage, None, reports_visibility=True),
+    Row("effects", "effects", EffectsPage, None, reports_visibility=True, group="trust"),
     Row("branches", "branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable."),
     Row("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else."),
-    Row("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False),
+    Row("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="trust"),
     Row("paper", "paper", PaperPage, Paper,
-        "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False),
+        "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
+        group="understand"),
 )
 
 
 def described_pages() -> list[dict[str, Any]]:
     """What the tabs need of the table."""
     return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller,
-             "reports_visibility": row.reports_visibility} for row in PAGES]
+             "reports_visibility": row.reports_visibility, "group": row.group} for row in PAGES]
+
+
+def tab_names() -> tuple[str, ...]:
+    """The tabs by the names they have in a link."""
+    return (*OWN_TABS, *(row.name for row in PAGES))
+
+
+def overlay_names() -> tuple[str, ...]:
+    """The pages that lie over the pictures."""
+    return tuple(row.name for row in PAGES if row.view)

@@ -6,15 +6,20 @@ import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/cells.js";
 import { mapTab } from "../pages/map/map.js";
 import { observerTab } from "../pages/observer/observer_tab.js";
+import { leaveStories, storiesTab } from "../pages/stories/stories_tab.js";
+import { probeTab } from "../pages/probe/probe_tab.js";
 import { stabilityTab } from "../pages/stability/stability_tab.js";
 import { button, element, openButton, paragraph } from "../parts/dom.js";
-import { dataTab, lookAtTab, regimesTab } from "./scene_tabs.js";
+import { dataTab, saveSample } from "./data_tab.js";
+import { lookAtTab, regimesTab } from "./scene_tabs.js";
 
 // The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name. A tab
 // that `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
 const TABS = {
+  stories: storiesTab,
   "look at": lookAtTab,
   regimes: regimesTab,
+  probe: probeTab,
   stability: stabilityTab,
   accuracy: accuracyTab,
   map: mapTab,
@@ -23,6 +28,9 @@ const TABS = {
   observer: observerTab,
   data: dataTab,
 };
+
+// The tab that is open when nothing else is said.
+const FIRST = "stories";
 
 // The tab of a page that has no function in TABS: its sentence, or what it is, and a button that opens it.
 function plainTab(_, { name, placeholder }) {
@@ -52,18 +60,33 @@ class Tabs {
   constructor(model) {
     this.model = model;
     const pages = model.state.pages;
-    const rows = [{ name: "look at", title: "look at" }, { name: "regimes", title: "regimes" }, ...pages];
-    rows.push({ name: "data", title: "data" });
+    const own = (name, group) => ({ name, title: name, group });
+    const [stories, ...others] = pages;
+    const rows = [
+      stories,
+      own("look at", "understand"),
+      own("regimes", "understand"),
+      ...others,
+      { ...own("data", ""), taller: true },
+    ];
     this.rows = new Map(rows.map((row) => [row.name, row]));
-    this.chosen = "look at";
-    this.seen = this.chosen; // the tab that is on the screen, null while a page lies over the pictures
+    this.chosen = FIRST;
+    this.seen = null; // the tab that is on the screen, null while a page lies over the pictures
     this.redraw = () => {};
-    this.tabs = rows.map((row) => this.tab(row));
+    const groups = [...model.state.groups, ""].map((group) => this.group(group, rows));
+    this.tabs = groups.flatMap((group) => [...group.querySelectorAll("[role=tab]")]);
     // The larger button floats, so it comes first: the second line of tabs has the whole width.
-    this.list = element("div", { className: "tabs", role: "tablist" }, largerButton(), ...this.tabs);
+    this.list = element("div", { className: "tabs", role: "tablist" }, largerButton(), ...groups);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
     this.body = element("div", { className: "body", role: "tabpanel" });
     this.root = element("div", { className: "part tabbed" }, this.list, this.body);
+  }
+
+  // The tabs of a group, with its name before them.
+  group(name, rows) {
+    const tabs = rows.filter((row) => row.group === name).map((row) => this.tab(row));
+    const label = name ? [element("small", { textContent: name })] : [];
+    return element("span", { className: "group" }, ...label, ...tabs);
   }
 
   tab({ name, title }) {
@@ -74,9 +97,11 @@ class Tabs {
 
   choose(name) {
     this.chosen = name;
+    if (name !== FIRST) leaveStories();
     document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
     this.reportVisibility();
     this.show();
+    window.granchain.placed({ tab: name === FIRST ? "" : name });
     window.granchain.emit("tab", name);
   }
 
@@ -128,11 +153,20 @@ export function render({ model }) {
   const tabs = new Tabs(model);
   model.on("state", () => tabs.stateChanged());
   model.on("msg:custom", mapMessage);
+  model.on("msg:custom", saveSample);
   for (const { name } of model.state.pages)
     window.granchain.on(name, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
-  window.granchain.on("overlay", () => tabs.reportVisibility());
-  tabs.show();
+  window.granchain.on("overlay", (name) => {
+    window.granchain.placed({ page: name ?? "" });
+    tabs.reportVisibility();
+  });
+  window.granchain.on("bead", () => {
+    if (tabs.chosen !== "probe" && !window.granchain.overlay) tabs.choose("probe");
+  });
+  const { tab = FIRST, page } = model.state.place;
+  tabs.choose(tab);
+  if (page) window.granchain.openPage(page);
   return tabs.root;
 }

@@ -2,7 +2,13 @@
 
 import { ChainDrawing, unpack } from "./chain_drawing.js";
 import { Clock, Cursor } from "./clock.js";
-import { element } from "./dom.js";
+import { button, element } from "./dom.js";
+import { colourOf } from "./steel.js";
+
+const SCALES = [
+  ["same", "same scale", "One scale for all pictures of this scene: strong looks strong, weak looks weak"],
+  ["fit", "fit", "Every picture fills its frame: weak motion can be seen, but not compared"],
+];
 
 // Calls `act` after the present animation frame: a message posted in a frame arrives when that is done.
 function afterFrame(act) {
@@ -10,6 +16,10 @@ function afterFrame(act) {
   channel.port1.onmessage = act;
   channel.port2.postMessage(null);
 }
+
+// Room for the driver and for the wall beside the beads, in pixels.
+const DRIVER = 62,
+  WALL = 26;
 
 class Chain {
   constructor(model) {
@@ -28,8 +38,10 @@ class Chain {
   }
 
   measure() {
-    this.drawing.measure(this.cursor.map.getBoundingClientRect(), this.cursor.gap);
+    const { left, width } = this.canvas.getBoundingClientRect();
+    this.drawing.measure({ left: left + DRIVER, width: width - DRIVER - WALL }, 0);
     this.cursor.measure();
+    this.placeColumn();
     this.mark();
     if (this.narrow === null || this.narrow === this.isNarrow()) return;
     this.narrow = !this.narrow;
@@ -40,16 +52,30 @@ class Chain {
     return this.cursor.narrow(this.model.state.titles);
   }
 
-  // The colour bar below the map; a click keeps its scale.
+  // The colour bar below the map, and the choice of scale.
   setUpScale() {
     const scale = document.getElementById("scale");
-    const colours = this.model.state.palette.filter((_, i) => i % 15 === 0);
-    scale.querySelector("b").style.background = `linear-gradient(to right, ${colours.join(",")})`;
-    scale.addEventListener("click", () => {
-      const locked = scale.ariaPressed !== "true";
-      scale.ariaPressed = String(locked);
-      this.model.send_msg({ do: "lock-scale", value: locked });
+    const shares = Array.from({ length: 17 }, (_, i) => colourOf(this.model.state.palette, (i / 16) ** 2));
+    scale.querySelector("b").style.background = `linear-gradient(to right, ${shares.join(",")})`;
+    this.energies = [...scale.querySelectorAll(".colours span")];
+    this.scales = SCALES.map(([value, words, title]) =>
+      button(words, () => this.chooseScale(value), { title, value, ariaPressed: "false" }),
+    );
+    scale.querySelector(".segments").append(...this.scales);
+  }
+
+  chooseScale(value) {
+    window.granchain.requested("scale", value);
+    this.model.send_msg({ do: "scale", value });
+  }
+
+  showScale({ fit, energy_labels }) {
+    document.getElementById("stage").dataset.scale = fit ? "fit" : "same";
+    this.energies.forEach((place, i) => {
+      place.textContent = energy_labels[i];
     });
+    for (const one of this.scales) one.ariaPressed = String((one.value === "fit") === fit);
+    this.scales[1].textContent = fit ? "fitted to each picture" : "fit";
   }
 
   receive(message) {
@@ -57,10 +83,42 @@ class Chain {
     if (message.type === "frames") this.load(message);
   }
 
+  // A click on a bead chooses it; in the map, a click on its column.
+  setUpBeads() {
+    this.column = document.getElementById("column");
+    this.canvas.title = "Click a bead to see its motion, its contacts and its spectrum";
+    const choose = (bead) => this.clock.frames && window.granchain.emit("bead", bead);
+    this.canvas.addEventListener("click", (event) => {
+      const { left } = this.canvas.getBoundingClientRect();
+      choose(this.drawing.nearest(event.clientX - left));
+    });
+    this.cursor.onClick = (share) => choose(1 + Math.floor(share * this.drawing.beads));
+    window.granchain.on("bead", (bead) => {
+      this.drawing.chosen = bead;
+      this.placeColumn();
+      this.mark();
+    });
+  }
+
+  // The frame around the chosen bead's column of the map.
+  placeColumn() {
+    const { chosen, beads } = this.drawing;
+    const { left, width } = this.cursor.columns;
+    this.column.hidden = !(chosen >= 1 && chosen <= beads);
+    Object.assign(this.column.style, {
+      left: `${left + ((chosen - 1) / beads) * width}px`,
+      width: `${width / beads}px`,
+      top: `${this.cursor.area.y}px`,
+      height: `${this.cursor.area.height}px`,
+    });
+  }
+
   load(frames) {
     Object.assign(frames, unpack(frames).series);
-    document.getElementById("scale-high").textContent = frames.energy_label;
+    this.showScale(frames);
+    const { beads } = this.drawing;
     this.drawing.load(frames);
+    if (this.drawing.beads !== beads) this.placeColumn();
     this.clock.show(frames);
     this.mark();
     // Bokeh paints in the next animation frame.
@@ -119,6 +177,7 @@ function listen(chain) {
 export function render({ model }) {
   const chain = new Chain(model);
   chain.setUpScale();
+  chain.setUpBeads();
   for (const id of ["map", "chain"]) new ResizeObserver(() => chain.measure()).observe(document.getElementById(id));
   model.on("msg:custom", (message) => chain.receive(message));
   listen(chain);

@@ -11,7 +11,7 @@ from bokeh.palettes import Inferno256
 from granchain_core import Scene
 
 from ..format import prefixed
-from ..frames import Frames
+from ..frames import Extremes, Frames
 from ..scripts import module
 from .component import Component, text
 
@@ -26,10 +26,12 @@ class Chain(Component):
 PALETTE = list(Inferno256)
 
 
-def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live: bool,
+def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool, live: bool,
                    running: bool) -> dict[str, Any]:
-    """What the browser needs to draw the chain at every instant; a running chain only has a now."""
-    factor, letter = prefixed(scale)
+    """What the browser needs to draw the chain at every instant; a running chain only has a now.
+
+    `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own.
+    """
     rows = slice(-1, None) if running else slice(None)
     return {
         "type": "frames",
@@ -38,14 +40,26 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: float, live
         "rows": 1 if running else frames.rows,
         "samples": frames.samples,
         **drawn_chain(scene),
-        "energy_high": scale,
-        "energy_label": f"{scale / factor:g} {letter}J",
+        "energy_high": scale.kinetic_energy,
+        "energy_labels": energy_labels(scale.kinetic_energy),
+        "fit": fit,
+        "scale": None if fit else {"largest": scale.displacement, "overlap": scale.overlap,
+                                   "force": max(scale.input_force, scale.output_force)},
         "sent": time.time(),
         # One array, because every array is two messages on the websocket.
         "values": np.concatenate(chain_series(frames.displacement[rows], frames.force[rows],
                                               frames.kinetic_energy[rows], frames.drive_displacement[rows]),
                                  dtype=np.float32),
     }
+
+
+def energy_labels(high: float) -> list[str]:
+    """What stands at the beginning, in the middle and at the end of the colour bar up to `high` [J].
+
+    Colours follow the square root of the energy, so a quarter of it is in the middle.
+    """
+    factor, letter = prefixed(high)
+    return ["0", f"{high / 4 / factor:.3g}", f"{high / factor:.3g} {letter}J"]
 
 
 def drawn_chain(scene: Scene) -> dict[str, Any]:

@@ -1,6 +1,9 @@
 // A chain drawn on a canvas, for every part of the page that shows one.
 
 import { stepBelow } from "./plot.js";
+import { Steel } from "./steel.js";
+
+const NUMBERED = 13; // px: a smaller bead has no number
 
 // The four series of a chain in a message's one array, from value `start` on, and where they end.
 export function unpack({ rows, beads, values }, start = 0) {
@@ -19,70 +22,113 @@ export function unpack({ rows, beads, values }, start = 0) {
   return { series, end };
 }
 
+// How the largest overlap and the largest displacement are drawn at most, in distances of two beads.
+const OVERLAP = 0.3,
+  TRAVEL = 0.8;
+
 export class ChainDrawing {
   constructor(canvas, palette) {
     this.canvas = canvas;
     this.context = canvas.getContext("2d");
-    this.palette = palette;
+    this.steel = new Steel(palette);
+    this.chosen = 0; // the bead that is marked, 0 for none
   }
 
   readTheme() {
     const style = getComputedStyle(this.canvas);
     const read = (name) => style.getPropertyValue(name).trim();
     this.ink = {
+      strong: read("--ink"),
       text: read("--soft"),
       steel: read("--steel"),
       light: read("--steel-light"),
+      shine: read("--steel-shine"),
+      edge: read("--steel-edge"),
+      number: read("--steel-number"),
       drive: read("--drive"),
       input: read("--input"),
       output: read("--output"),
+      accent: read("--accent"),
       bold: parseFloat(read("--line")) || 1,
       small: read("--small"),
       font: read("--font"),
     };
+    this.steel.forget();
   }
 
-  // Where bead 1 and bead N stand: above the middle of their columns.
-  measure(mapBox, gap) {
+  // The room for the chain, from the driver's face to the wall.
+  measure(box, gap) {
     this.readTheme();
-    const box = this.canvas.getBoundingClientRect();
-    const ratio = window.devicePixelRatio || 1;
-    this.width = box.width;
-    this.height = box.height;
-    this.canvas.width = Math.round(box.width * ratio);
-    this.canvas.height = Math.round(box.height * ratio);
-    this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    this.left = mapBox.left - box.left + gap;
-    this.span = mapBox.width - 2 * gap;
+    const own = this.canvas.getBoundingClientRect();
+    this.ratio = window.devicePixelRatio || 1;
+    this.width = own.width;
+    this.height = own.height;
+    this.canvas.width = Math.round(own.width * this.ratio);
+    this.canvas.height = Math.round(own.height * this.ratio);
+    this.context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    this.from = box.left - own.left + gap;
+    this.room = box.width - 2 * gap;
+    this.arrange();
   }
 
-  // The scale of displacements: as large as possible without drawing pressed beads over one another. One pitch on the
-  // screen stands for one diameter.
+  // Where the beads rest, in distances of two of the largest beads from the driver's face; beads at rest touch.
+  rest(radii) {
+    this.largest = Math.max(...radii);
+    this.homes = [-0.5];
+    let end = 0;
+    for (const radius of radii) {
+      this.homes.push(end + radius / (2 * this.largest));
+      end += radius / this.largest;
+    }
+    this.homes.push(end + 0.5);
+    this.long = end;
+    this.arrange();
+  }
+
+  // One distance of two beads on the screen: as large as the room allows.
+  arrange() {
+    if (!this.long || !this.room) return;
+    this.span = Math.min(this.room, this.long * this.widest());
+    this.left = this.from + (this.room - this.span) / 2;
+    this.pitch = this.span / this.long;
+  }
+
+  widest() {
+    return 0.66 * this.height;
+  }
+
+  home(i) {
+    return this.left + this.homes[i] * this.pitch;
+  }
+
+  // The bead whose place of rest is nearest to x.
+  nearest(x) {
+    const far = (i) => Math.abs(this.home(i) - x);
+    let best = 1;
+    for (let i = 2; i <= this.beads; i++) if (far(i) < far(best)) best = i;
+    return best;
+  }
+
+  // The scale of displacements: as large as possible without drawing pressed beads over one another, of the scene's
+  // largest motion where that is known, else of this picture's. One pitch on the screen stands for one diameter.
   load(frames) {
-    const { rows, beads } = frames;
-    const u = frames.displacement;
-    let overlap = 0,
-      largest = 0,
-      force = 0;
-    for (let row = 0; row < rows; row++)
-      for (let c = 0; c <= beads; c++) {
-        const l = c === 0 ? frames.drive[row] : u[row * beads + c - 1];
-        const r = c === beads ? 0 : u[row * beads + c];
-        overlap = Math.max(overlap, l - r);
-        largest = Math.max(largest, Math.abs(l));
-        force = Math.max(force, Math.abs(frames.force[row * (beads + 1) + c]));
-      }
-    const fits = Math.min(0.17 / Math.max(overlap, 1e-30), 0.8 / Math.max(largest, 1e-30));
-    this.largest = Math.max(...frames.radii);
+    this.rest(frames.radii);
+    const { largest, overlap, force } = frames.scale ?? extremes(frames);
+    const fits = Math.min(OVERLAP / Math.max(overlap, 1e-30), TRAVEL / Math.max(largest, 1e-30));
     const diameter = 2 * this.largest;
     const factor = fits * diameter;
-    const running = frames.live && rows === 1;
+    const { beads } = frames;
+    const running = frames.live && frames.rows === 1;
     const keep =
-      this.factor && this.beads === beads && this.factor <= 1.25 * factor && (running || this.factor > 0.3 * factor);
+      !frames.scale &&
+      this.factor &&
+      this.beads === beads &&
+      this.factor <= 1.25 * factor &&
+      (running || this.factor > 0.3 * factor);
     if (!keep) this.factor = stepBelow(factor);
     this.exaggeration = this.factor / diameter;
     this.beads = beads;
-    this.force = Math.max(force, running ? 0.99 * (this.force ?? 0) : 0, 1e-30);
+    this.force = Math.max(force, running && !frames.scale ? 0.99 * (this.force ?? 0) : 0, 1e-30);
   }
 
   draw(frames, row) {
@@ -90,49 +136,85 @@ export class ChainDrawing {
     g.clearRect(0, 0, width, height);
     if (!frames || !width) return;
     const { beads } = frames;
-    const pitch = this.span / beads;
-    const radius = Math.min(0.4 * pitch, 0.3 * height);
-    const y = 0.53 * height;
+    const { pitch } = this;
+    const radius = 0.5 * pitch;
+    const y = this.middle();
     const at = sampler(frames, row);
-    const place = (i) => this.left + (i - 0.5) * pitch + at.u(i) * this.exaggeration * pitch;
-    this.ground(frames, pitch, radius, y, place);
-    for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, radius, y);
+    const place = (i) => this.home(i) + at.u(i) * this.exaggeration * pitch;
+    this.ground(frames, radius, y, place);
     this.bodies(place, pitch, radius, y, beads);
-    for (let i = 1; i <= beads; i++)
-      this.bead(place(i), y, radius * (frames.radii[i - 1] / this.largest), at.energy(i) / frames.energy_high);
+    const sizes = frames.radii.map((one) => radius * (one / this.largest));
+    for (let i = 1; i <= beads; i++) this.bead(i, place, y, sizes, at.energy(i) / frames.energy_high);
+    for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, radius, y);
     this.words();
   }
 
-  contact(c, force, frames, place, radius, y) {
-    const { context: g, ink } = this;
-    if (Math.abs(force) < 1e-6 * this.force) return;
-    const from = c === 0 ? place(0) + radius : place(c);
-    const to = c === frames.beads ? place(c + 1) - radius : place(c + 1);
-    g.strokeStyle = c === 0 ? ink.input : c === frames.beads ? ink.output : ink.steel;
-    g.lineWidth = 2 + Math.min(1, Math.abs(force) / this.force) * 1.5 * radius;
-    g.setLineDash(force < 0 ? [3, 3] : []);
-    g.beginPath();
-    g.moveTo(from, y);
-    g.lineTo(to, y);
-    g.stroke();
-    g.setLineDash([]);
+  middle() {
+    return 0.58 * this.height;
   }
 
-  bead(x, y, radius, energy) {
-    const { context: g, ink, palette } = this;
+  // A closed contact: a bar where the bodies are flattened, as tall as the force is strong. An open one is a gap.
+  contact(c, force, frames, place, radius, y) {
+    const { context: g, ink } = this;
+    const share = Math.min(1, Math.abs(force) / this.force);
+    if (share < 1e-6) return;
+    const { beads } = frames;
+    const x = c === 0 ? place(0) + radius : c === beads ? place(beads + 1) - radius : 0.5 * (place(c) + place(c + 1));
+    const half = radius * (0.16 + 0.84 * Math.sqrt(share));
+    g.strokeStyle = c === 0 ? ink.input : c === beads ? ink.output : ink.strong;
+    g.lineWidth = Math.max(2, 0.09 * radius + 0.16 * radius * share);
+    g.lineCap = "round";
+    g.setLineDash(force < 0 ? [3, 4] : []);
     g.beginPath();
-    g.arc(x, y, radius, 0, 2 * Math.PI);
-    g.fillStyle = palette[Math.max(0, Math.min(255, Math.round(255 * energy)))];
-    g.fill();
-    g.lineWidth = 1.5 * ink.bold;
-    g.strokeStyle = ink.steel;
+    g.moveTo(x, y - half);
+    g.lineTo(x, y + half);
     g.stroke();
+    g.setLineDash([]);
+    g.lineCap = "butt";
+  }
+
+  // A bead, cut where it presses on its neighbour, half of the overlap each.
+  bead(i, place, y, sizes, share) {
+    const { context: g, ink } = this;
+    const x = place(i),
+      radius = sizes[i - 1],
+      beads = sizes.length;
+    const end = (n, side) => place(n) + side * (n === 0 || n > beads ? 0.5 * this.pitch : sizes[n - 1]);
+    const { picture, reach } = this.steel.bead(radius, share, this.ratio, ink);
+    const half = reach * radius;
+    const meets = (n, side) => {
+      const far = end(n, -side), // the neighbour's end that faces this bead
+        own = x + side * radius;
+      if (side * (own - far) <= 0) return side * half;
+      return (n === 0 || n > beads ? far : 0.5 * (own + far)) - x;
+    };
+    const from = Math.max(-half, meets(i - 1, -1)),
+      to = Math.min(half, meets(i + 1, 1)),
+      scale = picture.width / (2 * half);
+    if (to > from) {
+      const part = [(from + half) * scale, 0, (to - from) * scale, picture.height];
+      g.drawImage(picture, ...part, x + from, y - half, to - from, 2 * half);
+    }
+    if (i === this.chosen) this.ring(x, y, radius);
+    if (radius >= NUMBERED) this.number(i, x, y, radius, share);
+  }
+
+  ring(x, y, radius) {
+    const { context: g, ink } = this;
+    g.strokeStyle = ink.accent;
+    g.lineWidth = 3 * ink.bold;
     g.beginPath();
-    g.arc(x - 0.35 * radius, y - 0.38 * radius, 0.16 * radius, 0, 2 * Math.PI);
-    g.fillStyle = ink.light;
-    g.globalAlpha = 0.55;
-    g.fill();
-    g.globalAlpha = 1;
+    g.arc(x, y, radius + 2, 0, 2 * Math.PI);
+    g.stroke();
+  }
+
+  number(i, x, y, radius, share) {
+    const { context: g, ink } = this;
+    g.font = `600 ${Math.min(0.72 * radius, 1.15 * parseFloat(ink.small))}px ${ink.font}`;
+    g.textAlign = "center";
+    g.textBaseline = "middle";
+    g.fillStyle = share > 0.06 && share < 0.4 ? "#ffffff" : ink.number;
+    g.fillText(String(i), x, y);
   }
 
   bodies(place, pitch, radius, y, beads) {
@@ -156,15 +238,15 @@ export class ChainDrawing {
     g.stroke();
   }
 
-  ground(frames, pitch, radius, y, place) {
+  ground(frames, radius, y, place) {
     if (!frames.foundation) return;
     const { context: g, ink } = this;
-    const floor = y + 1.9 * radius;
+    const floor = Math.min(y + 1.9 * radius, this.height - 3);
     g.strokeStyle = ink.steel;
     g.lineWidth = 1.3 * ink.bold;
     g.beginPath();
     for (let i = 1; i <= frames.beads; i++) {
-      const foot = this.left + (i - 0.5) * pitch,
+      const foot = this.home(i),
         x = place(i),
         top = y + 0.9 * radius;
       g.moveTo(x, top);
@@ -179,22 +261,67 @@ export class ChainDrawing {
     g.stroke();
   }
 
+  // The magnification, with a bar that is as long as a displacement of so many micrometres, nanometres …
   words() {
     const { context: g, ink } = this;
-    g.font = `${ink.small} ${ink.font}`;
+    const size = parseFloat(ink.small);
+    g.font = `${size}px ${ink.font}`;
     g.textBaseline = "top";
-    g.textAlign = "center";
-    g.fillStyle = ink.text;
-    g.fillText(
-      `displacements × ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`,
-      this.left + this.span / 2,
-      5,
-    );
+    g.fillStyle = g.strokeStyle = ink.text;
     g.textAlign = "left";
     g.fillText("driver", 8, 5);
     g.textAlign = "right";
     g.fillText("wall", this.width - 8, 5);
+    const [metres, name] = tape((0.22 * this.width) / (this.pitch * this.exaggeration));
+    const long = metres * this.pitch * this.exaggeration;
+    const words = `displacements × ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`;
+    const ends = [g.measureText("driver").width, g.measureText(words).width, g.measureText(name).width];
+    const whole = ends[1] + 12 + long + 6 + ends[2];
+    const shown = whole < this.width - 2 * ends[0] - 40 ? words : `× ${this.factor}`;
+    const wide = whole - ends[1] + g.measureText(shown).width;
+    let x = 0.5 * (this.width - wide);
+    g.textAlign = "left";
+    g.fillText(shown, x, 5);
+    x += g.measureText(shown).width + 12;
+    g.lineWidth = 1.5 * ink.bold;
+    g.beginPath();
+    for (const end of [x, x + long]) {
+      g.moveTo(end, 5 + 0.1 * size);
+      g.lineTo(end, 5 + 0.9 * size);
+    }
+    g.moveTo(x, 5 + 0.5 * size);
+    g.lineTo(x + long, 5 + 0.5 * size);
+    g.stroke();
+    g.fillText(name, x + long + 6, 5);
   }
+}
+
+// The largest displacement, overlap and force of a picture.
+function extremes({ rows, beads, displacement: u, drive, force: forces }) {
+  let overlap = 0,
+    largest = 0,
+    force = 0;
+  for (let row = 0; row < rows; row++)
+    for (let c = 0; c <= beads; c++) {
+      const l = c === 0 ? drive[row] : u[row * beads + c - 1];
+      const r = c === beads ? 0 : u[row * beads + c];
+      overlap = Math.max(overlap, l - r);
+      largest = Math.max(largest, Math.abs(l));
+      force = Math.max(force, Math.abs(forces[row * (beads + 1) + c]));
+    }
+  return { overlap, largest, force };
+}
+
+// The largest of 1, 2, 5, 10, … metres that is not above `most`, with its name.
+function tape(most) {
+  const metres = stepBelow(most);
+  const [unit, letter] = [
+    [1e-3, "m"],
+    [1e-6, "µ"],
+    [1e-9, "n"],
+    [1e-12, "p"],
+  ].find(([one]) => metres >= 0.999 * one) ?? [1e-12, "p"];
+  return [metres, `${Number((metres / unit).toPrecision(1))} ${letter}m`];
 }
 
 // Linear interpolation between rows.

@@ -42,6 +42,8 @@ export class Clock {
   }
 }
 
+const STILL = 4; // px that a pointer may move in a click
+
 // The line across all time pictures; dragging it, or any of the pictures, stops time.
 export class Cursor {
   constructor(clock) {
@@ -68,15 +70,31 @@ export class Cursor {
   measure() {
     const stage = this.stage.getBoundingClientRect();
     const map = this.map.getBoundingClientRect();
-    const right = document.getElementById("right").getBoundingClientRect();
+    const [left, right] = ["left", "right"].map((id) => document.getElementById(id).getBoundingClientRect());
+    this.columns = { left: map.left - stage.left + this.gap, width: map.width - 2 * this.gap };
     this.area = { y: map.top - stage.top + this.top, height: map.height - this.top - this.bottom };
-    const scale = document.getElementById("scale");
-    scale.style.left = `${map.left - stage.left + this.gap}px`;
-    scale.style.width = `${map.width - 2 * this.gap}px`;
-    scale.style.top = `${map.bottom - stage.top - this.bottom + 8}px`;
-    const key = document.getElementById("key");
-    key.style.left = `${right.left - stage.left + this.gap}px`;
-    key.style.top = `${right.top - stage.top + this.top - 44}px`;
+    const put = (element, box, from, to, style) =>
+      Object.assign(element.style, {
+        left: `${box.left - stage.left + from}px`,
+        width: `${box.width - from - to}px`,
+        ...style,
+      });
+    const top = (box) => `${box.top - stage.top + 2}px`;
+    const titles = this.stage.querySelectorAll(".title");
+    for (const title of titles) {
+      const name = title.dataset.over;
+      const box = { left, map, right }[name];
+      put(title, box, name === "left" ? this.left : this.gap, this.gap, { top: top(box) });
+    }
+    put(document.getElementById("scale"), map, this.gap, this.gap, {
+      top: `${map.bottom - stage.top - this.bottom + 8}px`,
+    });
+    const title = [...titles].at(-1);
+    const under = title.offsetTop + title.offsetHeight;
+    put(document.getElementById("key"), right, this.gap, 0, {
+      top: `${under}px`,
+      height: `${right.top - stage.top + this.top - 3 - under}px`,
+    });
   }
 
   // Whether the titles of the axes under the force trains, each centred under its frame, have too little room.
@@ -94,7 +112,8 @@ export class Cursor {
       const y = e.clientY - this.stage.getBoundingClientRect().top;
       this.clock.moveTo((y - this.area.y) / this.area.height);
     };
-    const done = () => {
+    const done = (e) => {
+      this.clicked(event, e, element);
       element.removeEventListener("pointermove", move);
       element.removeEventListener("pointerup", done);
       element.removeEventListener("pointercancel", done);
@@ -105,6 +124,14 @@ export class Cursor {
     element.addEventListener("pointerup", done);
     element.addEventListener("pointercancel", done);
     move(event);
+  }
+
+  // A press in the map that has not moved chooses the column under it.
+  clicked(from, to, element) {
+    if (element !== this.map || to.type !== "pointerup") return;
+    if (Math.hypot(to.clientX - from.clientX, to.clientY - from.clientY) > STILL) return;
+    const share = (to.clientX - this.stage.getBoundingClientRect().left - this.columns.left) / this.columns.width;
+    if (share >= 0 && share < 1) this.onClick(share);
   }
 
   place() {

@@ -15,12 +15,15 @@
 
   // The last share link from the server, and the requests since then that it has not answered.
   let link = "v=1";
+  let known = false; // whether the server has sent one
   const unanswered = new Map();
   let viewFields = []; // the fields of a link that belong to no scene
   const linkReceived = (query, answered, fields = viewFields) => {
     link = query;
     viewFields = fields;
     for (const name of answered) unanswered.delete(name);
+    known = true;
+    follow();
   };
   const requested = (name, value) => {
     if (name === "scene") unanswered.clear();
@@ -38,10 +41,29 @@
       if (name === "k") query.delete("kappa");
       if (name === "kappa") query.delete("k");
     }
-    if (url.searchParams.has("look")) query.set("look", page.theme()); // else the browser remembers it
+    if (page.themeChosen || url.searchParams.has("look")) query.set("look", page.theme());
+    for (const [name, value] of Object.entries(place)) if (value) query.set(name, value);
     url.search = query;
     return url;
   };
+
+  // Where the visitor is: the tab below the curve and the page over the pictures, empty for the first tab and for none.
+  const place = { tab: "", page: "" };
+  const placed = (where) => {
+    Object.assign(place, where);
+    follow();
+  };
+  // The address is always that of what is on the screen, so that reload, back and a bookmark bring it back. A browser
+  // takes only so many changes a second.
+  const FOLLOW_AFTER = 400; // ms
+  let following = 0;
+  const follow = () => {
+    clearTimeout(following);
+    following = setTimeout(() => {
+      if (known && !leaving) history.replaceState(history.state, "", address());
+    }, FOLLOW_AFTER);
+  };
+  page.on("theme", () => follow());
 
   const say = (sentence) => {
     const place = document.getElementById("lost");
@@ -167,4 +189,5 @@
     });
   }
   Object.assign(page, { lost: false, kept: {}, again, requested, linkReceived, answerReceived, connect, address });
+  Object.assign(page, { place, placed });
 })();

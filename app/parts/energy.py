@@ -7,9 +7,13 @@ from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper, Range1d
 from bokeh.plotting import figure
 
 from ..format import prefixed
-from ..frames import Frames, round_up
+from ..frames import Frames
 from .chain import PALETTE
 from .figure_style import GAP, quiet_axis, quiet_figure
+
+#: The palette by the square root of the energy, which is proportional to the speed: weak motion stays visible beside
+#: strong. Steps of the root are fine where the palette is dark.
+_BY_ROOT = [PALETTE[round(255 * np.sqrt(step / 1023))] for step in range(1024)]
 
 
 class EnergyMap:
@@ -17,9 +21,7 @@ class EnergyMap:
 
     def __init__(self, time: Range1d) -> None:
         self._source = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")})
-        self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
-        self._scale = 0.0
-        self.locked = False
+        self._mapper = LinearColorMapper(palette=_BY_ROOT, low=0.0, high=1.0)
         self._beads, self._narrow = 1, False
         self.figure = self._build(time)
 
@@ -41,17 +43,9 @@ class EnergyMap:
         self._narrow = narrow
         self.figure.xaxis[0].ticker.interval = max(1, round(self._beads / (6 if narrow else 12)))
 
-    def _choose_scale(self, frames: Frames, live: bool) -> None:
-        """The top of the colour scale in joules: the picture's own, steadier when live, kept when locked."""
-        needed = round_up(float(frames.kinetic_energy.max()))
-        too_small = needed > self._scale
-        if self._scale == 0.0 or (not self.locked and (too_small or not live or needed < 0.2 * self._scale)):
-            self._scale = needed
-
-    def update(self, frames: Frames, time: np.ndarray, unit: str, live: bool) -> float:
-        """Show `frames`, whose rows are at `time` (in `unit`); returns the top of the scale in joules."""
-        self._choose_scale(frames, live)
-        factor, letter = prefixed(self._scale)
+    def update(self, frames: Frames, time: np.ndarray, unit: str, high: float) -> None:
+        """Show `frames`, whose rows are at `time` (in `unit`), in colours that end at `high` [J]."""
+        factor, letter = prefixed(high)
         step = float(time[1] - time[0])
         self._source.data = {
             "image": [np.asarray(frames.kinetic_energy / factor, dtype=np.float32)],
@@ -60,7 +54,7 @@ class EnergyMap:
             "dw": [frames.beads],
             "dh": [step * frames.rows],
         }
-        self._mapper.high = self._scale / factor
+        self._mapper.high = high / factor
         self.figure.x_range.end = frames.beads + 0.5
         self._beads = frames.beads
         self.fit(self._narrow)
@@ -68,4 +62,3 @@ class EnergyMap:
             ("bead", "$x{0}"), ("time", f"$y{{0.000}} {unit}"),
             ("kinetic energy", f"@image{{0.000}} {letter}J"),
         ]
-        return self._scale

@@ -14,6 +14,7 @@ const ICONS = {
   save: "M12 4v11m-5-4l5 5 5-5M5 20h14",
   help: "M9 9a3 3 0 1 1 4.2 2.7c-.9.4-1.2 1-1.2 2.3M12 18v.5",
   theme: "M12 3a9 9 0 1 0 0 18zM12 3a9 9 0 0 1 0 18",
+  more: "M5 12h.5M12 12h.5M19 12h.5",
 };
 const icon = (name, words = "") =>
   `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>${
@@ -25,8 +26,8 @@ const MODES = [
   ["live", "The run goes on while you move the knobs"],
 ];
 const STARTS = [
-  ["rest", "from rest"],
-  ["previous", "from the previous state"],
+  ["rest", "start: from rest"],
+  ["previous", "start: previous state"],
 ];
 
 // A button with an icon; its title is its name for who cannot see it.
@@ -53,28 +54,97 @@ class Header {
     this.begun = false; // whether the first state has come
     this.popovers = new Popovers();
     this.makeTimeControls();
-    this.scene = chooser("scene", "scene", (name) => this.request("scene", name, { name }));
-    const send = (name) => () => this.send(name);
+    this.makeSceneChooser();
+    this.makeButtons();
+    this.name = element("h1", { textContent: "granchain" });
+    this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
+    this.popovers.menu.ariaLabel = "more controls";
+    const knobs = () => window.granchain.drawer(true);
     this.root = element(
       "div",
       { className: "part bar" },
-      iconButton(icon("knobs", "knobs"), "Show the knobs", () => window.granchain.drawer(true), "knobs-button"),
-      element("h1", { textContent: "granchain" }),
+      iconButton(icon("knobs", "knobs"), "Show the knobs", knobs, "knobs-button"),
+      this.name,
       this.scene,
-      iconButton(icon("reset", "reset"), "Back to rest", send("reset")),
+      this.reset,
       this.play,
-      iconButton(icon("step", "period"), "Forward one drive period", () => this.nextPeriod()),
+      this.step,
       this.speed,
-      element("span", { className: "segments", role: "group" }, ...this.modes),
+      this.mode,
       this.start,
       element("span", { className: "grow" }),
-      iconButton(icon("share", "share"), "Link to this picture", send("share")),
-      iconButton(icon("save", "save"), "Save this picture as HDF5", send("save"), "save"),
-      iconButton(icon("help"), "Help", () => this.popovers.toggleHelp(), "icon"),
-      iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon"),
+      this.share,
+      this.save,
+      this.help,
+      this.theme,
+      this.more,
       this.popovers.help,
       this.popovers.link,
+      this.popovers.menu,
     );
+    this.order = [...this.root.children];
+  }
+
+  makeButtons() {
+    const send = (name) => () => this.send(name);
+    this.reset = iconButton(icon("reset", "reset"), "Back to rest", send("reset"));
+    this.step = iconButton(icon("step", "period"), "Forward one drive period", () => this.nextPeriod());
+    this.share = iconButton(icon("share", "share"), "Link to this picture", send("share"));
+    this.save = iconButton(icon("save", "save"), "Save this picture as HDF5", send("save"), "save");
+    this.help = iconButton(icon("help"), "Help", () => this.popovers.toggleHelp(), "icon");
+    this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon");
+    this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "icon more");
+  }
+
+  // The names of the scenes are whole while one is chosen, and cut to the width that was there.
+  makeSceneChooser() {
+    this.scene = chooser("scene", "scene", (name) => this.request("scene", name, { name }));
+    this.scene.addEventListener("mousedown", () => {
+      const { width } = this.scene.getBoundingClientRect();
+      this.nameScenes(true);
+      this.scene.style.width = `${width}px`;
+    });
+    for (const end of ["change", "blur"]) this.scene.addEventListener(end, () => this.fit());
+  }
+
+  // Puts into the menu “⋯” what the bar has no room for, the least needed first.
+  fit() {
+    const { root, popovers } = this;
+    const focused = root.getRootNode().activeElement;
+    const steps = [
+      () => root.classList.add("short"),
+      () => this.nameScenes(false),
+      () => this.putAway(this.speed),
+      () => this.putAway(this.start),
+      () => this.putAway(this.save, this.share),
+      () => this.putAway(this.step),
+      () => this.putAway(this.name),
+      () => this.putAway(this.reset),
+      () => this.putAway(this.mode),
+      () => this.putAway(this.help, this.theme),
+    ];
+    root.classList.remove("short");
+    this.nameScenes(true);
+    for (const control of this.order) root.append(control);
+    this.more.hidden = true;
+    while (root.scrollWidth > root.clientWidth && steps.length) steps.shift()();
+    if (this.more.hidden) popovers.menu.hidden = true;
+    focused?.focus();
+  }
+
+  // The name of the page has no place in a menu; it is left out.
+  putAway(...controls) {
+    for (const control of controls) {
+      if (control === this.name) control.remove();
+      else this.popovers.menu.append(control);
+    }
+    this.more.hidden = !this.popovers.menu.children.length;
+  }
+
+  // Scenes by name and title, or by name alone where the bar is too short for the title; the open list has both.
+  nameScenes(whole) {
+    this.scene.style.width = "";
+    for (const option of this.scene.options) option.textContent = whole ? option.title : option.value;
   }
 
   makeTimeControls() {
@@ -101,6 +171,7 @@ class Header {
 
   drawPlay() {
     this.play.innerHTML = this.playing ? icon("pause", "pause") : icon("play", "play");
+    this.fit();
   }
 
   setPlaying(value) {
@@ -156,9 +227,14 @@ class Header {
   }
 
   showChoices({ scenes = [], scene = "", speeds = [], speed = 1, mode, start = "rest" }) {
-    this.scene.replaceChildren(...scenes.map(({ name, title }) => new Option(`${name} — ${title}`, name)));
+    const options = scenes.map(({ name, title }) => {
+      const option = new Option(`${name} — ${title}`, name);
+      return Object.assign(option, { title: option.textContent });
+    });
+    this.scene.replaceChildren(...options);
     this.scene.value = scene;
-    this.speed.replaceChildren(...speeds.map((value) => new Option(`${value} period${value > 1 ? "s" : ""}/s`, value)));
+    const each = (value) => `${value} period${value > 1 ? "s" : ""} a second`;
+    this.speed.replaceChildren(...speeds.map((value) => new Option(each(value), value)));
     this.speed.value = String(speed);
     window.granchain.emit("speed", speed);
     MODES.forEach(([name], i) => {
@@ -166,6 +242,7 @@ class Header {
     });
     this.start.value = start;
     this.start.style.display = mode === "live" ? "none" : "";
+    this.fit();
   }
 
   showPlaying({ playing = this.playing, speed, account = false }) {
@@ -185,7 +262,8 @@ class Header {
   }
 
   receive(message) {
-    if (message.type === "link") this.popovers.showLink(message.query);
+    if (message.type === "link") window.granchain.linkReceived(message.query, []);
+    if (message.type === "link") this.popovers.showLink();
     else if (message.type === "file") download(message);
   }
 }
@@ -193,7 +271,16 @@ class Header {
 export function render({ model }) {
   const header = new Header(model);
   window.granchain.on("pause", () => header.setPlaying(false));
-  window.granchain.on("theme", (value) => header.send("theme", { value }));
+  window.granchain.on("theme", (value) => {
+    header.send("theme", { value });
+    header.fit(); // the projector's words are larger
+  });
+  let width = 0;
+  new ResizeObserver(() => {
+    if (header.root.clientWidth === width) return;
+    width = header.root.clientWidth;
+    header.fit();
+  }).observe(header.root);
   document.addEventListener("keydown", (event) => header.key(event));
   document.addEventListener("pointerdown", (event) => {
     if (!event.composedPath().includes(header.root)) header.popovers.close();

@@ -19,9 +19,11 @@ window.granchain = (() => {
     }
   };
   const system = () => (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+  let chosen = false; // whether the visitor has chosen the theme on this page
   const setTheme = (theme, keep) => {
     if (!THEMES.includes(theme)) return;
     document.documentElement.dataset.theme = theme;
+    chosen = chosen || keep;
     if (keep)
       try {
         localStorage.setItem(KEPT_AS, theme);
@@ -66,6 +68,9 @@ window.granchain = (() => {
       return overlay;
     },
     theme,
+    get themeChosen() {
+      return chosen;
+    },
     setTheme,
     nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % THEMES.length], true),
     drawer,

@@ -27,28 +27,40 @@ export class Popovers {
   constructor() {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
     this.help = element("div", { className: "popover", hidden: true }, helpList());
-    this.link = element("div", { className: "popover", hidden: true }, this.field);
+    this.copied = element("p", { role: "status" });
+    this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
+    this.menu = element("div", { className: "popover menu", hidden: true });
   }
 
   close() {
-    this.help.hidden = this.link.hidden = true;
+    this.help.hidden = this.link.hidden = this.menu.hidden = true;
   }
 
   toggleHelp() {
-    const open = this.help.hidden;
-    this.close();
-    this.help.hidden = !open;
+    this.toggle("help");
   }
 
-  // The link becomes the page's address, is shown, and goes to the clipboard.
-  showLink(query) {
-    const url = new URL(location.href);
-    url.search = query;
-    history.replaceState(null, "", url);
-    this.field.value = url.href;
+  // Opens the one of this name and closes the others, or closes it.
+  toggle(name) {
+    const open = this[name].hidden;
+    this.close();
+    this[name].hidden = !open;
+  }
+
+  // The page's address is shown and goes to the clipboard.
+  showLink() {
+    const { href } = window.granchain.address();
+    history.replaceState(history.state, "", href);
+    this.field.value = href;
+    this.copied.textContent = "";
     this.close();
     this.link.hidden = false;
     this.field.select();
-    navigator.clipboard?.writeText(url.href).catch(() => {});
+    navigator.clipboard
+      ?.writeText(href)
+      .then(() => {
+        this.copied.textContent = "copied";
+      })
+      .catch(() => {});
   }
 }

@@ -3,6 +3,7 @@
 import { button, element } from "./dom.js";
 
 const ENTRIES = [
+  ["busy", (v) => v, "Many visitors are here: each gets its turn, and pictures on the way are left out."],
   ["start", (v) => v, "Where the steady state was started."],
   ["accuracy", (v) => v, ""], // its title comes with it
   [
@@ -27,12 +28,17 @@ function entryOf([name, write, meaning], state) {
 export function render({ model }) {
   const words = element("p");
   const close = button("✕", () => model.send_msg({ do: "dismiss-sentence" }), { title: "Close" });
-  const sentence = element("div", { className: "sentence", role: "alert" }, words, close);
+  const insist = button("Compute it anyway", () => model.send_msg({ do: "insist" }), {
+    id: "insist",
+    title: "It may take as long as the sentence says; a moved knob ends it.",
+  });
+  const sentence = element("div", { className: "sentence", role: "alert" }, words, insist, close);
   const line = element("div", { className: "line" });
   const show = () => {
     const { state } = model;
     words.textContent = state.sentence ?? "";
     sentence.hidden = !state.sentence;
+    insist.hidden = !state.insist;
     const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");
     line.replaceChildren(
       element("b", { textContent: state.regime ?? "" }),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from granchain_core import Run, Settled
-from granchain_core.steady.resonance import Place, place_words, pushes
+from granchain_core.steady.curve.resonance import Place, place_words, pushes
 
 from ..format import duration, short_error
 from ..scripts import module

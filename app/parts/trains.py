@@ -7,7 +7,7 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
 from bokeh.plotting import figure
 
 from ..format import prefixed
-from ..frames import Frames, round_up, with_jumps
+from ..frames import Extremes, Frames, round_up, with_jumps
 from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
 
 _TITLES = ("drive u₀", "input force", "output force")
@@ -60,15 +60,15 @@ class Trains:
         _few_ticks(plot)
         return plot
 
-    def update(self, frames: Frames, time: np.ndarray) -> None:
-        """Show `frames`, whose rows are at `time` on the shared axis."""
+    def update(self, frames: Frames, time: np.ndarray, high: Extremes) -> None:
+        """Show `frames`, whose rows are at `time` on the shared axis, on axes that end at the forces of `high`."""
         scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
         drive_high = round_up(float(np.abs(frames.drive_displacement).max()))
         (input_time, input_force), (output_time, output_force) = (
             with_jumps(time, force, jumps * np.array([scale, 1.0])) for force, jumps in
             ((frames.input_force, frames.input_jumps), (frames.output_force, frames.output_jumps)))
-        input_range = _span(input_force)
-        output_range = _span(output_force, frames.output_force_elastic)
+        input_range = _span(high.input_force, input_force)
+        output_range = _span(high.output_force, output_force, frames.output_force_elastic)
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
         out, out_letter = prefixed(max(map(abs, output_range)))
@@ -106,9 +106,9 @@ class Trains:
             line.glyph.line_width = width * factor
 
 
-def _span(*series: np.ndarray) -> tuple[float, float]:
-    """A range that holds all values, zero included, and keeps still while they change a little."""
-    high = round_up(max(float(s.max()) for s in series))
+def _span(largest: float, *series: np.ndarray) -> tuple[float, float]:
+    """A range up to `largest` that holds all values, zero included, and keeps still while they change a little."""
+    high = round_up(max(largest, *(float(s.max()) for s in series)))
     low = min(float(s.min()) for s in series)
     return (-0.06 * high if low > -0.02 * high else -round_up(-low)), 1.04 * high
 

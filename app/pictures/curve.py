@@ -20,7 +20,7 @@ DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 """Dashes of the line by the start of a sweep."""
 WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
 """The same in words."""
-LABELS = {"rest": "from rest", "up": "╌ up", "down": "┈ down"}
+LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈"}
 """The same for a choice beside the curve, with a piece of the line."""
 KEY = "Solid line: from rest; dashed: frequency rising; dotted: frequency falling."
 """What the dashes mean, in a sentence."""

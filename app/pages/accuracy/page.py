@@ -63,11 +63,13 @@ class AccuracyPage(Page):
 
     def scene_changed(self) -> None:
         """A knob moved: another accuracy is asked for, or the rows belong to another chain."""
-        self.describe()
+        if self.status != "none":  # until it is opened there is nothing to see
+            self.describe()
 
     def picture_ready(self, picture: Settled) -> None:
         """Mark the setting of the new picture among the rows."""
-        self.describe()
+        if self.status != "none":
+            self.describe()
 
     def describe(self) -> None:
         """Show what was asked, what is cheapest, what the page uses now, and whether the rows still hold."""

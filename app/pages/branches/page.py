@@ -11,11 +11,12 @@ from panel.io import unlocked
 
 from granchain_core import Scene
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
+from granchain_core.stop import Stop
 from granchain_core.warm import BRANCH, CERTIFIED, LIVE
 
 from ...pictures.branches import BranchRows
 from ...serve.delays import BRANCH_EVERY
-from ...serve.queues import LONG, Stop
+from ...serve.queues import LONG
 from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import listed, whole

@@ -13,7 +13,7 @@ _MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency risi
              "down": "Frequency falling, the state carried along."}
 #: What may be shown: name, label and meaning.
 CHOICES = (*((name, label, _MEANINGS[name]) for name, label in LABELS.items()),
-           ("features", "from the paper", "Frequencies the paper states for its rig; it gives no forces."))
+           ("features", "paper’s features", "Frequencies the paper states for its rig; it gives no forces."))
 
 
 class CurveBar(Component):
@@ -23,4 +23,5 @@ class CurveBar(Component):
     _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES]}, **params)
+        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "chapters": [],
+                                          "kinds": []}, **params)

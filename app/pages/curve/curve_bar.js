@@ -1,6 +1,7 @@
 // Which curves are shown, how far they are, and a button to stop them.
 
 import { button, element, meter } from "../../parts/dom.js";
+import { ChapterLabels } from "./chapter_labels.js";
 
 // Tells the server whether the curve is on the screen; one that nobody looks at is not computed.
 function watchVisibility(tell) {
@@ -31,8 +32,26 @@ export function render({ model }) {
     progress.hidden = !(model.state.done >= 0 && model.state.done < 1);
     done.value = model.state.done ?? 0;
   };
-  model.on("state", show);
+  const key = element("div", { className: "key" });
+  const places = new ChapterLabels((f) => model.send_msg({ do: "set", name: "f", value: f }));
+  const name = () => {
+    key.replaceChildren(
+      ...model.state.kinds.map((one) => {
+        const symbol = element("b", { textContent: one.symbol });
+        symbol.style.color = one.colour;
+        return element("span", {}, symbol, ` ${one.name}`);
+      }),
+    );
+    places.show(model.state.chapters);
+  };
+  model.on("state", () => {
+    show();
+    name();
+  });
   show();
+  name();
   watchVisibility((value) => model.send_msg({ do: "curve-visible", value }));
-  return element("div", { className: "part row" }, ...labels, progress);
+  const title = element("h2", { textContent: "resonance curve" });
+  const head = element("div", { className: "row" }, title, progress);
+  return element("div", { className: "part" }, head, element("div", { className: "row" }, ...labels), key);
 }

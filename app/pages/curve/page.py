@@ -5,25 +5,30 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 from panel.io import unlocked
 
 from granchain_core import CurvePoint, Scene
-from granchain_core.experiment import Measured, stated_features
-from granchain_core.steady.curve import draft_curve
+from granchain_core.experiment import Difference, Measured, stated_features
+from granchain_core.steady.curve.resonance_curve import draft_curve
 from granchain_core.warm import CURVE
 
 from ...pictures.curve import WORDS
 from ...serve.compiler import COMPILER, PICTURE_PIECES
 from ...serve.delays import CURVE_QUIET
-from ...serve.queues import CURVES, LatestWins, Stop
+from ...serve.queues import CURVES, LatestWins
+from ...serve.turns import Turn
 from ...session.activities import Activity
+from ...session.budget import curve_affordable
 from ...session.debounce import Debounce
 from ...session.host import Host
 from ...session.progress import COMPUTING, OFF, READY
 from ...session.session import rig_beads, slider_range, without_frequency
+from ...session.share import joined
 from ...session.task import Task
 from .bar import CHOICES, CurveBar
+from .chapters import Chapters
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
 from .view import Curve
 
@@ -31,7 +36,8 @@ from .view import Curve
 class Curves:
     """Computes the selected curves while they are on the screen, each once for the same knobs.
 
-    `placed` is called when a curve from rest is complete; it shows where on the curve the present motion lies.
+    `placed` is called when a curve from rest is complete; it shows where on the curve the present motion lies. So is
+    `compared`, with the visitor's data beside it.
     """
 
     def __init__(self, host: Host, figure: Curve, bar: CurveBar, placed: Callable[[], None]) -> None:
@@ -39,8 +45,10 @@ class Curves:
         self._figure = figure
         self._bar = bar
         self._placed = placed
+        self.compared: Callable[[Difference | None], None] = lambda _: None
         self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
-        self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed))
+        self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed),
+                                  host.session.used)
         self._asked: Scene | None = None
         self._begun = 0
         self._wanted = {name: name == "rest" for name, *_ in CHOICES}
@@ -52,27 +60,45 @@ class Curves:
         self._key: Scene | None = None
         self._remaining: list[str] = []
         self._done = -1.0
+        self._chapters = Chapters(host, self._show_chapters)
 
-    def open(self, scene: Scene) -> None:
-        """Show an empty figure over the frequencies of another scene."""
+    def selection(self, scene: Scene) -> str:
+        """What is drawn, as a link has it; "auto" for what the scene shows by itself."""
+        chosen = {name for name, wanted in self._wanted.items() if wanted}
+        own = {"rest", "features"} if scene.pattern == rig_beads() else {"rest"}
+        return "auto" if chosen == own else joined(chosen)
+
+    def open(self, scene: Scene, selected: str) -> str:
+        """Show an empty figure over the frequencies of another scene, with the curves of a link; return which.
+
+        "auto" leaves the curves as they are, and shows the stated features of the paper's rig.
+        """
         self._computed.clear()
+        self._chapters.forget()
         self._figure.clear()
         self._figure.range(*slider_range(scene, "f"))
-        self._wanted["features"] = scene.pattern == rig_beads()
+        if selected == "auto":
+            self._wanted["features"] = scene.pattern == rig_beads()
+        else:
+            self._wanted = {name: name in selected.split(".") for name in self._wanted}
         self._show_features(scene)
         self.changed(scene)
+        return self.selection(scene)
 
     def moved(self, scene: Scene) -> None:
         """A knob moved. Any but f changes the curve: a draft comes at once, the curve when the knobs rest."""
         if without_frequency(scene) == self._asked:
             return
+        self._chapters.forget()
         self.changed(scene)
-        if self._visible and self._wanted["rest"] and COMPILER.has(scene, CURVE):
+        if self._visible and self._wanted["rest"] and self._affordable(scene) and COMPILER.has(scene, CURVE):
             self._drafts.submit(partial(self._draft, scene, self._begun))
 
     @staticmethod
-    def _draft(scene: Scene, begun: int, stop: Stop) -> Iterator[tuple[int, list[CurvePoint]]]:
-        yield begun, draft_curve(scene, grid(scene, COARSE), stop)
+    def _draft(scene: Scene, begun: int, stop: Turn) -> Iterator[tuple[int, list[CurvePoint]]]:
+        with stop.held():
+            points = draft_curve(scene, grid(scene, COARSE), stop)
+        yield begun, points
 
     def _draw_draft(self, drafted: tuple[int, list[CurvePoint]]) -> None:
         begun, points = drafted
@@ -83,10 +109,21 @@ class Curves:
     def changed(self, scene: Scene) -> None:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
         self._task.cancel()
+        with self._lock:
+            self._buffer = []
         self._asked = without_frequency(scene)
         self._quiet.start(self._begin_when_compiled, scene)
 
+    @staticmethod
+    def _affordable(scene: Scene) -> bool:
+        """Whether the curve is short enough to be computed without being asked for."""
+        low, high = slider_range(scene, "f")
+        return curve_affordable(scene.evolve(f=0.5 * (low + high)))
+
     def _begin_when_compiled(self, scene: Scene) -> None:
+        if not self._affordable(scene):
+            self.stop()
+            return
         if COMPILER.has(scene, *PICTURE_PIECES):
             self._begin(scene)
         else:
@@ -99,6 +136,13 @@ class Curves:
             self.changed(scene)
         else:
             self.stop()
+
+    def select(self, scene: Scene, selected: str) -> str:
+        """Draw the curves of a link; return which."""
+        self._wanted = {name: name in selected.split(".") for name in self._wanted}
+        self._show_features(scene)
+        self.changed(scene)
+        return self.selection(scene)
 
     def choose(self, name: str, wanted: bool, scene: Scene) -> None:
         """Switch a direction or the stated features on or off."""
@@ -133,6 +177,8 @@ class Curves:
                 found.append((title, READY, "all points are computed"))
             elif not self._visible:
                 found.append((title, OFF, "not on the screen"))
+            elif self._asked is not None and not self._affordable(self._asked):
+                found.append((title, OFF, "it would take too long; granchain curve computes it"))
             elif name in self._remaining and self.computing:
                 found.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
             else:
@@ -142,11 +188,13 @@ class Curves:
     def close(self) -> None:
         """The visitor left."""
         self._task.cancel()
+        self._chapters.close()
         self._drafts.close()
 
-    def measured(self, measured: Measured | None) -> None:
-        """The visitor's own data."""
+    def measured(self, measured: Measured | None) -> Difference | None:
+        """Show the visitor's own data, or none; returns them beside the curve from rest, once that is there."""
         self._figure.measured(measured)
+        return self._figure.difference
 
     def _begin(self, scene: Scene) -> None:
         """Compute the selected directions that are missing; a change of f alone needs no new curve."""
@@ -162,9 +210,11 @@ class Curves:
             self._figure.begin(missing)
             self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
         self._begun += bool(missing)
+        if "rest" in missing:
+            self.compared(None)
         self._remaining, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
-            self._task.start(Sweep(scene, missing, self._report, lambda: self._host.busy))
+            self._task.start(Sweep(scene, missing, self._report, lambda: self._host.busy, self._host.session.used))
         else:
             self._task.cancel()
 
@@ -183,6 +233,8 @@ class Curves:
     def _draw(self) -> None:
         with self._lock:
             buffer, self._buffer = self._buffer, []
+        if not buffer:  # they were another scene's
+            return
         points: dict[str, list[CurvePoint]] = {}
         for progress in buffer:
             points.setdefault(progress.direction, []).extend(progress.points)
@@ -195,6 +247,9 @@ class Curves:
                     self._computed[progress.direction] = self._key
                     self._figure.finished(progress.direction)
                     self._placed()
+                    if progress.direction == "rest":
+                        self._chapters.name(self._figure.points("rest"), self._key)
+                    self.compared(self._figure.difference)
             self._done = self._overall(buffer[-1])
             self._bar.update_state(done=self._done)
 
@@ -204,6 +259,12 @@ class Curves:
             return -1.0
         place = self._remaining.index(progress.direction)
         return (place + progress.done) / len(self._remaining)
+
+    def _show_chapters(self, chapters: list[dict[str, Any]]) -> None:
+        """Chapters with their heights on the axis, and the marks that occur, for the key."""
+        factor = self._figure.factor
+        places = [{**one, "height": one["force"] / factor} for one in chapters]
+        self._bar.update_state(chapters=places, kinds=self._figure.kinds() if chapters else [])
 
     def _ended(self, status: str, _: str) -> None:
         if status == "failed":

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from granchain_core import Cancelled, CurvePoint, Scene, iter_curve
+from granchain_core import CurvePoint, Scene, iter_curve
+from granchain_core.stop import Stop
 
-from ...session.session import slider_range
+from ...serve.queues import SWEEPS
+from ...serve.shared import Shared
+from ...serve.turns import Account
+from ...session.session import slider_range, without_frequency
 from ...session.task import Job
 
 DIRECTIONS = ("rest", "up", "down")
@@ -53,48 +59,66 @@ def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
 class Sweep:
     """The work of one request on a worker thread: some directions of one scene, one after the other.
 
-    It waits while `busy` returns True.
+    It waits while `busy` returns True. Visitors at the same knobs share one computation.
     """
 
     scene: Scene
     directions: list[str]
     report: Callable[[Progress], None]
     busy: Callable[[], bool]
+    used: Account
 
     def __call__(self, job: Job) -> None:
-        """Compute everything, reporting as it comes; what was reported stays when the job is cancelled."""
+        """Report everything as it comes; what was reported stays when the job is cancelled."""
         for direction in self.directions:
-            (self._from_rest if direction == "rest" else self._carried)(direction, job)
+            key = without_frequency(self.scene), direction
+            with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, direction), job.stop,
+                                              self.used)) as found:
+                for progress in found:
+                    job.stop.check()
+                    self.report(progress)
+                    job.give_way(self.busy)
 
-    def _from_rest(self, direction: str, job: Job) -> None:
-        found: list[CurvePoint] = []
-        frequencies = grid(self.scene, COARSE)
-        finest = 0.26 * float(frequencies[1] - frequencies[0])
-        for number in range(_PASSES + 1):
-            low, high = number / (_PASSES + 1), (number + 1) / (_PASSES + 1)
-            found += self._points(frequencies, direction, job, low, high)
-            self.report(Progress(direction, [], high, complete=number == _PASSES, covers=True))
-            frequencies = midpoints(found, finest)
 
-    def _carried(self, direction: str, job: Job) -> None:
-        self._points(grid(self.scene, _SWEEP), direction, job, 0.0, 1.0)
-        self.report(Progress(direction, [], 1.0, complete=True, covers=True))
+def _computed(scene: Scene, direction: str, stop: Stop) -> Iterator[Progress]:
+    """One curve, from coarse to fine. Raises `Cancelled`."""
+    if direction != "rest":
+        yield from _points(scene, grid(scene, _SWEEP), direction, stop, 0.0, 1.0)
+        yield Progress(direction, [], 1.0, complete=True, covers=True)
+        return
+    found: list[CurvePoint] = []
+    frequencies = grid(scene, COARSE)
+    finest = 0.26 * float(frequencies[1] - frequencies[0])
+    for number in range(_PASSES + 1):
+        low, high = number / (_PASSES + 1), (number + 1) / (_PASSES + 1)
+        for progress in _points(scene, frequencies, direction, stop, low, high):
+            found += progress.points
+            yield progress
+        yield Progress(direction, [], high, complete=number == _PASSES, covers=True)
+        frequencies = midpoints(found, finest)
 
-    def _points(self, frequencies: np.ndarray, direction: str, job: Job, low: float, high: float) -> list[CurvePoint]:
-        """Compute `frequencies`, reporting as they come; their share of the progress is `low` to `high`.
 
-        Raises `Cancelled`.
-        """
-        found: list[CurvePoint] = []
-        if not len(frequencies):
-            return found
-        for point in iter_curve(self.scene, frequencies, start=direction, stop=job.stop):
-            if job.stop:
-                raise Cancelled
-            found.append(point)
-            done = low + (high - low) * len(found) / len(frequencies)
-            self.report(Progress(direction, [point], done))
-            job.give_way(self.busy)
-        if job.stop:
-            raise Cancelled
-        return found
+def _points(scene: Scene, frequencies: np.ndarray, direction: str, stop: Stop, low: float,
+            high: float) -> Iterator[Progress]:
+    """Compute `frequencies`, reporting as they come; their share of the progress is `low` to `high`."""
+    if not len(frequencies):
+        return
+    for number, point in enumerate(iter_curve(scene, frequencies, start=direction, stop=stop), 1):
+        stop.check()
+        yield Progress(direction, [point], low + (high - low) * number / len(frequencies))
+    stop.check()
+
+
+def _whole(found: list[Progress]) -> list[Progress]:
+    """A finished curve, as it is kept for the next visitor: all points at once."""
+    points = [point for progress in found for point in progress.points]
+    return [Progress(found[-1].direction, points, 1.0, complete=True, covers=True)]
+
+
+def _size(progress: Progress) -> int:
+    """Memory [bytes]: the states of the points, and some numbers and words."""
+    return sum(2000 + point.state.displacement.nbytes + point.state.velocity.nbytes for point in progress.points)
+
+
+#: Curves of all visitors.
+CURVES_SHARED: Shared[Progress] = Shared(SWEEPS, 50_000_000, _size, _whole, turns=False)

@@ -11,17 +11,16 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Range1d, Sp
 from bokeh.plotting import figure
 
 from granchain_core import CurvePoint, Run
-from granchain_core.experiment import Feature, Measured
-from granchain_core.steady.resonance import Place, place_of
+from granchain_core.experiment import Difference, Feature, Measured, compared
+from granchain_core.steady.curve.resonance import Place, place_of
 
 from ...format import prefixed
 from ...frames import round_up
 from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
-from ...pictures.axes import in_words
 from ...pictures.curve import DASHES, curve_columns, curve_tooltips
+from ...pictures.measured import COLUMNS, TOOLTIPS, measured_columns
+from ...pictures.regimes import REGIMES, SYMBOLS, regime_key
 from ...pictures.theme import GREY
-
-_MEASURED = ("frequency", "force", "value", "low", "high")
 
 
 class Curve:
@@ -35,7 +34,7 @@ class Curve:
         self._shown: tuple[float, float | None] = (0.0, None)
         self._place: tuple[object, ...] = ()
         self._now = ColumnDataSource({"frequency": [], "force": []})
-        self._measured = ColumnDataSource({name: [] for name in _MEASURED})
+        self._measured = ColumnDataSource({name: [] for name in COLUMNS})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
         self._measurement: Measured | None = None
         self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in DASHES}
@@ -48,8 +47,9 @@ class Curve:
         self._marks()
 
     def _frame(self, choose: Callable[[float], None]) -> figure:
-        plot = quiet_figure(58, 16, x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        plot = quiet_figure(58, 26, name="resonance curve", x_range=Range1d(0, 1), y_range=Range1d(0, 1))
         plot.min_border_top = 10
+        plot.min_border_bottom = 6
         plot.xaxis.axis_label = "drive frequency f (Hz)"
         quiet_axis(plot.yaxis[0], OUTPUT)
         plot.on_event(Tap, lambda event: choose(event.x))
@@ -82,20 +82,22 @@ class Curve:
                                  text_color=GREY, x_offset=-3)
         plot.add_tools(HoverTool(renderers=[feature], line_policy="interp",
                                  tooltips=[("stated", "@label"), ("source", "@source")]))
-        self._bars = plot.segment("frequency", "low", "frequency", "high", source=self._measured,
-                                  line_width=2)
+        self._bars = plot.segment("frequency", "low", "frequency", "high", source=self._measured, line_width=1,
+                                  level="overlay")
         self._dots = plot.scatter("frequency", "force", source=self._measured, marker="square", size=7,
-                                  line_width=2)
-        plot.add_tools(HoverTool(renderers=[self._dots], tooltips=[
-            ("measured at", "@frequency{0.0} Hz"), ("force", "@value")]))
+                                  fill_color=None, line_width=1.2, level="overlay")
+        plot.add_tools(HoverTool(renderers=[self._dots], tooltips=TOOLTIPS))
         self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=OUTPUT,
                                  line_width=3, level="overlay")
+
+    def fit(self, narrow: bool) -> None:
+        """Fewer numbers on the axis where there is little room."""
+        self.figure.xaxis[0].ticker.desired_num_ticks = 3 if narrow else 5
 
     def ink(self, colour: str, thick: float) -> None:
         """The colour of measured data and of the current point's ring: dark on light, light on dark."""
         for renderer in (self._bars, self._dots, self._dot):
             renderer.glyph.line_color = colour
-        self._dots.glyph.fill_color = colour
         self._labels.glyph.text_color = colour
         self._dot.glyph.size = 15 * thick
 
@@ -134,11 +136,26 @@ class Curve:
         self._points[direction] = []
         self.add(direction, points, covers=True)
 
+    @property
+    def factor(self) -> float:
+        """Newtons for one unit of the axis."""
+        return self._scale[0]
+
+    def points(self, direction: str) -> list[CurvePoint]:
+        """The points of a direction in ascending frequency."""
+        return sorted(self._points[direction], key=lambda point: point.frequency)
+
+    def kinds(self) -> list[dict[str, str]]:
+        """Name, symbol and colour of every mark that the curves have, for a key."""
+        drawn = {regime_key(p.regime.name, p.regime.period) for points in self._points.values() for p in points}
+        return [{"name": name, "symbol": SYMBOLS[marker], "colour": colour}
+                for name, (marker, colour, _) in REGIMES.items() if name in drawn]
+
     def place(self, run: Run) -> Place | None:
         """Where a run lies on the whole curve from rest; None while there is none."""
         if not self._whole:
             return None
-        points = sorted(self._points["rest"], key=lambda point: point.frequency)
+        points = self.points("rest")
         transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
         return place_of([p.frequency for p in points], [p.max_output_force for p in points],
                         [p.regime.period for p in points], run.scene.f, run.max_output_force, transmission)
@@ -146,6 +163,8 @@ class Curve:
     def finished(self, direction: str) -> None:
         """All points of a direction are there."""
         self._whole = self._whole or direction == "rest"
+        if self._measurement is not None:
+            self.measured(self._measurement)
 
     def clear(self) -> None:
         """Remove all curves, because another scene was opened."""
@@ -180,14 +199,19 @@ class Curve:
         self._measurement = measured
         self._rescale()
         if measured is None:
-            self._measured.data = {name: [] for name in _MEASURED}
+            self._measured.data = {name: [] for name in COLUMNS}
             return
-        factor = self._scale[0]
-        error = np.zeros(len(measured.force)) if measured.error is None else np.asarray(measured.error)
-        force = np.asarray(measured.force)
-        self._measured.data = {"frequency": measured.frequency, "force": force / factor,
-                               "value": [in_words(f, "N", 5) for f in force],
-                               "low": (force - error) / factor, "high": (force + error) / factor}
+        found = self.difference
+        self._measured.data = measured_columns(measured, self._scale[0], None if found is None else found.residuals)
+
+    @property
+    def difference(self) -> Difference | None:
+        """The visitor's data beside the curve from rest; None where either is not there."""
+        if self._measurement is None or not self._whole:
+            return None
+        points = sorted(self._points["rest"], key=lambda point: point.frequency)
+        return compared(self._measurement, np.array([point.frequency for point in points]),
+                        np.array([point.max_output_force for point in points]))
 
     def _rescale(self) -> None:
         curves = (*self._points.values(), *self._before.values())
@@ -204,7 +228,7 @@ class Curve:
             self.now(*self._shown)
             if self._measurement is not None:
                 self.measured(self._measurement)
-        self.figure.y_range.end = 1.05 * high / scale[0]
+        self.figure.y_range.end = 1.15 * high / scale[0]  # room for the names of the peaks
         self.figure.yaxis[0].axis_label = f"largest output force ({scale[1]}N)"
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:

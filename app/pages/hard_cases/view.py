@@ -71,8 +71,8 @@ def described(name: str, rows: list[Check]) -> dict[str, Any]:
     """The rows of one case as the browser shows them, and its time; a value that could not be computed has its
     sentence as note."""
     return {"time": duration(rows[0].seconds), "rows": [
-        {"what": row.case.removeprefix(f"{name}: "), "value": value_beside(row.figure, row.bar),
-         "limit": digits_of(row.bar, 3), "passed": row.passed, "note": row.note} for row in rows]}
+        {"what": row.case.removeprefix(f"{name}: "), "value": value_beside(row.value, row.limit),
+         "limit": digits_of(row.limit, 3), "passed": row.passed, "note": row.note} for row in rows]}
 
 
 def summary(found: dict[str, list[Check]]) -> str:
@@ -87,7 +87,7 @@ def summary(found: dict[str, list[Check]]) -> str:
     first = missed[0]
     more = f", and {len(missed) - 1} more" if len(missed) > 1 else ""
     return (f"{run}: {len(missed)} of {len(every)} values FAILED: "
-            f"{first.case}, {value_beside(first.figure, first.bar)} against {digits_of(first.bar, 3)}{more}.")
+            f"{first.case}, {value_beside(first.value, first.limit)} against {digits_of(first.limit, 3)}{more}.")
 
 
 def picture_message(name: str, picture: Picture, theme: Theme) -> dict[str, Any]:

@@ -11,9 +11,9 @@ from multiprocessing.process import BaseProcess
 from granchain_core import Cancelled
 from granchain_core.children import end_with_parent, starting
 from granchain_core.hard import CASES, Case, Check, Picture, run_case
+from granchain_core.stop import Stop
 
 from ...serve.delays import STOP_POLL
-from ...serve.queues import Stop
 
 #: Niceness: the page's pictures come first when cores are scarce.
 _NICE = 5

@@ -13,6 +13,7 @@ from panel.io import unlocked
 from granchain_core import Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
 from granchain_core.diagram.cells import cell_of, empty_cells
+from granchain_core.stop import Stop
 from granchain_core.warm import ORBIT
 
 from ...parts.component import Component
@@ -20,7 +21,7 @@ from ...pictures.diagram import now_row
 from ...pictures.theme import THEMES, Theme
 from ...serve.compiler import PICTURE_PIECES
 from ...serve.delays import CELLS_EVERY, MAP_QUIET
-from ...serve.queues import LONG, Stop
+from ...serve.queues import LONG
 from ...session.debounce import Debounce
 from ...session.hooks import Actions, Page
 from ...session.host import Host

@@ -7,7 +7,7 @@ import { element } from "../../parts/dom.js";
 class WholeChain extends ChainDrawing {
   measure() {
     const box = this.canvas.getBoundingClientRect();
-    super.measure(box, Math.min(90, 0.12 * box.width));
+    super.measure(box, Math.min(60, 0.08 * box.width));
   }
 
   words() {}
@@ -28,7 +28,7 @@ class PushedChain extends WholeChain {
 
   contact(c, force, frames, place, radius, y) {
     if (c > 0) super.contact(c, force, frames, place, radius, y);
-    else this.arrow(force, place(1) - radius, y, this.left - this.span / frames.beads);
+    else this.arrow(force, place(1) - radius, y, this.left);
   }
 
   // With its tip at x = `tip`; the largest force is `room` long, but at least 30 px.

@@ -7,7 +7,7 @@ import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
 class DisturbedChain extends ChainDrawing {
   // A mode has no size of its own: the largest displacement is drawn as this part of the beads' distance.
   load(frames) {
-    this.largest = Math.max(...frames.radii);
+    this.rest(frames.radii);
     this.exaggeration = 0.42;
     this.beads = frames.beads;
     this.force = 1;
@@ -15,10 +15,20 @@ class DisturbedChain extends ChainDrawing {
 
   contact() {}
 
-  bead(x, y, radius, share) {
+  // The lines below the beads are as far apart as the beads, however flat the picture is.
+  widest() {
+    return Number.POSITIVE_INFINITY;
+  }
+
+  // Smaller than their distance, so that a disturbance does not draw them over each other.
+  size(radius) {
+    return Math.min(0.8 * radius, 0.3 * this.height);
+  }
+
+  bead(i, place, y, sizes, share) {
     const { context: g, ink } = this;
     g.beginPath();
-    g.arc(x, y, radius, 0, 2 * Math.PI);
+    g.arc(place(i), y, this.size(sizes[i - 1]), 0, 2 * Math.PI);
     g.fillStyle = ink.steel;
     g.globalAlpha = 0.35 + 0.65 * Math.min(1, share);
     g.fill();
@@ -29,14 +39,14 @@ class DisturbedChain extends ChainDrawing {
   }
 
   // The places of the beads on the orbit, behind everything else.
-  ground(frames, pitch, radius, y) {
+  ground(frames, _, radius, y) {
     const { context: g, ink } = this;
     g.strokeStyle = ink.text;
     g.lineWidth = 1;
     g.setLineDash([2, 3]);
     for (let i = 1; i <= frames.beads; i++) {
       g.beginPath();
-      g.arc(this.left + (i - 0.5) * pitch, y, radius * (frames.radii[i - 1] / this.largest), 0, 2 * Math.PI);
+      g.arc(this.home(i), y, this.size(radius * (frames.radii[i - 1] / this.largest)), 0, 2 * Math.PI);
       g.stroke();
     }
     g.setLineDash([]);

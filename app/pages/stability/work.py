@@ -12,10 +12,9 @@ from granchain_core import NumbersFailed, Scene, Settled, State
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import Mode, mode, orbit_section
 from granchain_core.orbits.search import search_orbit
-from granchain_core.steady.decide import EXAMINED_AFTER
 from granchain_core.steady.poincare import Section, iter_section
-
-from ...serve.queues import Stop
+from granchain_core.steady.settling.regime_decisions import EXAMINED_AFTER
+from granchain_core.stop import Stop
 
 PHASES = 48
 """Phases of the drive period at which the section is kept."""

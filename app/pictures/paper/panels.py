@@ -12,6 +12,7 @@ from bokeh.plotting import figure
 
 from granchain_core.experiment import Measured
 
+from ..measured import measured_over
 from ..theme import Theme, in_theme
 
 
@@ -62,6 +63,4 @@ def hollow_points(plot: figure, x: Any, y: Any, error: Any, words: str, hover: S
 def measured_curve(plot: figure, measured: Measured | None, unit: float) -> None:
     """A user's curve over one whose forces are in `unit` newtons."""
     if measured is not None:
-        error = None if measured.error is None else measured.error / unit
-        hollow_points(plot, measured.frequency, measured.force / unit, error, "measured",
-                      [("frequency", "@x{0.0} Hz"), ("force", "@y{0.000}")])
+        measured_over(plot, measured, unit)

@@ -1,0 +1,38 @@
+"""Options about a measured file: what its columns hold, where the file itself does not say it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeVar
+
+from .common import say
+
+if TYPE_CHECKING:
+    from granchain_core.experiment import Answers
+
+Found = TypeVar("Found")
+
+
+def add_answers(parser: argparse.ArgumentParser) -> None:
+    """Add the options that answer a reader's questions."""
+    parser.add_argument("--column", action="append", default=[], metavar="QUANTITY=n:UNIT",
+                        help="what column n of a data file holds: f=1:kHz, F=2:mN, sigma=3:mN, t=1:ms, v=2:mm/s, "
+                             "A0=2:µm, a=2:g, Fin=3:2.248V/kN (volts and a sensitivity), Fout=4:N; once for each")
+    parser.add_argument("--decimal", metavar="point|comma", help="the decimal mark of a data file")
+    parser.add_argument("--separator", metavar="NAME", help="semicolon, tab, comma, bar or space between its columns")
+    parser.add_argument("--dataset", metavar="NAME", help="which dataset of a digitiser's project")
+    parser.add_argument("--note", default="", metavar="TEXT", help="a note that stays with the data")
+
+
+def with_answers(arguments: argparse.Namespace, read: Callable[[Answers], Found]) -> Found:
+    """What `read` gives for the answers; where a question is left, the first rows are shown before it."""
+    from granchain_core.experiment import Unclear, answers_of
+
+    answers = answers_of(arguments.column, arguments.decimal, arguments.separator, arguments.dataset,
+                         note=arguments.note)
+    try:
+        return read(answers)
+    except Unclear as unclear:
+        say(unclear.question.table)
+        raise

@@ -1,0 +1,157 @@
+"""`granchain fit`: parameters of a scene from a measurement, with intervals, and whether the model can describe it."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from granchain_core import BadInput
+
+from .common import check_points, chosen_scene, in_background, say, show_json
+from .data_options import add_answers, with_answers
+from .options import add_json, add_scene, number, whole
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
+
+if TYPE_CHECKING:
+    from granchain_core import Fit, Scene
+    from granchain_core.fit import Free
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `fit`."""
+    add_scene(parser)
+    parser.add_argument("--data", metavar="FILE", help="a measured curve, or a series at the scene's drive frequency")
+    parser.add_argument("--features", metavar="paper", help="the peaks and valleys that the paper states, in place of "
+                                                            "--data")
+    parser.add_argument("--free", action="append", default=[], metavar="NAME=low:high",
+                        help="a parameter with its bounds [SI]: A0, k, kappa, D, K, F0 or wall; once for each")
+    parser.add_argument("--prior", action="append", default=[], metavar="NAME=mean:sd",
+                        help="what is known of a parameter beside the data")
+    parser.add_argument("--per-frequency", action="store_true", help="one A0 for each frequency")
+    parser.add_argument("--error", type=number, metavar="E",
+                        help="standard deviation of the data where the file states none: a part of each force (curve), "
+                             "N (series) or Hz (features)")
+    parser.add_argument("--elastic", action="store_true", help="compare the elastic part of the output force")
+    parser.add_argument("--start", default="rest", metavar="rest|up|down")
+    parser.add_argument("--design", type=whole, default=0, metavar="n", help="sets of parameters that are tried first")
+    parser.add_argument("--points", type=whole, default=71, metavar="n",
+                        help="frequencies, over the scene's range, among which peaks and valleys are sought")
+    parser.add_argument("--no-intervals", action="store_true", help="best values alone")
+    parser.add_argument("--out", metavar="FILE.json", help="write the result, with its landscape, as JSON")
+    add_answers(parser)
+    add_json(parser)
+    add_picture(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Fit parameters of a scene."""
+    import json
+    from pathlib import Path
+
+    from granchain_core import fit
+    from granchain_core.store import check_writable
+
+    chosen = chosen_scene(arguments)
+    check_picture(arguments.picture)
+    if arguments.out:
+        check_writable(arguments.out)
+    target = _target(arguments, chosen)
+    free = _free(arguments, target)
+
+    def progress(count: int) -> None:
+        if sys.stderr.isatty():
+            print(f"\r{count} sets of parameters", end="", file=sys.stderr, flush=True)
+
+    found = in_background(lambda stop: fit(chosen, target, free, arguments.design, not arguments.no_intervals, stop,
+                                           progress))
+    if sys.stderr.isatty():
+        say()
+    if arguments.out:
+        values, misfits = found.landscape
+        landscape = {one.name: values[:, i].tolist() for i, one in enumerate(found.free)}
+        Path(arguments.out).write_text(json.dumps({**found.to_json(), "landscape": {
+            **landscape, "misfit": misfits.tolist()}}, indent=1), encoding="utf-8")
+    write_picture(arguments.picture, f"A fit of {chosen.name}", lambda theme: _drawn(found, theme))
+    if arguments.json:
+        show_json(found.to_json())
+    else:
+        _show(found)
+
+
+def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
+    """What is compared."""
+    import numpy as np
+
+    from granchain_core.experiment import Measured, Series, read_experiment, stated_features
+    from granchain_core.fit import CurveTarget, FeatureTarget, SeriesTarget
+
+    if (arguments.data is None) == (arguments.features is None):
+        raise BadInput("Give either --data FILE or --features paper.")
+    if arguments.error is not None and not arguments.error > 0.0:
+        raise BadInput(f"--error {arguments.error:g} must be above 0.")
+    if arguments.features is not None:
+        if arguments.features != "paper":
+            raise BadInput(f"--features {arguments.features!r} is not known; there is 'paper'.")
+        if arguments.per_frequency:
+            raise BadInput("The paper states no forces at its frequencies, so one A0 for each could make any heights; "
+                           "fit a constant one, or give --data.")
+        check_points(arguments.points, 3, 1000)
+        low, high = next(((low, high) for name, low, high in chosen.ranges if name == "f"), (20.0, 160.0))
+        grid = np.linspace(low, high, arguments.points)
+        return FeatureTarget(stated_features(), grid, arguments.error or 3.0, arguments.start)
+    found = with_answers(arguments, lambda answers: read_experiment(arguments.data, answers, ("curve", "series")))
+    say(f"{found.understood}.")
+    if isinstance(found, Measured):
+        return CurveTarget(found, arguments.error, arguments.elastic, arguments.start)
+    assert isinstance(found, Series)
+    if arguments.per_frequency or arguments.elastic:
+        raise BadInput("A series has one frequency and total forces; --per-frequency and --elastic are for curves.")
+    return SeriesTarget(found, arguments.error)
+
+
+def _free(arguments: argparse.Namespace, target: Any) -> list[Free]:
+    """The parameters that are fitted."""
+    from granchain_core.fit.parameters import free_of, per_frequency
+
+    if not arguments.free:
+        raise BadInput("Say what is fitted, for example --free A0=5e-6:14e-6 --free D=10:100.")
+    priors = {text.partition("=")[0]: text for text in arguments.prior}
+    free = [free_of(text, priors.pop(text.partition("=")[0], None)) for text in arguments.free]
+    if priors:
+        raise BadInput(f"--prior {next(iter(priors))} belongs to no --free.")
+    if arguments.per_frequency and not any(one.name == "A0" for one in free):
+        raise BadInput("--per-frequency needs --free A0=low:high.")
+    return per_frequency(free, target.frequencies) if arguments.per_frequency else free
+
+
+def _show(found: Fit) -> None:
+    """A fit as a table and a sentence."""
+    print("parameter        best                95 % interval             bounds")
+    for i, one in enumerate(found.free):
+        interval = "–"
+        if found.profiles:
+            there = found.profiles[i]
+            interval = (f"{'below ' if there.open_low else ''}{there.low:.5g} to "
+                        f"{'above ' if there.open_high else ''}{there.high:.5g}")
+        print(f"{one.name:12s} {found.best[i]:12.6g} {one.unit:9s} {interval:>26s}   {one.low:g} to {one.high:g}")
+    print(found.sentence)
+    for f, model, residual, regime in _rows(found):
+        print(f"{f:10.6g} Hz  model {model:10.5g}  {residual:+6.2f} standard deviations  {regime}")
+    say(f"{len(found.landscape[1])} sets of parameters in {found.wall_s:.1f} s")
+
+
+def _rows(found: Fit) -> list[tuple[float, float, float, str]]:
+    """Frequency, model, residual and regime of every datum that has a frequency."""
+    regimes = found.evaluation.regimes
+    frequencies = [float(f) for f in found.target.frequencies]
+    named = regimes if len(regimes) == len(frequencies) else [""] * len(frequencies)
+    return list(zip(frequencies, map(float, found.evaluation.model), map(float, found.evaluation.residuals), named,
+                    strict=True))
+
+
+def _drawn(found: Fit, theme: Any) -> Any:
+    from app.pictures.fit import fit
+
+    return fit(found, theme)

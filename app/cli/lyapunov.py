@@ -1,0 +1,38 @@
+"""`granchain lyapunov`: all Lyapunov exponents of a motion, and the dimension of its attractor."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from app.cli.common import chosen_scene, in_background, show_json, show_percent
+from app.cli.options import add_json, add_scene, whole
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lyapunov`."""
+    add_scene(parser)
+    parser.add_argument("--periods", type=whole, default=400, metavar="P",
+                        help="drive periods over which the exponents are means")
+    add_json(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Measure the Lyapunov spectrum of the motion that a scene settles to."""
+    from granchain_core import lyapunov_spectrum
+
+    chosen = chosen_scene(arguments)
+    progress = show_percent if sys.stderr.isatty() else None
+    found = in_background(lambda stop: lyapunov_spectrum(chosen, arguments.periods, stop=stop, progress=progress))
+    if arguments.json:
+        show_json({"exponents": found.exponents.tolist(), "errors": found.errors.tolist(), "resolved": found.resolved,
+                   "dimension": found.dimension, "mean_trace": found.mean_trace, "liouville": found.liouville,
+                   "periods": found.periods})
+        return
+    dimension = "not known, for it depends on exponents that are not" if found.dimension is None \
+        else f"{found.dimension:.4f}"
+    print(f"{chosen.name}: {found.resolved} of {len(found.exponents)} exponents resolved over {found.periods} periods; "
+          f"Kaplan–Yorke dimension of the section {dimension}")
+    for i, (exponent, error) in enumerate(zip(found.exponents, found.errors, strict=True), start=1):
+        known = f"± {error:.1e}" if i <= found.resolved else "at most"
+        print(f"{i:4d}  {exponent:+10.5f} per period  {known}")

@@ -1,0 +1,82 @@
+"""`granchain spectrum`: the lines of a force, and the transfer from the input to the output force."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from app.cli.common import chosen_scene, in_background, show_json
+from app.cli.options import add_json, add_scene, whole
+from app.cli.picture import add_option as add_picture
+from app.cli.picture import check_picture, write_picture
+
+if TYPE_CHECKING:
+    from granchain_core import Run, Scene, Spectrum, Stop, Transfer
+
+#: Lines that are printed.
+_SHOWN = 12
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `spectrum`."""
+    add_scene(parser)
+    parser.add_argument("--force", default="output", metavar="input|output|elastic", help="whose lines are wanted")
+    parser.add_argument("--record", type=whole, default=64, metavar="R",
+                        help="periods recorded of a motion without a period; of an orbit it is one")
+    parser.add_argument("--samples", type=whole, default=256, metavar="S", help="samples a period, an even number")
+    add_json(parser)
+    add_picture(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Compute the spectrum of a force."""
+    from granchain_core import spectrum, transfer
+    from granchain_core.analysis.spectrum import FORCES
+    from granchain_core.errors import unknown_name
+
+    chosen = chosen_scene(arguments)
+    check_picture(arguments.picture)
+    if arguments.force not in FORCES:
+        raise unknown_name("force", arguments.force, FORCES)
+    motion = in_background(lambda stop: _motion(chosen, arguments.record, arguments.samples, stop))
+    found, through = spectrum(motion, arguments.force), transfer(motion) if motion.regime.period else None
+    write_picture(arguments.picture, f"Spectrum of {chosen.name}", lambda theme: _drawn(found, theme))
+    if arguments.json:
+        show_json(_json(found, through))
+        return
+    _show(found, through)
+
+
+def _motion(chosen: Scene, record: int, samples: int, stop: Stop) -> Run:
+    """The orbit to which a scene settles, or a longer record of a motion that has none."""
+    from granchain_core import run, settle
+
+    settled = settle(chosen, samples=samples, stop=stop)
+    return settled.run if settled.regime.period else run(chosen, 0, record, samples, start=settled.state, stop=stop)
+
+
+def _json(found: Spectrum, through: Transfer | None) -> dict[str, Any]:
+    lines = None if through is None else {"frequency": through.frequency.tolist(), "gain": through.gain.tolist(),
+                                          "phase": through.phase.tolist()}
+    return {"force": found.force, "period": found.period, "resolution": found.resolution, "aliasing": found.aliasing,
+            "frequency": found.frequency.tolist(), "amplitude": found.amplitude.tolist(), "phase": found.phase.tolist(),
+            "transfer": lines}
+
+
+def _show(found: Spectrum, through: Transfer | None) -> None:
+    """The largest lines as a table."""
+    gains = {} if through is None else dict(zip(through.frequency.tolist(), through.gain.tolist(), strict=True))
+    kind = f"Fourier series of a motion of period {found.period}" if found.period else "windowed record, no lines"
+    print(f"{found.run.scene.name}: {found.force} force, {kind}; resolution {found.resolution:.4g} Hz, "
+          f"folded back about {found.aliasing:.1e} N")
+    print("frequency_Hz  amplitude_N  phase_rad  output_over_input")
+    for i in sorted(found.amplitude.argsort()[::-1][:_SHOWN]):
+        gain = gains.get(float(found.frequency[i]))
+        print(f"{found.frequency[i]:12.6g}  {found.amplitude[i]:11.5g}  {found.phase[i]:9.4f}  "
+              f"{'–' if gain is None else f'{gain:.4g}':>17}")
+
+
+def _drawn(found: Spectrum, theme: Any) -> Any:
+    from app.pictures.spectrum import spectrum
+
+    return spectrum(found, theme)

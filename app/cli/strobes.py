@@ -1,0 +1,67 @@
+"""`granchain strobes`: a bead's states once a drive period over a knob, the bifurcation diagram."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from app.cli.common import chosen_scene, in_background, say, show_json, show_percent
+from app.cli.options import add_json, add_scene, values_from, whole
+from app.cli.picture import add_option as add_picture
+from app.cli.picture import check_picture, write_picture
+from granchain_core.errors import check_range
+
+if TYPE_CHECKING:
+    from granchain_core import StrobeDiagram
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `strobes`."""
+    add_scene(parser)
+    parser.add_argument("--over", required=True, metavar="KNOB=a:b:n",
+                        help="n values of a knob from a to b, evenly spaced or, with :log appended, logarithmically")
+    parser.add_argument("--start", default="up", metavar="rest|up|down",
+                        help="up and down carry the state along from value to value")
+    parser.add_argument("--keep", type=whole, default=60, metavar="K", help="strobes at each value")
+    parser.add_argument("--bead", type=whole, default=1, metavar="i", help="whose strobes are printed and drawn")
+    add_json(parser)
+    add_picture(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Compute the strobe diagram of a scene."""
+    from granchain_core import strobe_diagram
+    from granchain_core.analysis.strobe_diagram import MOST_VALUES
+
+    chosen = chosen_scene(arguments)
+    check_picture(arguments.picture)
+    check_range("--bead", arguments.bead, 1, chosen.N)
+    knob, ends, spaced = values_from("--over", arguments.over, MOST_VALUES)
+    progress = show_percent if sys.stderr.isatty() else None
+    found = in_background(lambda stop: strobe_diagram(chosen, knob, spaced(*ends), arguments.start, arguments.keep,
+                                                      stop, progress))
+    for point in found.points:
+        if point.failure:
+            say(f"{knob} = {point.value:g}: {point.failure}")
+    write_picture(arguments.picture, f"Strobes of {chosen.name}", lambda theme: _drawn(found, arguments.bead, theme))
+    if arguments.json:
+        show_json(_json(found, arguments.bead))
+        return
+    print(f"{knob:>12}  distinct  regime")
+    for point in found.points:
+        print(f"{point.value:12.6g}  {point.distinct(arguments.bead):8d}  {point.failure or point.regime.sentence}")
+
+
+def _json(found: StrobeDiagram, bead: int) -> dict[str, Any]:
+    return {"knob": found.knob, "start": found.start, "bead": bead, "values": [point.value for point in found.points],
+            "regime": [point.regime.name for point in found.points],
+            "period": [point.regime.period for point in found.points],
+            "displacement": [point.strobes[:, 0, bead - 1].tolist() for point in found.points],
+            "velocity": [point.strobes[:, 1, bead - 1].tolist() for point in found.points]}
+
+
+def _drawn(found: StrobeDiagram, bead: int, theme: Any) -> Any:
+    from app.pictures.strobe_diagram import strobe_diagram
+
+    return strobe_diagram(found, bead, theme)

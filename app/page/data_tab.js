@@ -1,0 +1,157 @@
+// The data tab: the visitor's own curve, what its file leaves open, and how far the model is from it.
+
+import { button, element, paragraph, table } from "../parts/dom.js";
+
+const FORM =
+  "A curve of frequency and largest force: CSV or TSV as any spreadsheet writes it, WebPlotDigitizer, HDF5 or netCDF-4. " +
+  "What the file does not say is asked.";
+const SENSITIVITY = "V, with its sensor's sensitivity";
+const CHUNK = 0x8000; // bytes that are turned into text at once
+
+// Every byte as it is: a browser's text() would take the file for UTF-8.
+async function base64Of(file) {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  let text = "";
+  for (let at = 0; at < bytes.length; at += CHUNK) text += String.fromCharCode(...bytes.subarray(at, at + CHUNK));
+  return btoa(text);
+}
+
+async function sendFile(model, [chosen]) {
+  if (!chosen) return;
+  if (chosen.size > model.state.largest_file) model.send_msg({ do: "csv-too-large", name: chosen.name });
+  else model.send_msg({ do: "csv", name: chosen.name, content: await base64Of(chosen) });
+}
+
+// The server's sample file becomes a download.
+export function saveSample({ type, name, text }) {
+  if (type !== "sample") return;
+  const link = element("a", { download: name, href: URL.createObjectURL(new Blob([text], { type: "text/csv" })) });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+const options = (values, chosen) =>
+  values.map(([value, text]) => element("option", { value, textContent: text, selected: value === chosen }));
+
+// What the visitor has chosen so far, kept while the tab is drawn again; another question starts anew.
+let asked = "";
+let answers = {};
+
+function answersTo(question) {
+  const name = JSON.stringify(question);
+  if (name === asked) return answers;
+  asked = name;
+  answers = {
+    columns: question.columns.map(([, , quantity, unit]) => ({ quantity, unit })),
+    decimal: "point",
+    dataset: question.datasets[0] ?? "",
+  };
+  return answers;
+}
+
+// The two choices over a column; the units are those of the quantity, and volts need a number.
+function columnChoice(question, place, chosen) {
+  const [number, title] = question.columns[place];
+  const quantity = element("select", { ariaLabel: `what column ${number} holds` });
+  quantity.append(...options([["", "not used"], ...question.quantities], chosen.quantity));
+  const unit = element("select", { ariaLabel: `unit of column ${number}` });
+  const volts = element("input", { size: 10, value: "2.248V/kN", ariaLabel: `sensitivity of column ${number}` });
+  const known = () => question.units[chosen.quantity] ?? [];
+  const isSensitivity = () => chosen.quantity && !known().includes(chosen.unit);
+  const fill = () => {
+    const units = known().map((one) => [one, one]);
+    if (chosen.quantity && chosen.quantity !== "frequency") units.push(["V", SENSITIVITY]);
+    unit.replaceChildren(...options(units, isSensitivity() ? "V" : chosen.unit));
+    unit.hidden = !chosen.quantity;
+    volts.hidden = !isSensitivity();
+    if (isSensitivity()) volts.value = chosen.unit;
+  };
+  quantity.addEventListener("change", () => {
+    chosen.quantity = quantity.value;
+    if (!known().includes(chosen.unit)) chosen.unit = known()[0] ?? "";
+    fill();
+  });
+  unit.addEventListener("change", () => {
+    chosen.unit = unit.value === "V" ? "2.248V/kN" : unit.value;
+    fill();
+  });
+  volts.addEventListener("input", () => {
+    chosen.unit = volts.value;
+  });
+  fill();
+  return element("th", {}, `${number}: ${title || "no title"}`, quantity, unit, volts);
+}
+
+function select(ariaLabel, values, kept, name) {
+  const made = element("select", { ariaLabel });
+  made.append(...options(values, kept[name]));
+  made.addEventListener("change", () => {
+    kept[name] = made.value;
+  });
+  return made;
+}
+
+// What the file leaves open: its first rows, a quantity and a unit for every column, and a button that reads it.
+function questionForm(model, question) {
+  const kept = answersTo(question);
+  const about = (what) => question.about.includes(what);
+  const head = element("tr", {}, element("th", { textContent: "line" }));
+  const choice = (place) => columnChoice(question, place, kept.columns[place]);
+  const named = ([number, title]) => element("th", { textContent: `${number}: ${title}` });
+  head.append(...question.columns.map((column, place) => (about("columns") ? choice(place) : named(column))));
+  const body = question.rows.map(([line, fields]) =>
+    element("tr", {}, ...[line, ...fields].map((textContent) => element("td", { textContent }))),
+  );
+  const row = element("div", { className: "row" });
+  if (about("dataset")) {
+    const names = question.datasets.map((name) => [name, name]);
+    row.append("dataset", select("dataset", names, kept, "dataset"));
+  }
+  if (about("decimal")) {
+    const marks = ["point", "comma"].map((name) => [name, `decimal ${name}`]);
+    row.append(select("decimal mark", marks, kept, "decimal"));
+  }
+  const send = () => {
+    const columns = kept.columns.flatMap(({ quantity, unit }, i) =>
+      quantity ? [[quantity, question.columns[i][0], unit]] : [],
+    );
+    model.send_msg({
+      do: "csv-answer",
+      columns: about("columns") ? columns : [],
+      decimal: about("decimal") ? kept.decimal : "",
+      dataset: about("dataset") ? kept.dataset : "",
+    });
+  };
+  row.append(button("read it so", send, { className: "primary" }));
+  const rows = element("table", { className: "asked" }, element("thead", {}, head), element("tbody", {}, ...body));
+  return [paragraph(question.reason, "verdict"), row, rows];
+}
+
+// The misfit in newtons, and every difference.
+function misfitTable({ sentence, rows, left }) {
+  const body = element("tbody");
+  for (const row of rows) body.append(element("tr", {}, ...row.map((textContent) => element("td", { textContent }))));
+  const titles = ["frequency", "measured", "model", "measured less model"];
+  const more = left ? [paragraph(`and ${left} more`, "soft")] : [];
+  return [paragraph(sentence, "verdict"), table(titles, body), ...more];
+}
+
+export function dataTab(model) {
+  const { understood, question, misfit } = model.state;
+  const ariaLabel = "your measured curve: frequency, force, optional error";
+  const accept = ".csv,.tsv,.txt,.dat,.json,.tar,.h5,.hdf5,.nc,text/csv";
+  const file = element("input", { type: "file", accept, ariaLabel });
+  file.addEventListener("change", async () => {
+    await sendFile(model, file.files);
+    file.value = "";
+  });
+  const remove = button("remove", () => model.send_msg({ do: "csv-remove" }));
+  const sample = button("sample file", () => model.send_msg({ do: "csv-sample" }), {
+    title: "A curve computed with noise, to try this with",
+  });
+  const choice = element("div", { className: "row" }, file, sample, ...(understood ? [remove] : []));
+  const asking = question ? questionForm(model, question) : [paragraph(understood || FORM, "soft")];
+  const waits =
+    understood && !misfit ? [paragraph("The misfit is said when the curve from rest is complete.", "soft")] : [];
+  return { content: [choice, ...asking, ...(question ? [] : misfit ? misfitTable(misfit) : waits)] };
+}

@@ -1,0 +1,180 @@
+"""The visitor's own measurement: read in the background, asked about where it is unclear, compared with the curve."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import tempfile
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from granchain_core import BadInput
+from granchain_core.experiment import (
+    Answers,
+    Difference,
+    Measured,
+    Question,
+    Series,
+    Shaker,
+    Unclear,
+    answers_of,
+    read_data,
+    read_experiment,
+)
+from granchain_core.experiment.labelled import HDF5
+from granchain_core.experiment.measured import MOST_BYTES, MOST_ROWS
+from granchain_core.experiment.reader import KINDS
+from granchain_core.experiment.units import UNITS
+
+from ..pages.curve.page import Curves
+from ..parts.component import Component
+from ..pictures.axes import in_words
+from ..serve.queues import FILES
+from ..session.hooks import Actions
+from ..session.host import Host
+from ..session.task import Job, Task
+
+#: What a column of a curve may hold, and its units.
+CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error of the force"}
+_DIMENSIONS = {"frequency": "frequency", "force": "force", "error": "force"}
+#: Most rows of the table of differences.
+_ROWS = 100
+#: Files to try it with: computed by granchain with noise, and they say so.
+SAMPLES = Path(__file__).resolve().parents[2] / "assets" / "samples"
+
+_TOO_LARGE = (f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve of frequency and force needs a few "
+              "kB.")
+
+
+class Measurement:
+    """Actions of the data tab. `tabs` shows what was understood, what is asked, and the misfit."""
+
+    def __init__(self, host: Host, tabs: Component, curves: Curves) -> None:
+        self._host = host
+        self._tabs = tabs
+        self._curves = curves
+        self._task = Task(host, FILES, _say_nothing, "Reading the measurement", host.failed)
+        self._name, self._content, self._answers = "", b"", Answers()
+        curves.compared = self._compared
+        self.actions: Actions = {"csv": self._read, "csv-answer": self._answer, "csv-too-large": self._too_large,
+                                 "csv-remove": self._remove, "csv-sample": self._sample}
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+        self._curves.compared = lambda _: None
+
+    def _read(self, message: dict[str, Any]) -> None:
+        self._name, self._answers = str(message.get("name", "data"))[:60], Answers()
+        self._content = _content(message)
+        if self._tabs.state.get("question"):
+            self._tabs.update_state(question=None)
+        self._task.start(partial(self._in_thread, self._content, self._answers))
+
+    def _answer(self, message: dict[str, Any]) -> None:
+        """What the visitor chose: columns as [quantity, number, unit], and words."""
+        columns = message.get("columns", [])
+        if not isinstance(columns, list) or not all(isinstance(one, list) and len(one) == 3 for one in columns):
+            raise BadInput("The choice of columns has not the form that the page sends; choose the file again.")
+        words = [f"{str(quantity)[:20]}={str(number)[:6]}:{str(unit)[:30]}" for quantity, number, unit in columns]
+        given = answers_of(words, _word(message, "decimal"), None, _word(message, "dataset"))
+        before = self._answers
+        self._answers = replace(before, columns=given.columns or before.columns,
+                                decimal=given.decimal or before.decimal, dataset=given.dataset or before.dataset)
+        self._task.start(partial(self._in_thread, self._content, self._answers))
+
+    def _in_thread(self, content: bytes, answers: Answers, job: Job) -> None:
+        """In a worker thread: read the file. A `BadInput` names the line that cannot be read."""
+        try:
+            found = _found(content, answers, self._name)
+        except Unclear as unclear:
+            job.next_tick(self._ask, unclear.question)
+            return
+        job.next_tick(self._show, found)
+
+    def _ask(self, question: Question) -> None:
+        self._tabs.update_state(question={
+            "reason": question.reason, "about": list(question.about), "datasets": list(question.datasets),
+            "columns": [[one.number, one.title, one.quantity if one.quantity in CHOICES else "", one.likely_unit]
+                        for one in question.columns],
+            "rows": [[line, list(fields)] for line, fields in question.rows],
+            "quantities": list(CHOICES.items()),
+            "units": {name: list(UNITS[dimension]) for name, dimension in _DIMENSIONS.items()}})
+
+    def _show(self, measured: Measured) -> None:
+        difference = self._curves.measured(measured)
+        self._tabs.update_state(understood=f"{self._name}: {measured.understood}", question=None,
+                                misfit=_misfit(difference))
+
+    def _compared(self, difference: Difference | None) -> None:
+        """The curve from rest is complete, or a new one was begun."""
+        self._tabs.update_state(misfit=_misfit(difference))
+
+    def _sample(self, _: dict[str, Any]) -> None:
+        path = SAMPLES / "curve.csv"
+        self._tabs.send(type="sample", name=path.name, text=path.read_text(encoding="utf-8"))
+
+    def _too_large(self, _: dict[str, Any]) -> None:
+        raise BadInput(_TOO_LARGE)
+
+    def _remove(self, _: dict[str, Any]) -> None:
+        self._task.cancel()
+        self._curves.measured(None)
+        self._tabs.update_state(understood="", question=None, misfit=None)
+
+
+def _content(message: dict[str, Any]) -> bytes:
+    """The bytes of the file: the page sends them in base64, so that every encoding arrives as it is."""
+    coded = message.get("content")
+    try:
+        content = base64.b64decode(coded if isinstance(coded, str) else "!", validate=True)
+    except (binascii.Error, ValueError):
+        raise BadInput("The measurement did not arrive as a file; choose it again.") from None
+    if len(content) > MOST_BYTES:
+        raise BadInput(_TOO_LARGE)
+    return content
+
+
+def _found(content: bytes, answers: Answers, name: str) -> Measured:
+    """The curve in a file. Raises `Unclear` and `BadInput`."""
+    found: Measured | Series | Shaker
+    if content.startswith(HDF5):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "data.h5"
+            path.write_bytes(content)
+            found = read_experiment(path, answers)
+    else:
+        try:
+            found = read_data(content, answers, KINDS, name, MOST_BYTES, MOST_ROWS)
+        except Unclear:  # asked again for a curve alone, which is what the page offers
+            found = read_data(content, answers, ("curve",), name, MOST_BYTES, MOST_ROWS)
+    if isinstance(found, (Series, Shaker)):
+        what, use = (("a time series", "granchain fit --data FILE and granchain figure 12 --data HZ=FILE")
+                     if isinstance(found, Series) else ("the shaker's amplitude", "granchain curve --amplitude FILE"))
+        raise BadInput(f"{name} is {what}, and the page draws curves of frequency and force; use {use}.")
+    if len(found.frequency) > MOST_ROWS:
+        raise BadInput(f"{name} has {len(found.frequency)} points, and the page draws up to {MOST_ROWS}.")
+    return found
+
+
+def _word(message: dict[str, Any], name: str) -> str | None:
+    value = message.get(name)
+    return value[:200] if isinstance(value, str) and value else None
+
+
+def _misfit(difference: Difference | None) -> dict[str, Any] | None:
+    """The misfit for the tab: its sentence and rows of frequency, measured, model, difference."""
+    if difference is None:
+        return None
+    measured = difference.measured
+    rows = [[f"{f:g} Hz", in_words(float(force), "N"), in_words(float(model), "N"),
+             f"{'+' if gap >= 0.0 else '−'}{in_words(abs(float(gap)), 'N', 3)}"]
+            for f, force, model, gap in zip(measured.frequency, measured.force, difference.model, difference.residuals,
+                                            strict=True) if abs(gap) >= 0.0]
+    return {"sentence": difference.sentence, "rows": rows[:_ROWS], "left": max(0, len(rows) - _ROWS)}
+
+
+def _say_nothing(status: str, sentence: str) -> None:
+    """Show no status: what is read speaks for itself, and the host reports failures."""

@@ -1,0 +1,50 @@
+"""The scales that pictures are drawn to: one for all pictures of a scene, or fitted to each.
+
+*same*: the scale of a scene holds the largest values of its pictures over the whole range of f, from rest, at the
+knobs of its preset (`assets/scales.toml`, computed by `tools/scales.py`). It stays while knobs move: strong motion
+looks strong and weak motion weak. A picture with something larger widens it, until the scene is opened again.
+
+*fit*: every picture is drawn to its own largest values.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from pathlib import Path
+
+from granchain_core import Scene
+
+from ..frames import Extremes, Frames, extremes_of
+
+FILE = Path(__file__).resolve().parents[2] / "assets" / "scales.toml"
+
+
+@cache
+def _of_scenes() -> dict[str, Extremes]:
+    """The largest values of every scene, by its name."""
+    tables = tomllib.loads(FILE.read_text(encoding="utf-8"))
+    return {name: Extremes(**values) for name, values in tables.items()}
+
+
+class Scales:
+    """What the pictures of one page are drawn to; `fit` is the visitor's choice."""
+
+    def __init__(self) -> None:
+        self.fit = False
+        self._scene = ""
+        self._largest = Extremes()
+
+    def forget(self) -> None:
+        """A scene is opened: its own scale again, whatever has widened it before."""
+        self._scene = ""
+
+    def of(self, frames: Frames, scene: Scene) -> Extremes:
+        """The largest values that a picture of `scene` is drawn to."""
+        here = extremes_of(frames)
+        if self._scene != scene.name:
+            self._scene, self._largest = scene.name, _of_scenes()[scene.name]
+        if self.fit:
+            return here
+        self._largest = self._largest.widened(here)
+        return self._largest

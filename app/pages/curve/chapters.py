@@ -1,0 +1,95 @@
+"""The peaks, valleys and the stop band of the curve from rest by name, each a place to go to.
+
+A name rests on what is computed there. The extrema are those that stand out from both neighbours by 20 %
+(`steady/curve/resonance.py`). At each the chain is settled once more and its driver's pushes are counted. A peak is
+named after them, 1:3 for one strong push in three periods; a valley is an anti-resonance if every period has one push.
+The stop band begins after the last peak, where less than 15 % of the input force arrives from there on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from granchain_core import CurvePoint, Scene, settle
+from granchain_core.steady.curve.resonance import STOPS, Place, peaks_and_valleys, place_words, pushes
+
+from ...frames import samples_for
+from ...serve.queues import ANALYSES
+from ...session.host import Host
+from ...session.task import Job, Task
+
+#: Fewer points are no band.
+_BAND = 3
+
+
+def extreme_points(points: Sequence[CurvePoint]) -> list[tuple[str, CurvePoint]]:
+    """ "peak" or "valley", and the point, of every extremum of a curve in ascending frequency that stands out."""
+    peaks, valleys = peaks_and_valleys(np.array([point.max_output_force for point in points]))
+    return [("peak" if i in peaks else "valley", points[i]) for i in sorted([*peaks, *valleys])]
+
+
+def stop_band(points: Sequence[CurvePoint]) -> tuple[CurvePoint, CurvePoint] | None:
+    """The first and the last point of the stop band of a curve in ascending frequency."""
+    peaks = [point.frequency for kind, point in extreme_points(points) if kind == "peak"]
+    if not peaks:
+        return None
+    beyond = [point for point in points if point.frequency > peaks[-1]]
+    passing = [i for i, point in enumerate(beyond) if point.max_output_force >= STOPS * point.max_input_force]
+    band = beyond[passing[-1] + 1 if passing else 0:]
+    return (band[0], band[-1]) if len(band) >= _BAND else None
+
+
+def extreme_chapter(kind: str, point: CurvePoint, scene: Scene) -> dict[str, Any] | None:
+    """The chapter of an extremum, from the motion there; None where that has no name."""
+    at = scene.evolve(f=round(point.frequency, 1))
+    pushed = pushes(settle(at, samples=samples_for(at)).run)
+    if pushed is None or (kind == "valley" and pushed != (1, 1)):
+        return None
+    words = place_words(pushed, Place(kind, point.frequency, point.regime.period))
+    return {"kind": kind, "name": f"{pushed[0]}:{pushed[1]}" if kind == "peak" else "anti-resonance", "words": words,
+            "f": at.f, "force": point.max_output_force}
+
+
+def band_chapter(band: tuple[CurvePoint, CurvePoint]) -> dict[str, Any]:
+    """The chapter of the stop band; its place is in the middle."""
+    first, last = band
+    return {"kind": "band", "name": "stop band", "words": f"stop band from {first.frequency:.0f} Hz",
+            "f": round(0.5 * (first.frequency + last.frequency), 1), "force": max(first.max_output_force,
+                                                                                  last.max_output_force)}
+
+
+class Chapters:
+    """Names the places of a complete curve in the background; `show` is called with all of them, or with none."""
+
+    def __init__(self, host: Host, show: Callable[[list[dict[str, Any]]], None]) -> None:
+        self._host = host
+        self._show = show
+        self._task = Task(host, ANALYSES, lambda *_: None, "Naming the peaks of the curve", host.failed)
+
+    def forget(self) -> None:
+        """The curve is another one."""
+        self._task.cancel()
+        self._show([])
+
+    def name(self, points: Sequence[CurvePoint], scene: Scene) -> None:
+        """Name the places of this curve of `scene`, whose points are in ascending frequency."""
+
+        def work(job: Job) -> None:
+            band = stop_band(points)
+            found = [] if band is None else [band_chapter(band)]
+            for kind, point in extreme_points(points):
+                job.give_way(lambda: self._host.busy)
+                if job.stop:
+                    return
+                chapter = extreme_chapter(kind, point, scene)
+                found += [chapter] if chapter else []
+            job.next_tick(self._show, sorted(found, key=lambda one: float(one["f"])))
+
+        self._task.start(work)
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()

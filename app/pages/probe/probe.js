@@ -1,0 +1,90 @@
+// The Probe page, over the pictures: one bead in six pictures. A click on a bead, in the chain or the map, chooses it.
+
+import { button, element, pageHead, paragraph } from "../../parts/dom.js";
+import { Embedded, fillModels } from "../../parts/embedded.js";
+
+const TITLES = {
+  displacement: "displacement",
+  forces: "forces of its two contacts",
+  phase: "phase portrait; dots: every drive period",
+  velocity: "velocity",
+  contacts: "when each contact is closed",
+  spectrum: "spectrum of the displacement",
+};
+
+class ProbePage {
+  constructor(model) {
+    this.model = model;
+    this.drawn = null;
+    this.title = pageHead("One bead", ...this.steps());
+    this.said = paragraph("", "say");
+    this.figures = new Map();
+    const places = Object.entries(TITLES).map(([name, words]) => this.place(name, words));
+    this.root = element("div", { className: "part sheet" }, this.title, this.said, ...places);
+    window.granchain.probe = { figures: [] };
+  }
+
+  steps() {
+    this.bead = element("select", { ariaLabel: "bead", title: "the bead that is shown" });
+    this.bead.addEventListener("change", () => this.choose(Number(this.bead.value)));
+    const step = (by, words, title) =>
+      button(words, () => this.choose(this.model.state.bead + by), { title, ariaLabel: title });
+    this.before = step(-1, "◀", "the bead before");
+    this.after = step(1, "▶", "the next bead");
+    return [this.before, this.bead, this.after];
+  }
+
+  choose(bead) {
+    window.granchain.emit("bead", bead);
+  }
+
+  place(name, words) {
+    const host = element("div", { className: "picture" });
+    this.figures.set(name, new Embedded(host, (one) => fillModels(one, this.drawn?.[name])));
+    return element(
+      "section",
+      { className: "one" },
+      element("h3", { textContent: words }),
+      element("div", { className: "draw" }, host),
+    );
+  }
+
+  show() {
+    const { bead, beads, sentence } = this.model.state;
+    if (this.bead.length !== beads)
+      this.bead.replaceChildren(...Array.from({ length: beads }, (_, i) => new Option(`bead ${i + 1}`, i + 1)));
+    this.bead.value = String(bead);
+    this.before.disabled = bead <= 1;
+    this.after.disabled = bead >= beads;
+    this.said.textContent = sentence;
+    Object.assign(window.granchain.probe, { sentence, small: this.model.figures.small, drawn: this.drawn });
+    if (window.granchain.overlay === "probe" && this.drawn)
+      for (const [name, figure] of this.figures) {
+        if (figure.item !== this.model.figures[name]) figure.load(this.model.figures[name], TITLES[name]);
+        else fillModels(figure, this.drawn[name]);
+      }
+    window.granchain.emit("probe");
+  }
+}
+
+export function render({ model }) {
+  const page = window.granchain;
+  const probe = new ProbePage(model);
+  const watch = () => {
+    const value = page.overlay === "probe" || (!page.overlay && page.place.tab === "probe");
+    if (value !== probe.watched) model.send_msg({ do: "probe-watched", value });
+    probe.watched = value;
+    probe.show();
+  };
+  page.on("tab", watch);
+  page.on("overlay", watch);
+  page.on("bead", (bead) => model.send_msg({ do: "probe-bead", bead }));
+  model.on("state", () => probe.show());
+  model.on("figures", () => probe.show());
+  model.on("msg:custom", (message) => {
+    probe.drawn = message.drawn;
+    probe.show();
+  });
+  watch();
+  return probe.root;
+}

@@ -1,0 +1,23 @@
+// The Probe tab: the phase portrait of the chosen bead, small, and the way to the page.
+
+import { element, openButton, paragraph } from "../../parts/dom.js";
+import { Embedded, fillModels } from "../../parts/embedded.js";
+
+const INVITES = "Click a bead in the chain or in the map: its motion, its contacts, its spectrum.";
+
+export function probeTab() {
+  const page = window.granchain;
+  const host = element("div", { className: "circle" });
+  const said = paragraph();
+  const figure = new Embedded(host, (one) => fillModels(one, page.probe.drawn?.phase));
+  const show = () => {
+    const { sentence, small, drawn } = page.probe;
+    said.textContent = sentence || INVITES;
+    if (!host.isConnected || !drawn) return;
+    if (figure.item !== small) figure.load(small, "phase portrait of the bead");
+    else fillModels(figure, drawn.phase);
+  };
+  requestAnimationFrame(show);
+  const words = element("div", {}, openButton("probe"), said);
+  return { content: [element("div", { className: "beside" }, host, words)], show };
+}

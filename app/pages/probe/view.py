@@ -1,0 +1,53 @@
+"""The Probe page: six pictures of one bead, and a small one in its tab."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from bokeh.embed import json_item
+
+from granchain_core import Run
+
+from ...parts.component import text
+from ...parts.figure_part import FigurePart
+from ...pictures.axes import in_words
+from ...pictures.probe import PICTURES, closed_spells, probe_state, without_points
+from ...pictures.theme import Theme
+from ...scripts import module
+
+
+@cache
+def empty_figures(theme: Theme) -> dict[str, Any]:
+    """All pictures, and the small one of the tab."""
+    made = {name: json_item(without_points(name, theme)) for name in PICTURES}
+    return {**made, "small": json_item(without_points("phase", theme, compact=True))}
+
+
+class Probe(FigurePart):
+    """The page over the pictures and, through what it shares in the browser, the small picture in its tab."""
+
+    _esm = module("probe.js")
+    _stylesheets = [text(f"{name}.css") for name in ("controls", "probe")]  # noqa: RUF012
+    empty_figures = staticmethod(empty_figures)
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, state={"bead": 1, "beads": 1, "sentence": ""}, **params)
+
+    def fill(self, motion: Run, bead: int) -> None:
+        """Fill the pictures with a motion."""
+        self.need_figures()
+        self.update_state(bead=bead, beads=motion.scene.N, sentence=words(motion, bead))
+        self.send(type="probe", drawn=probe_state(motion, bead))
+
+
+def words(motion: Run, bead: int) -> str:
+    """What the bead does, in one sentence."""
+    u, v = (abs(values[:, bead - 1]).max() for values in (motion.displacement, motion.velocity))
+    lasting = motion.time[-1] - motion.time[0]
+    shut = [sum(end - begin for contact, begin, end in closed_spells(motion) if contact == one) / lasting
+            for one in (bead - 1, bead)]
+    return (f"Bead {bead} of {motion.scene.N}: up to {in_words(float(u), 'm', 3)} away from its place, up to "
+            f"{in_words(float(v), 'm/s', 3)} fast; its contacts are closed for {100 * shut[0]:.0f} % (driver’s side) "
+            f"and {100 * shut[1]:.0f} % (wall’s side) of the time.")

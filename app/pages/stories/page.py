@@ -1,0 +1,74 @@
+"""The stories of one visitor: which one is told, and the motion of its step. They are drawn in their tab."""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from typing import Any
+
+from granchain_core import BadInput, State, settle
+
+from ...parts.component import Component
+from ...serve.compiler import PICTURE_PIECES
+from ...serve.queues import ANALYSES
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.message_checks import whole
+from ...session.stories import Step, Story, stories, told_words
+from ...session.task import Job, Task
+
+
+@cache
+def _told() -> tuple[tuple[Story, ...], tuple[str, ...]]:
+    return stories()
+
+
+class StoriesPage(Page):
+    """It turns the knobs of the dashboard to a step, and sends the tab its words."""
+
+    def __init__(self, host: Host, view: Component) -> None:
+        self._host = host
+        self._view = view
+        self._task = Task(host, ANALYSES, lambda *_: None, "The story", host.failed)
+        told, refused = _told()
+        self._stories = {one.name: one for one in told}
+        self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}
+        view.update_state(story=None, stories=[
+            {"name": one.name, "title": one.title, "about": one.about} for one in told], refused=list(refused))
+
+    def scene_changed(self) -> None:
+        """The visitor has moved on, or the story has: a step that is still being settled is not shown any more."""
+        self._task.cancel()
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+
+    def _close(self) -> None:
+        self._task.cancel()
+        self._view.update_state(story=None)
+
+    def _open(self, message: dict[str, Any]) -> None:
+        story = self._stories.get(str(message.get("name")))
+        if story is None:
+            raise BadInput("That story is not here any more; reload the page.")
+        number = whole("step", message.get("step"), 1, len(story.steps))
+        step = story.steps[number - 1]
+        words = {name: told_words(story, number, name) for name in ("say", "ask", "answer")}
+        self._view.update_state(story={"name": story.name, "title": story.title, "step": number,
+                                       "steps": len(story.steps), "look": step.look, **words})
+        if step.via:
+            self._task.start(partial(self._through, step))
+        else:
+            self._task.cancel()
+            self._show(step, None)
+
+    def _through(self, step: Step, job: Job) -> None:
+        """In a worker thread: settle the chain where it comes from."""
+        job.compile(step.scene, *PICTURE_PIECES)
+        state: State | None = None
+        for frequency in step.via:
+            state = settle(step.scene.evolve(f=frequency), start=state, stop=job.stop).state
+        job.next_tick(self._show, step, state)
+
+    def _show(self, step: Step, state: State | None) -> None:
+        self._host.open(step.scene, state, step.curves)

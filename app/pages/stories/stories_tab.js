@@ -1,0 +1,59 @@
+// The Stories tab: all stories, or one step of the one that is told: what to see, a question, and its answer on demand.
+
+import { button, element, paragraph } from "../../parts/dom.js";
+
+const INVITES = "A story turns the knobs, says where to look, and asks. You may touch everything meanwhile.";
+
+let revealed = ""; // the step whose answer has been asked for
+
+// The part of the page that a step is about has a frame.
+function point(look) {
+  for (const id of ["chain", "left", "map", "right", "curve"])
+    document.getElementById(id).classList.toggle("looked-at", id === look);
+}
+
+function chooser(model) {
+  const open = ({ name, title, about }) =>
+    element(
+      "div",
+      { className: "story" },
+      button(title, () => model.send_msg({ do: "story-open", name, step: 1 })),
+      paragraph(about, "soft"),
+    );
+  const refused = model.state.refused.map((sentence) => paragraph(sentence, "soft"));
+  return [paragraph(INVITES), ...model.state.stories.map(open), ...refused];
+}
+
+function telling(model, story) {
+  const { name, title, step, steps, say, ask, answer } = story;
+  const go = (to) => model.send_msg({ do: "story-open", name, step: to });
+  const told = paragraph(answer, "answer");
+  const place = `${name} ${step}`;
+  const reveal = button("answer", () => {
+    revealed = place;
+    show();
+  });
+  const show = () => {
+    told.hidden = revealed !== place;
+    reveal.hidden = !answer || revealed === place;
+  };
+  show();
+  const before = button("◀ back", () => go(step - 1), { disabled: step === 1 });
+  const next = button(step < steps ? "next ▶" : "all stories", () =>
+    step < steps ? go(step + 1) : model.send_msg({ do: "story-close" }),
+  );
+  const leaving = "Leave the story";
+  const leave = button("✕", () => model.send_msg({ do: "story-close" }), { title: leaving, ariaLabel: leaving });
+  const count = element("span", { textContent: `${step} of ${steps}` });
+  const row = element("div", { className: "row" }, before, count, next, reveal, leave);
+  return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), told];
+}
+
+export function storiesTab(model) {
+  const { story } = model.state;
+  point(story?.look);
+  return { content: story ? telling(model, story) : chooser(model) };
+}
+
+// Another tab points to nothing.
+export const leaveStories = () => point("");

@@ -1,0 +1,66 @@
+// Beads of steel that glow with their energy: drawn once for every size and step of energy, then copied.
+
+const STEPS = 48; // of energy that one can tell apart
+const GLOWS = 0.3; // the square root of the share of the scale's top from which on a bead has a halo
+
+// The colour of an energy that is this part of the scale's top. The square root (which is proportional to the speed)
+// leaves weak motion visible beside strong; the map and its colour bar use the same (app/parts/energy.py).
+export const colourOf = (palette, share) => palette[Math.round(255 * Math.sqrt(Math.max(0, Math.min(1, share))))];
+
+const channels = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
+const mixed = (a, b, part) => {
+  const [from, to] = [channels(a), channels(b)];
+  return `rgb(${from.map((value, i) => Math.round(value + (to[i] - value) * part)).join(",")})`;
+};
+
+export class Steel {
+  constructor(palette) {
+    this.palette = palette;
+    this.forget();
+  }
+
+  // Another theme, or another size of the pictures.
+  forget() {
+    this.made = new Map();
+  }
+
+  // A square picture of a bead with its glow, and how far it reaches from the bead's middle, in radii.
+  bead(radius, share, ratio, ink) {
+    const step = Math.round(STEPS * Math.sqrt(Math.max(0, Math.min(1, share))));
+    const key = `${radius.toFixed(1)} ${step}`;
+    if (!this.made.has(key)) this.made.set(key, this.draw(radius, step / STEPS, ratio, ink));
+    return this.made.get(key);
+  }
+
+  draw(radius, glow, ratio, ink) {
+    const reach = glow > GLOWS ? 3 : 1.05; // most beads do not glow, and a small picture is copied faster
+    const half = reach * radius;
+    const side = Math.max(2, Math.ceil(2 * half * ratio));
+    const picture = Object.assign(document.createElement("canvas"), { width: side, height: side });
+    const g = picture.getContext("2d");
+    g.scale(side / (2 * half), side / (2 * half));
+    g.translate(half, half);
+    const hot = this.palette ? this.palette[Math.round(255 * glow)] : ink.steel;
+    if (glow > GLOWS) this.halo(g, radius, glow, hot);
+    const body = Math.min(1, 1.7 * glow); // how much of the steel's own colour the energy replaces
+    const shade = g.createRadialGradient(-0.35 * radius, -0.4 * radius, 0.05 * radius, 0, 0, radius);
+    shade.addColorStop(0, mixed(ink.shine, hot, 0.6 * body));
+    shade.addColorStop(0.45, mixed(ink.steel, hot, body));
+    shade.addColorStop(1, mixed(ink.edge, hot, 0.75 * body));
+    g.fillStyle = shade;
+    g.beginPath();
+    g.arc(0, 0, radius, 0, 2 * Math.PI);
+    g.fill();
+    return { picture, reach };
+  }
+
+  halo(g, radius, glow, hot) {
+    const halo = g.createRadialGradient(0, 0, 0.9 * radius, 0, 0, 2.6 * radius);
+    halo.addColorStop(0, hot);
+    halo.addColorStop(1, `${hot}00`);
+    g.globalAlpha = 0.75 * (glow - GLOWS);
+    g.fillStyle = halo;
+    g.fillRect(-3 * radius, -3 * radius, 6 * radius, 6 * radius);
+    g.globalAlpha = 1;
+  }
+}
