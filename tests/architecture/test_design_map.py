@@ -17,9 +17,9 @@ MODULES = {row[1]: set(re.findall(r"`([\w.]+)`", row[2]))
            for row in re.finditer(r"^\| `(\w+)\.py` \| [^|]+ \| ([^|]+) \|$", PAGE, re.MULTILINE)}
 #: Module of the kernels, beside their folders.
 KERNELS = set(re.findall(r"^\| `(\w+)\.py` \| [^|]+ \|$", PAGE, re.MULTILINE))
-#: Folder of the kernels → the others that it uses.
-KERNEL_LAYERS = {folder.split("/")[2]: uses for folder, uses in ROWS.items()
-                 if re.fullmatch(r"granchain_core/kernels/\w+", folder)}
+#: Folder with folders of its own, which the map orders → each of these → the others that it uses.
+FAMILIES = {family: {folder.split("/")[2]: uses for folder, uses in ROWS.items()
+                     if re.fullmatch(rf"granchain_core/{family}/\w+", folder)} for family in ("kernels", "steady")}
 #: The core's folders at the top, whose imports the map orders.
 LAYERS = {folder.split("/")[1]: uses for folder, uses in ROWS.items() if re.fullmatch(r"granchain_core/\w+", folder)}
 
@@ -55,15 +55,15 @@ def test_a_folder_imports_only_what_the_map_says(layer: str) -> None:
     assert used(layer) & set(LAYERS) <= allowed(layer)
 
 
-@pytest.mark.parametrize("layer", KERNEL_LAYERS)
-def test_a_folder_of_kernels_imports_only_what_the_map_says(layer: str) -> None:
+@pytest.mark.parametrize("family, layer", [(family, layer) for family, layers in FAMILIES.items() for layer in layers])
+def test_a_folder_of_a_family_imports_only_what_the_map_says(family: str, layer: str) -> None:
     """Of the other folders; a module beside them may be used by any that it does not use itself."""
-    files = (ROOT / "granchain_core" / "kernels" / layer).rglob("*.py")
-    names = {name.split(".")[1] for path in files for name in imported(path) if name.startswith("kernels.")}
-    assert names & set(KERNEL_LAYERS) <= allowed(layer, KERNEL_LAYERS)
-    beside = {name for module in names & KERNELS
-              for name in imported(ROOT / "granchain_core" / "kernels" / f"{module}.py")}
-    assert not [name for name in beside if name.startswith(f"kernels.{layer}")]
+    home = ROOT / "granchain_core" / family
+    names = {name.split(".")[1] for path in (home / layer).rglob("*.py") for name in imported(path)
+             if name.startswith(f"{family}.")}
+    assert names & set(FAMILIES[family]) <= allowed(layer, FAMILIES[family])
+    beside = {name for module in names if (home / f"{module}.py").exists() for name in imported(home / f"{module}.py")}
+    assert not [name for name in beside if name.startswith(f"{family}.{layer}")]
 
 
 def test_every_module_of_the_kernels_is_named() -> None:
@@ -73,7 +73,7 @@ def test_every_module_of_the_kernels_is_named() -> None:
 
 def test_the_map_has_no_circle() -> None:
     """Each layer is drawn below all it uses."""
-    for layers in (LAYERS, KERNEL_LAYERS):
+    for layers in (LAYERS, *FAMILIES.values()):
         order = list(layers)
         assert all(order.index(above) < order.index(layer) for layer, uses in layers.items() for above in uses)
 
@@ -88,7 +88,7 @@ def test_every_module_beside_the_folders_is_on_the_map_with_what_it_uses() -> No
 
 @pytest.mark.parametrize("layer", LAYERS)
 def test_a_folder_uses_no_module_that_uses_it(layer: str) -> None:
-    """And the kernels use none at all, nor does anything use `warm`."""
+    """And the kernels use none but `errors`, nor does anything use `warm`."""
     beside = used(layer) & set(MODULES)
-    assert "warm" not in beside and not (layer == "kernels" and beside)
+    assert "warm" not in beside and not (layer == "kernels" and beside - {"errors"})
     assert not [module for module in beside if layer in MODULES[module]]

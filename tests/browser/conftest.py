@@ -6,8 +6,11 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, Page, expect, sync_playwright
 from started import dashboard, launch
+
+# Three workers with a browser and a server each share two processors: what is waited for comes, but not within five seconds.
+expect.set_options(timeout=30_000)
 
 
 @pytest.fixture(scope="session")
@@ -47,7 +50,7 @@ def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
                 or complaints.append(f"asked another host: {request.url}"))
         page.add_init_script(RUNTIME + script)
         page.goto(url + query)
-        page.wait_for_function("window.painted.length > 0", timeout=60_000)
+        page.wait_for_function("window.painted.length > 0", timeout=180_000)
         return page
 
     yield open_page

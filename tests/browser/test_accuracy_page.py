@@ -109,7 +109,7 @@ def test_a_moved_knob_greys_the_picture_until_it_is_measured_again(visit: Visit)
     sheet.get_by_role("button", name="measure again").click()
     expect(sheet.locator(".stale")).to_have_count(0)
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
-    sheet.get_by_role("button", name="stop").click()
+    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where all is measured already
 
 
 def test_the_naive_force_is_drawn_over_the_certified_one(visit: Visit) -> None:
@@ -155,4 +155,4 @@ def test_the_page_fits(visit: Visit) -> None:
         assert page.evaluate("document.documentElement.scrollWidth") == width
         box = sheet.locator(".work .picture").bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
-    sheet.get_by_role("button", name="stop").click()
+    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where all is measured already

@@ -76,7 +76,7 @@ def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
     expect(activity(tab, "resonance curve, sweep up")).to_contain_text("not selected")
     expect(activity(tab, "Lyapunov exponent")).to_contain_text("off")
     expect(activity(tab, "live run")).to_contain_text("off")
-    page.get_by_label("╌ up").check()
+    page.get_by_label("sweep up").check()
     expect(activity(tab, "resonance curve, sweep up")).to_contain_text("all points are computed", timeout=120_000)
     page.get_by_role("button", name="The run goes on").click()
     expect(activity(tab, "live run")).to_contain_text("paused")

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-import pytest
-from knobs import Visit
-from playwright.sync_api import expect
+import time
 
+import pytest
+from knobs import COMPILED, Visit
+from playwright.sync_api import expect
+from room import faults
+
+#: Laptops, screens, a beamer, a phone.
+SIZES = ((1024, 768), (1180, 820), (1280, 800), (1280, 720), (1366, 768), (1440, 900), (1536, 864), (1920, 1080),
+         (2560, 1440), (390, 844))
 WIDTHS = ((1280, 800), (1920, 1080), (390, 844))
 LOOKS = pytest.mark.parametrize("look", ["light", "projector"])
 
@@ -34,6 +40,43 @@ BEADS = """() => {
 }"""
 
 
+@pytest.mark.parametrize("look", ["light", "dark", "projector"])
+@pytest.mark.parametrize("scene", ["sec2", "fig11-founded"])
+def test_no_control_and_no_word_is_cut_hidden_or_covered(visit: Visit, scene: str, look: str) -> None:
+    page = visit(f"?v=1&scene={scene}&look={look}")
+    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        page.evaluate("shown()")
+        end = time.monotonic() + 20.0
+        while (found := faults(page)) and time.monotonic() < end:
+            page.wait_for_timeout(200)  # titles and names follow the new size
+        assert not found, (width, height, found)
+
+
+def test_what_the_bar_has_no_room_for_is_in_its_menu(visit: Visit) -> None:
+    page = visit("?look=projector", viewport={"width": 390, "height": 844})
+    theme = page.get_by_role("button", name="Theme: light, dark, projector")
+    expect(theme).to_be_hidden()
+    page.get_by_role("button", name="More controls").click()
+    expect(theme).to_be_visible()
+    assert faults(page) == []
+    theme.click()
+    page.wait_for_function("document.documentElement.dataset.theme === 'light'")
+    page.set_viewport_size({"width": 2560, "height": 1440})
+    expect(page.get_by_role("button", name="More controls")).to_be_hidden()
+    expect(page.locator("select.scene option:checked")).to_have_text("sec2 — Section 2: eleven steel beads, driven")
+
+
+def test_words_grow_with_the_screen(visit: Visit) -> None:
+    page = visit("?look=light")
+    sizes = []
+    for width, height in ((1280, 800), (1920, 1080), (2560, 1440)):
+        page.set_viewport_size({"width": width, "height": height})
+        sizes.append(page.evaluate("parseFloat(getComputedStyle(document.querySelector('#foot')).fontSize)"))
+    assert sizes[0] >= 15.0 and sizes[1] > 18.0 and sizes[2] > 21.0
+
+
 @LOOKS
 def test_the_titles_of_the_axes_are_whole(visit: Visit, look: str) -> None:
     page = visit(f"?look={look}")
@@ -44,7 +87,7 @@ def test_the_titles_of_the_axes_are_whole(visit: Visit, look: str) -> None:
             page.wait_for_function(f"([input, output]) => (({TITLES})()[1][0].startsWith(input)"
                                    f" && ({TITLES})()[2][0].startsWith(output))", arg=list(words))
         page.wait_for_function(f"({TITLES})().every(([title, room]) => title && room >= 0)", timeout=10_000)
-        assert page.evaluate(BEADS) > 0
+        page.wait_for_function(f"({BEADS})() > 0", timeout=10_000)  # the step follows the width
 
 
 def test_the_titles_follow_the_window(visit: Visit) -> None:

@@ -11,13 +11,10 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from app.cli import main
 from app.session.share import decode
 from granchain_core import BadInput, NumbersFailed, run, scene
-from granchain_core.experiment import read_measured_csv
 from granchain_core.hdf5 import seal
 from granchain_core.kernels.width import machine
 from granchain_core.store import load, save
@@ -153,26 +150,6 @@ def test_every_bad_field_of_a_link_has_its_sentence(field):
 
 
 # --- files ----------------------------------------------------------------------------------------------------
-
-
-@given(st.one_of(st.text(max_size=300), st.binary(max_size=300),
-                 st.lists(st.tuples(st.floats(), st.floats()), max_size=5).map(
-                     lambda rows: "\n".join(f"{a},{b}" for a, b in rows))))
-def test_any_csv_is_measured_or_bad_input(text):
-    """No other exception, and what was read is finite, ascending and not negative."""
-    try:
-        found = read_measured_csv(text)
-    except BadInput as problem:
-        assert str(problem)
-        return
-    assert np.isfinite(found.frequency).all() and np.isfinite(found.force).all()
-    assert (np.diff(found.frequency) >= 0).all() and (found.force >= 0).all() and (found.frequency > 0).all()
-
-
-@pytest.mark.parametrize(("text", "force"), [("0,5;1,5e-6\n1;2", [1.5e-6, 2.0]), ("1;0,5\n2;1,5", [0.5, 1.5])])
-def test_decimal_commas_mean_what_they_say(text, force):
-    """DESIGN: `0,5;1,5e-6` is 1.5e-6 N at 0.5 Hz."""
-    np.testing.assert_array_equal(read_measured_csv(text).force, force)
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from app.page import entry
 from app.server import server_at
 from app.session.share import decode
 from granchain_core import BadInput, Scene, run, scene
-from granchain_core.experiment import read_measured_csv
+from granchain_core.experiment import read_data
 from granchain_core.store import load, save
 from granchain_core.text import number_in, whole_in
 
@@ -42,7 +42,7 @@ def test_odd_digits_are_no_number_anywhere(text: str, capsys: pytest.CaptureFixt
         said = capsys.readouterr().err
         assert len(said.splitlines()) == 1 and "number" in said and len(said) < 300
     with pytest.raises(BadInput, match="number"):
-        read_measured_csv(f"frequency_Hz;force_N\n1;2\n{text};3")
+        read_data(f"frequency_Hz;force_N\n1;2\n{text};3".encode())
 
 
 @pytest.mark.parametrize("text", [text for text in ODD if len(text) < 1000])
@@ -70,7 +70,7 @@ def test_a_name_that_is_no_knob_is_said(name: str, capsys: pytest.CaptureFixture
     assert len(said.splitlines()) == 1 and "Unknown knob" in said
     if name != "scene":  # a field of links
         _, _, refused = decode(f"v=1&scene=sec2&{name}=1")
-        assert len(refused) == 1 and "Unknown knob" in refused[0]
+        assert len(refused) == 1 and "Unknown field" in refused[0]
     with pytest.raises(BadInput, match="Unknown knob"):
         scene("sec2").evolve(**{name: 1})
 
@@ -109,7 +109,6 @@ def test_no_other_value_of_a_scene_is_taken_unchecked(field: str, value: object)
 def test_the_page_opens_whatever_the_address_says(query: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """As a browser asks for it; Panel's own reading of addresses answered some of these with an error of the server."""
     seen: list[list[str]] = []
-    monkeypatch.setattr(entry.COMPILER, "prepare", lambda scene: None)
     monkeypatch.setattr(entry.Controller, "say", lambda self, sentence: seen.append([sentence]))
 
     async def asked() -> int:

@@ -25,10 +25,10 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return edited_copy(PAGE, copy)
 
 
-def test_the_page_edits_two_files_and_writes_four() -> None:
+def test_the_page_edits_three_files_and_writes_four() -> None:
     edits, new = files_of(PAGE)
-    assert (len(edits), len(new)) == (2, 4)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 2 files, write 4"
+    assert (len(edits), len(new)) == (3, 4)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 3 files, write 4"
 
 
 def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
@@ -59,7 +59,7 @@ print([one["placeholder"] for one in dashboard.views.tabs.state["pages"] if one[
 
 
 def test_the_new_page_fits_into_the_house(tree: Path) -> None:
-    """Layers, private attributes, docstrings, the map and the table of messages of docs/design.md."""
+    """Layers, private attributes, docstrings, the map of docs/design.md and the table of messages of docs/dashboard.md."""
     told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
                   str(Path("tests", "page")), "-k", "transmission or table or map or circle or message")
     assert " passed" in told and "deselected" in told

@@ -36,6 +36,18 @@ def test_links_and_named_files_exist(page: Path):
         assert name in made or (ROOT / name).exists(), name
 
 
+def headings(page: Path) -> set[str]:
+    """The anchors of a page's headings, as a browser of repositories makes them."""
+    found = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in found}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_to_headings_lead_to_one(page: Path):
+    for target, anchor in re.findall(r"\]\(([\w./-]*)#([\w-]+)\)", page.read_text(encoding="utf-8")):
+        assert anchor in headings(page.parent / target if target else page), f"{target}#{anchor}"
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_named_in_short_exist(page: Path):
     """Where a page names a file without the top folder, it is one of the core or of the app; a bare name is one there."""

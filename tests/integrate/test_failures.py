@@ -8,8 +8,8 @@ import pytest
 from granchain_core import NumbersFailed, run, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.failure import Failure
-from granchain_core.kernels.dop853 import flow
-from granchain_core.kernels.dop853.flow_attempt import Course
+from granchain_core.kernels.flow import run as flow
+from granchain_core.kernels.flow.attempt import Course
 from granchain_core.kernels.status import CHATTER, DONE, TOO_MANY_STEPS
 from granchain_core.orbits.flow import StroboscopicMap
 

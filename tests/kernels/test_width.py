@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from granchain_core import resonance_curve, scene
+from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.kernels import width
 
 FREQUENCIES = [130.0, 255.0, 340.0, 470.0, 850.0, 1130.0, 1576.0, 2000.0, 2500.0]
@@ -41,5 +41,5 @@ def test_the_number_of_lanes_is_the_machines_or_the_one_chosen(monkeypatch: pyte
         monkeypatch.setattr(width, "processor", lambda name=name: name)
         assert width.batch_lanes(None) == lanes
     assert width.batch_lanes("4") == 4 and width.batch_lanes("8") == 8
-    with pytest.raises(ValueError, match="GRANCHAIN_LANES = '7' is not one of 4, 8"):
+    with pytest.raises(BadInput, match="GRANCHAIN_LANES is '7'; it may be 4 or 8"):
         width.batch_lanes("7")

@@ -16,7 +16,7 @@ import numpy as np
 
 from granchain_core import Scene, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.steady.batch_settle import batch_results
+from granchain_core.steady.batch.settle import batch_results
 from granchain_core.stop import Stop
 
 #: The orbit repeats itself to this, or the point is not judged after this many periods.
@@ -55,7 +55,7 @@ def true_force(chosen: Scene, state, period: int) -> float | None:
             exact = Engine(chosen, Setting("dop853", tolerance=1e-11), FINE)
             exact.start(engine.state)
             exact.record(period * FINE)
-            return float(exact.tops[1])
+            return float(exact.maxima[1])
     return None
 
 
@@ -68,7 +68,7 @@ def points(count: int, seed: int, base: str) -> Iterator[Point]:
         top = true_force(r.scene, r.state, r.regime.period)
         if top is not None:
             unit = r.scene.K * r.scene.A0**1.5
-            yield Point(abs(r.tops[1] / unit / top - 1.0), r.error_estimate, r.scene, r.regime.period)
+            yield Point(abs(r.maxima[1] / unit / top - 1.0), r.error_estimate, r.scene, r.regime.period)
 
 
 def main() -> None:

@@ -27,7 +27,7 @@ def test_the_force_jumps_where_the_driver_starts_against_a_bead():
     jump = one.D * 2.0 * np.pi * one.f * one.A0
     found = located(one, 0, 1, gaps=np.array([0.0, 1e-3]))
     assert found.closings[0] == pytest.approx([0.0, 0.0, jump], rel=1e-14)
-    assert found.tops[0] == pytest.approx(jump, rel=1e-12)
+    assert found.maxima[0] == pytest.approx(jump, rel=1e-12)
 
 
 def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is():
@@ -48,15 +48,15 @@ def test_a_collision_with_the_wall_has_the_peak_of_hertz():
     thrown = replace(one, start_velocity=((1, 1e-3),))
     peak = 1.1432626 * one.K**0.4 * one.bead(1).mass ** 0.6 * 1e-3**1.2
     # at its end the bead meets the driver, 1e-9 m × 2π × 1000 Hz = 6e-6 m/s slow, and does not come back in this period
-    assert located(thrown, 0, 1).tops[1:] == pytest.approx([peak, peak], rel=5e-8)
+    assert located(thrown, 0, 1).maxima[1:] == pytest.approx([peak, peak], rel=5e-8)
 
 
 def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing():
     """Section 2 with D = 300 at 100 Hz, settled: 0.14733 N, the right limit at the wall's closing, not the top behind it."""
     found = located(scene("sec2").evolve(D=300.0, f=100.0), 100, 1)
     at_wall = found.closings[found.closings[:, 1] == 11][:, 2]
-    assert found.tops[1] == pytest.approx(0.14733, abs=5e-6)
-    assert at_wall.max() == pytest.approx(found.tops[1], rel=1e-12)
+    assert found.maxima[1] == pytest.approx(0.14733, abs=5e-6)
+    assert at_wall.max() == pytest.approx(found.maxima[1], rel=1e-12)
 
 
 @pytest.mark.parametrize(("law", "tension"), LAWS)
@@ -68,8 +68,8 @@ def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law, tensi
     one = scene("sec2").evolve(dissipation=law, tension=tension, kappa=0.01)
     other = one.evolve(A0=s * one.A0, f=s**0.25 * one.f, D=s ** (0.25 - q) * one.D, kappa=0.01)
     found, nearly, scaled = located(one, 1, 2), located(one, 1, 2, tolerance=1e-10), located(other, 1, 2)
-    assert nearly.tops == pytest.approx(found.tops, rel=5e-9)
-    assert scaled.tops == pytest.approx(s**1.5 * found.tops, rel=1e-9)
+    assert nearly.maxima == pytest.approx(found.maxima, rel=5e-9)
+    assert scaled.maxima == pytest.approx(s**1.5 * found.maxima, rel=1e-9)
     true = oracle.located(one, 3, 16, 1e-11, 60.0)[16:]
     assert np.abs(found.displacement - true).max() <= 5e-8 * np.abs(true).max()
 

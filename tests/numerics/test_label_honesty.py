@@ -8,9 +8,9 @@ import pytest
 from granchain_core import resonance_curve, run, scene, settled
 from granchain_core.lower import lower
 from granchain_core.orbits import periodic_orbit
-from granchain_core.steady.finite_difference_map import FiniteDifferenceMap, fixed_point, sizes
-from granchain_core.steady.nearby_orbit import NearbyOrbit, orbit_of
-from granchain_core.steady.settle import run_until_settled
+from granchain_core.steady.settling.finite_difference_map import FiniteDifferenceMap, fixed_point, sizes
+from granchain_core.steady.settling.nearby_orbit import NearbyOrbit, orbit_of
+from granchain_core.steady.settling.settling import run_until_settled
 from granchain_core.stop import Stop
 from tests.numerics.label_honesty import judged
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from types import SimpleNamespace
@@ -15,10 +17,11 @@ from bokeh.events import Tap
 from host import FakeHost
 
 from app import server
-from app.page import links_and_files, main_picture
+from app.page import links_and_files, main_picture, measurement
 from app.page.controller import Controller
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
+from app.serve.meters import METERS
 from app.session.hooks import all_actions
 from app.session.message_checks import listed, whole
 from app.session.session import Session
@@ -76,21 +79,21 @@ def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence() -> N
 
 @pytest.mark.parametrize(("text", "sentence", "understood"), [
     ("frequency_Hz,force_N\n40,5.5\n60,12.1\n", "", "mine.csv: 2 points"),
-    ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (MOST_BYTES + 1), "at most 2000000 are read", "")])
+    ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (MOST_BYTES + 1), "larger than 2 MB", "")])
 def test_a_measurement_is_read_in_the_background(text: str, sentence: str, understood: str,
                                                  monkeypatch: pytest.MonkeyPatch) -> None:
     """Reading 2 MB with the document locked would hold up every visitor."""
     threads = []
-    read = links_and_files.read_measured_csv
-    monkeypatch.setattr(links_and_files, "read_measured_csv",
-                        lambda text: (threads.append(threading.current_thread().name), read(text))[1])
+    read = measurement.read_data
+    monkeypatch.setattr(measurement, "read_data",
+                        lambda *given, **named: (threads.append(threading.current_thread().name), read(*given, **named))[1])
     dashboard = Dashboard()
-    dashboard.received({"do": "csv", "name": "mine.csv", "text": text})
+    dashboard.received({"do": "csv", "name": "mine.csv", "content": base64.b64encode(text.encode()).decode()})
     assert not dashboard.views.tabs.state.get("understood")
     dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
     assert sentence in dashboard.session.sentence
     assert dashboard.views.tabs.state.get("understood", "").startswith(understood)
-    assert threads[0].startswith("files")
+    assert all(name.startswith("files") for name in threads) and bool(threads) == (len(text) <= MOST_BYTES)
 
 
 def test_a_picture_is_saved_in_the_background(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -182,13 +185,34 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
     class Served:
         """A server that ends at once."""
 
-        io_loop = SimpleNamespace(start=lambda: None)
+        io_loop = SimpleNamespace(start=lambda: None, add_callback=lambda _: None)
+        _tornado = SimpleNamespace(wildcard_router=SimpleNamespace(rules=[]))
 
         def start(self) -> None:
             """Nothing to serve."""
 
     monkeypatch.setattr(server.pn, "serve", lambda pages, **options: given.update(options) or Served())
     monkeypatch.setattr(server.COMPILER, "prepare", lambda scene: None)
+    monkeypatch.setattr(server.logs, "begin", lambda level: None)
+    monkeypatch.setattr(server.gc, "freeze", lambda: None)
+    monkeypatch.setattr(server.settings.perform_document_validation, "set_value", lambda value: None)
     server.serve()
-    message = json.dumps({"do": "csv", "name": "x" * 1000, "text": "\x01" * MOST_BYTES})
-    assert len(message) < given["websocket_max_message_size"] < 20_000_000
+    message = json.dumps({"do": "csv", "name": "x" * 1000, "content": base64.b64encode(bytes(MOST_BYTES)).decode()})
+    assert len(message) < given["websocket_max_message_size"] < 3_000_000
+    assert given["websocket_ping_interval"] == given["websocket_ping_timeout"] == 20
+    assert given["http_server_kwargs"]["idle_connection_timeout"] == 60 and given["http_server_kwargs"]["body_timeout"] == 30
+
+
+def test_a_busy_server_says_so() -> None:
+    """And stops saying so with the first picture that comes in time."""
+    dashboard = Dashboard()
+    try:
+        for late, said in ((1.5, True), (0.0, False)):
+            METERS._late.extend([late] * 40)
+            dashboard.pictures._asked = time.monotonic() - 1.2
+            dashboard.pictures._answered()
+            words = dashboard.views.status_line.state["busy"]
+            assert words == ("The server is busy: pictures follow every 1.2 s." if said else "")
+    finally:
+        METERS._late.clear()
+        dashboard.close(None)

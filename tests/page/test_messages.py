@@ -1,4 +1,4 @@
-"""The messages of a browser: docs/design.md lists those that are understood, and each script sends only these."""
+"""The messages of a browser: docs/dashboard.md lists those that are understood, and each script sends only these."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from app.page.controller import Controller
 from app.scripts import FILES
 from app.session.session import Session
 
-PAGE = (Path(__file__).parents[2] / "docs" / "design.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "dashboard.md").read_text(encoding="utf-8")
 LISTED = {owner: re.findall(r"`([\w-]+)`", messages)
           for owner, messages in re.findall(r"^\| ([^|]+) \| ((?:`[\w-]+`(?:, )?)+) \|$", PAGE.split("| owner | messages |")[1], re.MULTILINE)}
 #: In the scripts: `do: "name"`, or an argument of a function that sends it.

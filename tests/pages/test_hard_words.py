@@ -11,11 +11,11 @@ import pytest
 from app.pages.hard_cases.view import described, described_cases, digits_of, summary, value_beside
 from app.pages.hard_cases.work import CaseProcess, Ended, case_of
 from granchain_core import Cancelled, NumbersFailed
-from granchain_core.hard import CASES, Case, Check, Figure, run_case
+from granchain_core.hard import CASES, Case, Check, Measurement, run_case
 from granchain_core.stop import Stop
 
 
-def measured(*found: Figure) -> list[Check]:
+def measured(*found: Measurement) -> list[Check]:
     """Rows of the case "touch and graze" with these figures in place of its own."""
     return run_case(Case("touch and graze", "h", "n", "o", lambda _: found), quick=True)
 
@@ -30,11 +30,11 @@ def test_a_figure_is_on_the_true_side_of_its_bar(value: float, bar: float, told:
 
 
 def test_a_row_that_fails_keeps_its_figure_and_one_that_is_not_computed_its_sentence() -> None:
-    shown = described("touch and graze", measured(Figure("missed", 3.0, 0.0), Figure("moment", 5e-11, 1e-9)))
+    shown = described("touch and graze", measured(Measurement("missed", 3.0, 0.0), Measurement("moment", 5e-11, 1e-9)))
     assert [(row["what"], row["value"], row["limit"], row["passed"]) for row in shown["rows"]] == [
         ("missed", "3", "0", False), ("moment", "5e-11", "1e-9", True)]
 
-    def fails(quick: bool) -> list[Figure]:
+    def fails(quick: bool) -> list[Measurement]:
         raise NumbersFailed("It gave up.", "chatter")
 
     (row,) = described("x", run_case(Case("x", "h", "n", "o", fails), quick=True))["rows"]
@@ -45,15 +45,15 @@ def test_a_row_that_fails_keeps_its_figure_and_one_that_is_not_computed_its_sent
 def test_names_with_a_colon_are_taken_off_as_a_whole() -> None:
     name = "no damping, driven: chaos"
     assert case_of(name) is not None
-    rows = run_case(Case(name, "h", "n", "o", lambda _: [Figure("energy: balance", 0.0, 1.0)]), quick=True)
+    rows = run_case(Case(name, "h", "n", "o", lambda _: [Measurement("energy: balance", 0.0, 1.0)]), quick=True)
     assert described(name, rows)["rows"][0]["what"] == "energy: balance"
 
 
 def test_the_summary_names_what_failed() -> None:
     assert summary({}) == ""
-    good = measured(Figure("moment", 5e-11, 1e-9))
+    good = measured(Measurement("moment", 5e-11, 1e-9))
     assert summary({"touch and graze": good}) == "1 of 16 cases run: no value of 1 is above its limit."
-    bad = measured(Figure("missed", 3.0, 0.0), Figure("moment", math.nan, 1e-9))
+    bad = measured(Measurement("missed", 3.0, 0.0), Measurement("moment", math.nan, 1e-9))
     assert summary({"touch and graze": bad}) == (
         "1 of 16 cases run: 2 of 2 values FAILED: touch and graze: missed, 3 against 0, and 1 more.")
 

@@ -111,10 +111,10 @@ def test_measured_points_are_drawn_hollow_and_in_front() -> None:
     assert drawn.y_range.end > 1.2
     high = paper_figure(type(curve)(curve.curve, Measured(frequency, np.array([0.1, 9.0]), None, "")), THEMES["light"])  # type: ignore[attr-defined,call-arg]
     assert high.y_range.end > 9.0  # no measured point is outside
-    bars = next(one for one in drawn.center if type(one).__name__ == "Whisker")
-    assert bars.line_color == THEMES["light"].ink
-    dots = next(one for one in drawn.renderers if getattr(one, "data_source", None) is not None and one.data_source.name == "measured")
-    assert dots.glyph.fill_color is None and dots.level == "annotation"
+    drawings = {type(one.glyph).__name__: one for one in drawn.renderers if one.data_source.name == "measured"}
+    assert drawings["Segment"].glyph.line_color == THEMES["light"].ink
+    dots = drawings["Scatter"]
+    assert dots.glyph.fill_color is None and dots.level == "overlay"
 
 
 def test_a_measured_series_is_a_line_in_every_row_that_it_has() -> None:

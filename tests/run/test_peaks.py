@@ -24,8 +24,8 @@ def true(name: str) -> list[float]:
     Tops of jumps fall between the samples. They are those of the certified method, which ends a step just behind them.
     """
     result = run(SCENES[name].evolve(accuracy=1e-8), periods=0, record=4, samples=1 << 14, method="dop853")
-    tops = [result.jumps.of(c)[1].max(initial=0.0) for c in (0, result.scene.N)]
-    return [max(result.input_force.max(), tops[0]), max(result.output_force.max(), tops[1]),
+    maxima = [result.jumps.of(c)[1].max(initial=0.0) for c in (0, result.scene.N)]
+    return [max(result.input_force.max(), maxima[0]), max(result.output_force.max(), maxima[1]),
             result.output_force_elastic.max()]
 
 

@@ -28,7 +28,7 @@ from tornado.websocket import WebSocketProtocol
 
 from app.parts.component import Component
 from app.serve import websocket
-from app.serve.websocket import batched_messages, disable_nagle, has_document_lock, with_document_lock
+from app.serve.websocket import disable_nagle, gather_writes, has_document_lock, with_document_lock
 
 #: Every private attribute that is used of a connection, and whose it is.
 PRIVATE: list[tuple[type, str]] = [
@@ -81,8 +81,8 @@ class Served:
         assert self.document is not None
         self.found = {"locked": has_document_lock(self.document), "streams": websocket._streams(self.document)}
         disable_nagle(self.document)
-        with batched_messages(self.document):
-            self.answer.text = f"{text}, yes"
+        gather_writes(self.document)
+        self.answer.text = f"{text}, yes"
 
     def stop(self) -> None:
         """End the server."""
@@ -171,7 +171,7 @@ def test_an_event_of_a_part_is_handled_with_and_without_panels_private_method(mo
 def test_an_event_of_a_part_is_handled_by_panel_where_that_has_no_set_curdoc(monkeypatch: pytest.MonkeyPatch) -> None:
     """The module is imported without it, and leaves the event to Panel."""
     monkeypatch.delattr(sys.modules["panel.io.state"], "set_curdoc")
-    spec = importlib.util.spec_from_file_location("without_set_curdoc", websocket.__file__)
+    spec = importlib.util.spec_from_file_location("app.serve.without_set_curdoc", websocket.__file__)
     assert spec is not None and spec.loader is not None
     without = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(without)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.session.share import EXTRAS, decode, encode
+from app.session.share import EXTRAS, decode, encode, joined
 from granchain_core import scene, scene_names
 
 
@@ -95,3 +95,18 @@ def test_no_query_string_breaks_the_page(query: str) -> None:
 
 def test_a_link_of_unreasonable_length_is_not_read() -> None:
     assert "longer than" in decode("f=" + "1" * 5000)[2][0]
+
+
+def test_every_choice_of_curves_comes_back_and_no_other() -> None:
+    for chosen in ([], ["rest"], ["down", "up"], ["features", "down", "up", "rest"]):
+        _, extras, refused = decode(encode(scene("sec2"), {"curves": joined(chosen)}))
+        assert refused == [] and {*extras["curves"].split(".")} == ({*chosen} or {"none"})
+    _, extras, refused = decode("v=1&curves=rest.sideways")
+    assert extras == {} and "rest.sideways" in refused[0]
+
+
+def test_the_page_has_settings_of_its_own() -> None:
+    _, extras, refused = decode("v=1&tab=map", {"tab": ("map", "data")})
+    assert (extras, refused) == ({"tab": "map"}, [])
+    _, extras, refused = decode("v=1&tab=nap", {"tab": ("map", "data")})
+    assert extras == {} and "not one of map, data" in refused[0]

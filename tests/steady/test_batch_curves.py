@@ -7,9 +7,9 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.kernels.batch import period_end
-from granchain_core.steady import batch_settle
-from granchain_core.steady.curve import draft_curve, resonance_curve
-from granchain_core.steady.settle import run_until_settled
+from granchain_core.steady.batch import settle as batch_settle
+from granchain_core.steady.curve.resonance_curve import draft_curve, resonance_curve
+from granchain_core.steady.settling.settling import run_until_settled
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 
@@ -35,7 +35,7 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
         assert found.regime.period == settling.regime.period
         top = settling.engine.periods(found.regime.period)[1][:, 1].max() * settling.engine.lowered.scales.force
         # the live method's own error at these steps is a few 1e-5 of the displacement, more on steep flanks
-        assert found.tops[1] == pytest.approx(top, rel=2e-3)
+        assert found.maxima[1] == pytest.approx(top, rel=2e-3)
 
 
 def test_what_lanes_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ from granchain_core import Scene, scene
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.kernels.width import BATCH_LANES
 from granchain_core.lower import lower
-from granchain_core.steady.batch_settle import batch_results
+from granchain_core.steady.batch.settle import batch_results
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 
@@ -30,7 +30,7 @@ def told(found: SteadyState) -> tuple[object, ...]:
     errors = [None if one is None else float(one).hex() for one in
               (found.force_errors.input, found.force_errors.output, found.force_errors.elastic)]
     return (found.regime.name, found.regime.period, found.regime.periods_run, found.regime.lyapunov, found.doubtful,
-            [float(top).hex() for top in found.tops], errors)
+            [float(top).hex() for top in found.maxima], errors)
 
 
 def test_a_scene_alone_and_among_others_is_the_same() -> None:

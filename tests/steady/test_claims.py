@@ -10,8 +10,9 @@ import pytest
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting, certified
 from granchain_core.kernels.strobes import periodicity as section
-from granchain_core.steady import alone, regime, relax, settle
-from granchain_core.steady import settled as settled_module
+from granchain_core.steady import regime
+from granchain_core.steady.settling import alone, recorded, relax
+from granchain_core.steady.settling.settling import run_until_settled
 
 
 def turning(rate: float, count: int = 420) -> np.ndarray:
@@ -79,20 +80,20 @@ def test_the_times_of_samples_are_counted_and_not_summed() -> None:
 
 def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where a tenth of a distance is left after an orbit the settled error is e/(1 − 1/10), where nine tenths are, 10 e."""
-    settling = settle.run_until_settled(scene("sec2"), None, None)
+    settling = run_until_settled(scene("sec2"), None, None)
     engine = Engine(settling.scene, Setting("rk4-split"), 16)
     engine.start(settling.engine.state)
-    monkeypatch.setattr(settled_module, "relax", lambda *words: (engine, 0.0))
+    monkeypatch.setattr(recorded, "relax", lambda *words: (engine, 0.0))
     stated = []
     for decay in (0.1, 0.9):
         monkeypatch.setattr(regime.Regime, "contraction", decay)
-        stated.append(settled_module.orbit_picture(settling, 16, 0.0, "rest").run.error_estimate)
+        stated.append(recorded.orbit_picture(settling, 16, 0.0, "rest").run.error_estimate)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
 def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same factor 1/(1 − |μ|) for a point of a curve that was settled by itself."""
-    settling = settle.run_until_settled(scene("sec2"), None, None)
+    settling = run_until_settled(scene("sec2"), None, None)
     monkeypatch.setattr(alone, "run_until_settled", lambda *words: settling)
     stated = []
     for modulus in (0.1, 0.9):
@@ -106,7 +107,7 @@ def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
-    settling, seen = settle.run_until_settled(scene("sec2"), None, None), []
+    settling, seen = run_until_settled(scene("sec2"), None, None), []
     real = relax.changes
     monkeypatch.setattr(regime.Regime, "contraction", 0.99)
     monkeypatch.setattr(relax, "changes", lambda *words: seen.append(real(*words)) or seen[-1])

@@ -10,7 +10,7 @@ from granchain_core.integrate import Engine, Setting
 from granchain_core.lower import lower
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
-from granchain_core.steady.settle import run_until_settled
+from granchain_core.steady.settling.settling import run_until_settled
 from granchain_core.stop import Stop
 
 CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `rig` without flexures (docs/model.md)

@@ -67,8 +67,8 @@ def certified_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE)
         engine = Engine(_scene(frequency), Setting("dop853", tolerance=tolerance), 1)
         engine.periods(problem.PASSED, watch=False)
         engine.reset_peaks()
-        strobes, tops = engine.periods(problem.WATCHED)
-        return float(tops[:, 2].max()), _returns(strobes)
+        strobes, maxima = engine.periods(problem.WATCHED)
+        return float(maxima[:, 2].max()), _returns(strobes)
 
     with ThreadPoolExecutor() as pool:
         found = list(pool.map(point, frequencies))
@@ -104,7 +104,7 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
         fill(lane)
     while place:
         lane, _ = block.run()
-        values[place[lane]] = block.tops(lane, problem.WATCHED)[2]
+        values[place[lane]] = block.maxima(lane, problem.WATCHED)[2]
         fill(lane)
     seconds = time.perf_counter() - began
     evaluations = 4 * total * round(refine * sum(one.steps_per_period() for one in lowered))

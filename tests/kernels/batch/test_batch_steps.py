@@ -40,7 +40,7 @@ def put(block: Batch, lane: int, one, refine: float) -> None:
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
     """Displacements at the strobes (8, PERIODS + 1, N) and largest forces of all periods (8, 3), batch after batch."""
     parts = [run_batch(scenes[i : i + BATCH_LANES], refine) for i in range(0, len(scenes), BATCH_LANES)]
-    return np.concatenate([strobes for strobes, _ in parts]), np.concatenate([tops for _, tops in parts])
+    return np.concatenate([strobes for strobes, _ in parts]), np.concatenate([maxima for _, maxima in parts])
 
 
 def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
@@ -48,13 +48,13 @@ def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
     block = Batch(scenes[0], Stop())
     for lane, one in enumerate(scenes):
         put(block, lane, one, refine)
-    strobes, tops = {}, {}
+    strobes, maxima = {}, {}
     while len(strobes) < len(scenes):
         lane, finite = block.run()
         assert finite
-        strobes[lane], tops[lane] = block.strobes(lane)[: PERIODS + 1, 0].copy(), block.tops(lane, PERIODS)
+        strobes[lane], maxima[lane] = block.strobes(lane)[: PERIODS + 1, 0].copy(), block.maxima(lane, PERIODS)
         block.state.return_at[lane] = NEVER
-    return np.array([strobes[i] for i in range(len(scenes))]), np.array([tops[i] for i in range(len(scenes))])
+    return np.array([strobes[i] for i in range(len(scenes))]), np.array([maxima[i] for i in range(len(scenes))])
 
 
 @functools.cache

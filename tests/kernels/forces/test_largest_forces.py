@@ -70,9 +70,9 @@ def jump_and_force(chain: Scene, setting: Setting, state: State) -> tuple[float,
     engine = Engine(chain, setting, 1)
     engine.start(state)
     engine.reset_peaks()
-    tops = engine.largest_forces(1)
-    assert engine.jumps[0] == tops[0]
-    return jump_errors(setting, engine.lowered, 1, engine.jumps, tops)[0], tops[0]
+    maxima = engine.largest_forces(1)
+    assert engine.jumps[0] == maxima[0]
+    return jump_errors(setting, engine.lowered, 1, engine.jumps, maxima)[0], maxima[0]
 
 
 def test_the_largest_force_is_that_of_a_jump() -> None:
@@ -140,4 +140,4 @@ def test_touches_shorter_than_a_step_are_found_or_said_not_to_be_resolved(method
     rate = engine.lowered.beta * np.sqrt(1.0 - (1.0 - NEAR) ** 2)
     expected = engine.lowered.slots.dissipation.coefficient * rate
     assert touched[0, 3] == pytest.approx(expected, rel=0.02 if resolves else 0.1)
-    assert engine.tops[0] >= touched[0, 3]
+    assert engine.maxima[0] >= touched[0, 3]

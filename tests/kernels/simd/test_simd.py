@@ -10,14 +10,15 @@ from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.lower import lower
 from granchain_core.state import rest
-from granchain_core.steady.alone import steady_state
-from granchain_core.steady.batch_settle import batch_results
-from granchain_core.steady.curve import CurvePoint
+from granchain_core.steady.batch.settle import batch_results
+from granchain_core.steady.curve.resonance_curve import CurvePoint
+from granchain_core.steady.settling.alone import steady_state
 from granchain_core.stop import Stop
 
 CHAINS: list[dict[str, object]] = [
-    {}, {"N": 1}, {"N": 2}, {"N": 6}, {"N": 7}, {"N": 14}, {"N": 100}, {"kappa": 0.001}, {"F0": 0.5}, {"F0": 5.0},
-    {"dissipation": "tsuji"}, {"dissipation": "kuwabara-kono", "kappa": 0.001, "wall": "rigid"},
+    {}, {"N": 1}, {"N": 2}, {"N": 6}, {"N": 7}, {"N": 14}, {"N": 100}, {"kappa": 0.001},
+    {"dissipation": "tsuji", "F0": 0.5}, {"dissipation": "tsuji", "F0": 5.0},
+    {"dissipation": "kuwabara-kono", "kappa": 0.001, "wall": "rigid"},
 ]
 #: Eight scalar multiplications in another order, some hundred steps long, through contacts that amplify a little.
 ROUNDING = 1e-12
@@ -34,7 +35,7 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
     assert np.abs(a.force - b.force).max() < ROUNDING
     # the fast steps follow forces by a quartic through values 0.2 apart, across the kinks of neighbours' events too: off by
     # some 0.07 h of a slope's change λ² v there, with λ = 0.22, h = 0.2 and λ v as large as the force: 7e-4
-    assert fast.tops == pytest.approx(slow.tops, rel=1e-3, abs=ROUNDING)
+    assert fast.maxima == pytest.approx(slow.maxima, rel=1e-3, abs=ROUNDING)
     np.testing.assert_allclose(fast.closings, slow.closings, atol=1e-9)
     assert (fast.counts.array == slow.counts.array).all()
 

@@ -80,7 +80,7 @@ def judge_run(drawn: Draw) -> Verdict | str:
     except (NumbersFailed, OverBudget):
         return "refused or failed, and said so"
     try:
-        true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=_MOST_STEPS).tops for tolerance in (_TIGHT, _LOOSE))
+        true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=_MOST_STEPS).maxima for tolerance in (_TIGHT, _LOOSE))
     except (TooLong, FloatingPointError):
         return "truth not known"
     return Verdict("run", drawn.index, chosen, f"{found.status} {drawn.periods}+{drawn.record}", apart(forces(found), true),
@@ -106,16 +106,16 @@ def on_orbit(chosen: Scene, state: State, n: int) -> tuple[State, float] | None:
     return None
 
 
-def judge_point(kind: str, index: int, chosen: Scene, state: State, n: int, tops: np.ndarray, stated: np.ndarray) -> Verdict | str:
+def judge_point(kind: str, index: int, chosen: Scene, state: State, n: int, maxima: np.ndarray, stated: np.ndarray) -> Verdict | str:
     """The verdict on a periodic point, or why there is none."""
     try:
         orbit = on_orbit(chosen, state, n)
         if orbit is None:
             return "not periodic within the patience"
-        true, nearly = (located(chosen, 0, n, 1, tolerance, orbit[0], _MOST_STEPS).tops for tolerance in (_TIGHT, _LOOSE))
+        true, nearly = (located(chosen, 0, n, 1, tolerance, orbit[0], _MOST_STEPS).maxima for tolerance in (_TIGHT, _LOOSE))
     except (TooLong, FloatingPointError):
         return "truth not known"
-    return Verdict(kind, index, chosen, f"period {n}", apart(tops, true), stated, _CAUTION * apart(nearly, true) + 3.0 * orbit[1])
+    return Verdict(kind, index, chosen, f"period {n}", apart(maxima, true), stated, _CAUTION * apart(nearly, true) + 3.0 * orbit[1])
 
 
 def judge_curve(seed: int, index: int, structures: list) -> Iterator[Verdict | str]:
@@ -138,8 +138,8 @@ def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str
         if result.failure or result.regime.period is None:
             continue
         stated = np.array([cell[name] for name in ERRORS])
-        tops = np.array([cell["max_input_force"], cell["max_output_force"], cell["max_output_force_elastic"]])
-        yield judge_point("map", index, result.scene, result.state, result.regime.period, tops, stated)
+        maxima = np.array([cell["max_input_force"], cell["max_output_force"], cell["max_output_force_elastic"]])
+        yield judge_point("map", index, result.scene, result.state, result.regime.period, maxima, stated)
 
 
 def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0) -> Iterator[Verdict | str]:

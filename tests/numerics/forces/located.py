@@ -7,7 +7,7 @@ Events    the overlap's zero, and that of K δ^{3/2} + g(δ) δ̇ where tension 
           nine places and at the turning points between them, so that a touch shorter than a step is seen; the step
           is then repeated to end there
 Forces    of contact 0, of contact N, and of the latter's spring: the supremum over the recorded time, that is the
-          largest of the values at steps' ends, of the tops between them and of the right limits where a contact
+          largest of the values at steps' ends, of the maxima between them and of the right limits where a contact
           closes: D δ̇ with the linear law
 Scales    length A0, time 1/φ, so that the equations have the coefficients of the paper's equation (2)
 """
@@ -131,8 +131,8 @@ def _sample(y, t, h, step, rows, row, period, samples):
 
 
 @jit
-def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, counts, rows, tops, closings):
-    """One drive period from phase 0, y and mode left at its end; where `watched`, `rows` (samples + 1, N) and `tops`."""
+def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, counts, rows, maxima, closings):
+    """One drive period from phase 0, y and mode left at its end; where `watched`, `rows` (samples + 1, N) and `maxima`."""
     period, t, row, samples = 2.0 * np.pi / law.beta, 0.0, 1, len(rows) - 1
     kept, behind, at_once = np.empty(y.size), False, 0
     while t < period * (1.0 - 1e-15):
@@ -164,7 +164,7 @@ def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, c
         counts[_STEPS] += 1
         at_once = 0
         if watched:
-            largest_in(law, mode, t, y, h, step, tops, kept)
+            largest_in(law, mode, t, y, h, step, maxima, kept)
             row = _sample(y, t, h, step, rows, row, period, samples)
         y[:] = step.end
         if where > 1.0:
@@ -186,14 +186,14 @@ def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, c
 
 
 @jit
-def _motion(law, step, mode, y, periods, record, tolerance, most_steps, most, counts, rows, tops, closings):
+def _motion(law, step, mode, y, periods, record, tolerance, most_steps, most, counts, rows, maxima, closings):
     """Run `periods` periods, then record `record`; rows (record, samples + 1, N)."""
     begin(law, mode, 0.0, y)
     counts[_NEXT] = counts[_USUAL] = counts[_BEHIND] = 1e-3
     period, spare = 2.0 * np.pi / law.beta, np.zeros((2, y.size // 2))
     for number in range(periods + record):
         if number == periods:
-            tops[:], counts[_CLOSINGS] = -np.inf, 0.0
+            maxima[:], counts[_CLOSINGS] = -np.inf, 0.0
             for c in range(mode.size if periods == 0 else 0):
                 gap, rate = gap_and_rate_of(law, 0.0, y, c)
                 if mode[c] == NET_FORCE and gap <= 0.0 and rate > 0.0:
@@ -201,7 +201,7 @@ def _motion(law, step, mode, y, periods, record, tolerance, most_steps, most, co
         seen = rows[number - periods] if number >= periods else spare
         seen[0] = y[: y.size // 2]
         ended = one_period(law, step, mode, y, number >= periods, (number - periods) * period, tolerance, most_steps,
-                           most, counts, seen, tops, closings)
+                           most, counts, seen, maxima, closings)
         if ended != DONE:
             return ended
     return DONE
@@ -212,7 +212,7 @@ class Located:
     """A recorded motion in SI: the largest input, output and elastic output force [N], the closings in the recorded time
     as (time s, contact, right limit of its force N), displacements (rows, N) [m], the state at the end, and the cost."""
 
-    tops: np.ndarray
+    maxima: np.ndarray
     closings: np.ndarray
     displacement: np.ndarray
     state: State
@@ -260,10 +260,10 @@ def located(scene: Scene, periods: int, record: int, samples: int = 16, toleranc
     scaled = Scaled.of(scene)
     y, mode = scaled.start(scene, state), np.zeros(scene.N + 1, np.int64)
     law = scaled.law if gaps is None else scaled.law._replace(static=scaled.law.static - gaps / scaled.length)
-    counts, tops = np.zeros(7), np.full(FORCES, -np.inf)
+    counts, maxima = np.zeros(7), np.full(FORCES, -np.inf)
     closings, rows = np.zeros((_MOST_CLOSINGS, 3)), np.zeros((record, samples + 1, scene.N))
     ended = _motion(law, workspace(scene.N), mode, y, periods, record, tolerance, most_steps, np.zeros(2 * scene.N), counts, rows,
-                    tops, closings)
+                    maxima, closings)
     if ended == TOO_LONG:
         raise TooLong
     if ended == NOT_FINITE:
@@ -271,4 +271,4 @@ def located(scene: Scene, periods: int, record: int, samples: int = 16, toleranc
     kept = closings[: int(counts[_CLOSINGS])] * (1.0 / scaled.rate, 1.0, scaled.force)
     out = np.concatenate([rows[0, :1], *rows[:, 1:]]) if record else np.zeros((0, scene.N))
     end = State(y[: scene.N] * scaled.length, y[scene.N :] * scaled.length * scaled.rate)
-    return Located(tops * scaled.force, kept, out * scaled.length, end, int(counts[_STEPS]), int(counts[_EVENTS]))
+    return Located(maxima * scaled.force, kept, out * scaled.length, end, int(counts[_STEPS]), int(counts[_EVENTS]))

@@ -213,8 +213,8 @@ def _force_between(law, mode, which, t, y, h, f, x):
 
 
 @jit
-def largest_in(law, mode, t, y, h, step, tops, kept):
-    """Raise `tops` to the largest forces in the step from y whose polynomial is filled: ends, and tops between.
+def largest_in(law, mode, t, y, h, step, maxima, kept):
+    """Raise `maxima` to the largest forces in the step from y whose polynomial is filled: ends, and maxima between.
 
     A top is found on the polynomial, where it need not be known well because the force is flat there, and its value
     comes from a step that ends there. The polynomial stays; `kept` (2N) keeps the state at the end.
@@ -227,18 +227,18 @@ def largest_in(law, mode, t, y, h, step, tops, kept):
         for i in range(1, _LOOKS):
             values[i] = _force_between(law, mode, which, t, y, h, step.polynomial, i / _LOOKS)
         values[0], values[_LOOKS] = force_of(law, mode, which, t, y), force_of(law, mode, which, t + h, step.end)
-        tops[which] = max(tops[which], values[0], values[_LOOKS])
+        maxima[which] = max(maxima[which], values[0], values[_LOOKS])
         for i in range(_LOOKS + 1):
             low, high = max(i - 1, 0), min(i + 1, _LOOKS)
             if values[i] < values[low] or values[i] < values[high]:
                 continue
-            if values[i] + 2.0 * max(values[i] - values[low], values[i] - values[high]) <= tops[which]:
+            if values[i] + 2.0 * max(values[i] - values[low], values[i] - values[high]) <= maxima[which]:
                 continue
             x = _top(law, mode, which, t, y, h, step.polynomial, low / _LOOKS, high / _LOOKS)
             if 0.0 < x < 1.0:
                 kept[:] = step.end
                 take_step(law, mode, t, y, x * h, step)
-                tops[which] = max(tops[which], force_of(law, mode, which, t + x * h, step.end))
+                maxima[which] = max(maxima[which], force_of(law, mode, which, t + x * h, step.end))
                 step.end[:] = kept
     return 0
 

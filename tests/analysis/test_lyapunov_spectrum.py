@@ -1,0 +1,90 @@
+"""The Lyapunov spectrum against multipliers, Liouville's formula, the pairs of a Hamiltonian system, and Benettin's way."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from granchain_core import BadInput, Cancelled, LyapunovSpectrum, lyapunov_spectrum, orbit, scene
+from granchain_core.integrate import Engine, live
+from granchain_core.steady.lyapunov import exponents
+from granchain_core.steady.settling.settling import run_until_settled
+from granchain_core.stop import Stop
+
+PERIODS = 200
+UNDAMPED = scene("sec2").evolve(N=3, f=1000.0, dissipation="none")
+
+
+@pytest.fixture(scope="module")
+def undamped() -> LyapunovSpectrum:
+    return lyapunov_spectrum(UNDAMPED, PERIODS)
+
+
+def test_on_an_orbit_the_exponents_are_those_of_its_multipliers() -> None:
+    """Pairs of complex multipliers turn, so that single exponents swing about their mean: within some 1 / PERIODS."""
+    chain = scene("sec2").evolve(N=3, f=1200.0)
+    found, there = lyapunov_spectrum(chain, PERIODS), orbit(chain)
+    assert there.stable
+    expected = np.log(np.abs(there.multipliers)) / there.period
+    known = min(found.resolved, int((np.abs(there.multipliers) > 1e-10).sum()))
+    assert known >= 2
+    np.testing.assert_allclose(found.exponents[:known], expected[:known], atol=5.0 / PERIODS * np.ptp(expected[:known]) + 1e-3)
+    assert found.dimension == 0.0
+
+
+def test_their_sum_is_the_mean_trace(undamped: LyapunovSpectrum) -> None:
+    """Without damping volumes are kept: the trace is 0, and the sum is what rounding and the tolerance of 1e-13 leave."""
+    assert undamped.resolved == 6 and undamped.mean_trace == 0.0
+    assert undamped.liouville is not None and undamped.liouville < 1e-9
+
+
+def test_with_damping_their_sum_is_the_mean_trace_too() -> None:
+    found = lyapunov_spectrum(scene("sec2").evolve(N=2, f=1000.0, D=20.0), 60)
+    assert found.mean_trace < -0.1 and found.resolved == 4
+    assert found.liouville is not None and found.liouville < 1e-7
+
+
+def test_a_hamiltonian_system_has_pairs(undamped: LyapunovSpectrum) -> None:
+    apart = undamped.exponents + undamped.exponents[::-1]
+    assert np.abs(apart).max() < 3.0 * undamped.errors.max() + 10.0 / PERIODS
+    assert undamped.exponents[0] > 3.0 * undamped.errors[0]  # and is chaotic at this drive
+
+
+def test_the_largest_is_that_of_two_trajectories(undamped: LyapunovSpectrum) -> None:
+    """Two computations that share the equations and the start: without damping the energy grows, and with it the exponent."""
+    engine = Engine(UNDAMPED, live(), 1)
+    engine.start(run_until_settled(UNDAMPED, None, None).engine.state)
+    engine.periods(50)
+    blocks, _ = exponents(engine, 20, 10)
+    error = np.hypot(undamped.errors[0], blocks.std(ddof=1) / np.sqrt(len(blocks)))
+    assert abs(undamped.exponents[0] - blocks.mean()) < 4.0 * error
+
+
+def test_without_damping_the_dimension_is_that_of_the_whole_space(undamped: LyapunovSpectrum) -> None:
+    assert undamped.dimension is not None and undamped.dimension > 5.9  # 6 where rounding leaves the sum above 0
+
+
+@pytest.mark.parametrize(("exponents", "resolved", "dimension"), [
+    ([0.5, -0.2, -1.0], 3, 2.3), ([0.1, -0.4], 2, 1.25), ([-0.1, -0.2], 2, 0.0), ([0.0, -0.5], 2, 1.0),
+    ([0.5, -0.2, -1.0], 2, None), ([0.5, 0.0, -0.5], 3, 3.0),
+])
+def test_the_dimension_is_kaplan_and_yorkes(undamped: LyapunovSpectrum, exponents: list[float], resolved: int,
+                                            dimension: float | None) -> None:
+    found = replace(undamped, exponents=np.array(exponents), resolved=resolved).dimension
+    assert found == dimension if dimension is None else found == pytest.approx(dimension, abs=1e-12)
+
+
+def test_what_cannot_be_measured_is_refused() -> None:
+    for chain, periods, words in ((UNDAMPED, 3, "outside 20 to"), (UNDAMPED.evolve(N=200), 40, "outside 1 to 100"),
+                                  (scene("sec2").evolve(tension="cut"), 40, "tension = cut")):
+        with pytest.raises(BadInput, match=words):
+            lyapunov_spectrum(chain, periods)
+
+
+def test_it_stops() -> None:
+    stop = Stop()
+    stop.set()
+    with pytest.raises(Cancelled):
+        lyapunov_spectrum(scene("sec2").evolve(N=2), PERIODS, stop=stop)

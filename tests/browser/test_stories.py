@@ -1,0 +1,65 @@
+"""Every story walked to its end: at each step the screen shows the motion that the story tells."""
+
+from __future__ import annotations
+
+import pytest
+from knobs import Visit
+from playwright.sync_api import Page, expect
+from room import faults
+from started import until
+
+from app.session.stories import IRREGULAR, TOLERANCE, Story, stories, told_words
+
+# Newtons of the largest output force that is drawn at the wall.
+FORCE = """() => {
+  const figure = Bokeh.documents.map((one) => one.get_model_by_name("output force")).find(Boolean);
+  const [, letter] = figure.below[0].axis_label.match(/\\((.*)N\\)/), line = figure.renderers.at(-1);
+  return Math.max(...line.data_source.data.force) * { "": 1, m: 1e-3, "µ": 1e-6 }[letter];
+}"""
+
+
+def shows(page: Page, story: Story, number: int) -> None:
+    """The badge and the pictures are those of the step."""
+    step = story.steps[number - 1]
+    badge = page.locator("#foot b")
+    expect(badge).not_to_contain_text("preview", timeout=20_000)
+    expect(badge).to_contain_text(f"period {step.expect.period}," if step.expect.period else step.expect.regime,
+                                  timeout=30_000)
+    allowed = TOLERANCE if step.expect.period else IRREGULAR
+    page.wait_for_function(f"([told, allowed]) => Math.abs(({FORCE})() / told - 1) < allowed",
+                           arg=[step.expect.output, allowed + 1e-3], timeout=20_000)
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["laptop", "phone"])
+@pytest.mark.parametrize("story", stories()[0], ids=lambda story: story.name)
+def test_a_story_shows_what_it_tells(visit: Visit, story: Story, size: tuple[int, int]) -> None:
+    page = visit(viewport={"width": size[0], "height": size[1]})
+    tab = page.locator("#tabs")
+    tab.get_by_role("button", name=story.title).click()
+    for number in range(1, len(story.steps) + 1):
+        expect(tab).to_contain_text(f"{number} of {len(story.steps)}")
+        expect(tab).to_contain_text(told_words(story, number, "say"))
+        shows(page, story, number)
+        answer = told_words(story, number, "answer")
+        if answer:
+            expect(tab.get_by_text(answer)).to_be_hidden()
+            tab.get_by_role("button", name="answer").click()
+            expect(tab.get_by_text(answer)).to_be_visible()
+        if story.steps[number - 1].look:
+            expect(page.locator(f"#{story.steps[number - 1].look}.looked-at")).to_have_count(1)
+        tab.get_by_role("button", name="next" if number < len(story.steps) else "all stories").click()
+    expect(tab.get_by_role("button", name=story.title)).to_be_visible()
+    expect(page.locator(".looked-at")).to_have_count(0)
+    until(page, lambda: faults(page) == [])
+
+
+def test_a_step_back_is_the_step_it_was(visit: Visit) -> None:
+    """The second step comes through another frequency, so going back and forth must not change what it shows."""
+    page = visit()
+    (story,) = (one for one in stories()[0] if one.name == "coexisting")
+    tab = page.locator("#tabs")
+    tab.get_by_role("button", name=story.title).click()
+    shows(page, story, 1)
+    for name, number in (("next", 2), ("back", 1), ("next", 2)):
+        tab.get_by_role("button", name=name).click()
+        shows(page, story, number)

@@ -1,0 +1,23 @@
+"""`granchain cite`: the software, the paper, Hertz, and the law of damping where the scene has it."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from app.cli import main
+
+
+@pytest.mark.parametrize(("settings", "named"), [
+    ([], ["software", "model", "contact"]),
+    (["--set", "dissipation=tsuji"], ["software", "model", "contact", "tsuji damping"]),
+    (["--set", "dissipation=kuwabara-kono"], ["software", "model", "contact", "kuwabara-kono damping"]),
+    (["--set", "dissipation=tsuji", "--set", "D=0"], ["software", "model", "contact"]),
+])
+def test_what_a_scene_uses_is_cited(settings: list[str], named: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["cite", "sec2", *settings, "--json"]) == 0
+    assert [one["for"] for one in json.loads(capsys.readouterr().out)["citations"]] == named
+    assert main(["cite", "sec2", *settings]) == 0
+    said = capsys.readouterr().out
+    assert "arXiv:1606.09305" in said and len(said.splitlines()) == len(named)

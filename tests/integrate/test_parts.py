@@ -1,0 +1,77 @@
+"""A period that takes long is computed in parts, with the same result, and ends soon after the stop flag is set."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from granchain_core import Cancelled, Scene, Stop, scene
+from granchain_core.integrate import Engine, fixed, live
+
+SHORT = scene("sec2")
+LONG = scene("sec2").evolve(N=200)
+
+
+def motion(chain: Scene, samples: int) -> dict[str, np.ndarray]:
+    """Three periods and four samples of one chain."""
+    engine = Engine(chain, live(), samples, balance=True)
+    strobes, maxima = engine.periods(3)
+    recorded = engine.record(2 * samples + 1)
+    return {"strobes": strobes, "maxima": maxima, "displacement": recorded.displacement, "force": recorded.force,
+            "energy": recorded.energy, "closings": engine.closings.copy(), "last": engine.y.copy()}
+
+
+@pytest.mark.parametrize("chain", [SHORT, LONG], ids=["11 beads", "200 beads"])
+@pytest.mark.parametrize("steps", [7, 40, 500])
+def test_parts_are_the_whole(chain: Scene, steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Vectors restart where a part begins: equal to rounding; the largest forces between steps to their interpolation."""
+    whole = motion(chain, 4)
+    monkeypatch.setattr(fixed, "steps_in_part", lambda _: steps)
+    parts = motion(chain, 4)
+    for name, values in whole.items():
+        bound = 1e-6 if name == "maxima" else 1e-10
+        assert np.abs(parts[name] - values).max(initial=0.0) <= bound * max(1e-300, np.abs(values).max(initial=0.0)), name
+
+
+class Counting(Stop):
+    """Counts the pauses."""
+
+    __slots__ = ("pauses",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.pauses = 0
+
+    def pause(self) -> None:
+        """One more."""
+        self.pauses += 1
+
+
+@pytest.mark.parametrize("chain", [scene("sec2").evolve(N=2000, A0=1e-5), scene("sec2").evolve(f=0.5)], ids=["long", "slow"])
+def test_there_is_a_pause_within_a_period(chain: Scene) -> None:
+    stop = Counting()
+    Engine(chain, live(), 1, stop=stop).periods(2)
+    assert stop.pauses > 4
+    engine = Engine(chain, live(), 2, stop=stop)
+    before = stop.pauses
+    engine.record(2)
+    assert stop.pauses > before + 2
+
+
+def test_a_long_chain_ends_soon_after_the_flag_is_set() -> None:
+    """4096 steps of 10,000 beads take seconds; no bound on the clock is tested, but on the number of parts that follow."""
+    stop = Counting()
+    engine = Engine(scene("sec2").evolve(N=10_000, A0=1e-4), live(), 1, stop=stop)
+
+    def end() -> None:
+        while stop.pauses < 4:
+            time.sleep(0.001)
+        stop.set()
+
+    threading.Thread(target=end, daemon=True).start()
+    with pytest.raises(Cancelled):
+        engine.periods(1000)
+    assert stop.pauses < 1000

@@ -1,0 +1,62 @@
+"""The names of the curve's peaks and valleys: from the motion there, and only where it has one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from host import FakeHost
+
+from app.pages.curve.chapters import Chapters, extreme_chapter, extreme_points, stop_band
+from granchain_core import CurvePoint, resonance_curve, scene, settle
+from granchain_core.steady.curve.resonance import STOPS, pushes
+
+SEC2 = scene("sec2")
+
+
+@pytest.fixture(scope="module")
+def curve() -> list[CurvePoint]:
+    return list(resonance_curve(SEC2, np.linspace(30.0, 3000.0, 150)).points)
+
+
+def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -> None:
+    """The paper has 1:1 to 1:5; the 1:5 peak is narrower than this grid's step, so what is asked for is the others."""
+    shown: list[list[dict]] = []
+    host = FakeHost()
+    chapters = Chapters(host, shown.append)  # type: ignore[arg-type]
+    chapters.name(curve, SEC2)
+    host.work_off(lambda: bool(shown), 60.0)
+    found = {one["name"]: one["f"] for one in shown[0] if one["kind"] == "peak"}
+    assert [f"1:{n}" for n in range(1, 5)] == [name for name in found if name != "1:5"]
+    assert (found["1:1"], found["1:2"], found["1:3"]) == pytest.approx((340.0, 620.0, 1130.0), abs=30.0)
+    for one in shown[0]:
+        if one["kind"] != "band":
+            pushed = pushes(settle(SEC2.evolve(f=one["f"])).run)
+            assert pushed == (1, 1) if one["kind"] == "valley" else f"{pushed[0]}:{pushed[1]}" == one["name"]
+    assert "anti-resonance" in {one["name"] for one in shown[0]}
+    chapters.forget()
+    assert shown[-1] == []
+
+
+def test_the_stop_band_begins_after_the_last_peak_and_lets_nothing_pass(curve: list[CurvePoint]) -> None:
+    band = stop_band(curve)
+    assert band is not None
+    first, last = band
+    assert 1900.0 < first.frequency < 2050.0
+    assert last.frequency == 3000.0
+    inside = [p for p in curve if p.frequency >= first.frequency]
+    assert all(p.max_output_force < STOPS * p.max_input_force for p in inside)
+    assert first.frequency > max(p.frequency for kind, p in extreme_points(curve) if kind == "peak")
+
+
+def test_a_curve_that_still_rises_has_no_stop_band(curve: list[CurvePoint]) -> None:
+    assert stop_band([p for p in curve if p.frequency < 330.0]) is None
+
+
+def test_a_motion_that_is_not_periodic_has_no_name(curve: list[CurvePoint]) -> None:
+    wild = next(p for p in curve if p.regime.name == "quasi-periodic")
+    assert extreme_chapter("peak", wild, SEC2) is None
+
+
+def test_a_valley_without_a_push_in_every_period_has_no_name(curve: list[CurvePoint]) -> None:
+    third = min(curve, key=lambda p: abs(p.frequency - 1130.0))
+    assert extreme_chapter("valley", third, SEC2) is None

@@ -1,0 +1,116 @@
+"""The data tab without a browser: what is read, asked, answered, compared and refused."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+import numpy as np
+import pytest
+from test_controller import Dashboard
+
+from app.page.measurement import SAMPLES
+from app.pictures.measured import measured_columns
+from granchain_core import CurvePoint
+from granchain_core.experiment import Measured, compared, read_data
+from granchain_core.regime import Regime
+from granchain_core.result import ForceErrors
+from granchain_core.state import rest
+
+FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
+
+
+def sent(content: bytes) -> dict[str, Any]:
+    """The message with a file."""
+    return {"do": "csv", "name": "mine.csv", "content": base64.b64encode(content).decode()}
+
+
+def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
+    """What the tab's state has under `name` once the message is worked off; the sentence where it is refused."""
+    dashboard.received(message)
+    dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get(name)))
+    return dashboard.views.tabs.state.get(name) or dashboard.session.sentence
+
+
+def test_every_byte_of_a_file_arrives() -> None:
+    text = "Frequenz [kHz];Kraft [µN]\r\n0,04;5\r\n".encode("utf-16")
+    assert "UTF-16" in after(Dashboard(), sent(text), "understood")
+    assert "did not arrive" in after(Dashboard(), {"do": "csv", "content": "???"}, "understood")
+
+
+def test_a_question_is_shown_and_its_answers_are_kept() -> None:
+    dashboard = Dashboard()
+    question = after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
+    assert question["about"] == ["columns"] and question["rows"][0] == [1, ["1.100", "2,5"]]
+    assert question["columns"][0] == [1, "", "frequency", "Hz"] and "kHz" in question["units"]["frequency"]
+    answer = {"do": "csv-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "", "dataset": ""}
+    dashboard.received(answer)
+    dashboard.work_off(lambda: dashboard.views.tabs.state["question"]["about"] == ["decimal"])
+    understood = after(dashboard, {"do": "csv-answer", "columns": [], "decimal": "comma"}, "understood")
+    assert "1100 to 1200 Hz" in understood and dashboard.views.tabs.state["question"] is None
+
+
+@pytest.mark.parametrize(("message", "sentence"), [
+    ({"columns": "f"}, "has not the form"), ({"columns": [["frequency", 1]]}, "has not the form"),
+    ({"columns": [["frequency", True, "Hz"]]}, "not the number of a column"), ({"columns": [["frequency", 1, "N"]]}, "not a unit"),
+    ({"columns": [[None, 1, "N"]]}, "Unknown quantity"), ({"columns": [], "decimal": "both"}, "Unknown decimal mark"),
+])
+def test_an_answer_from_a_browser_is_not_trusted(message: dict[str, Any], sentence: str) -> None:
+    dashboard = Dashboard()
+    dashboard.received({"do": "csv-answer", **message})
+    assert sentence in dashboard.session.sentence
+
+
+def test_a_series_is_not_drawn_as_a_curve() -> None:
+    text = b"time_s,velocity_m_s\n" + b"".join(b"%d,1\n" % i for i in range(12))
+    assert "is a time series" in after(Dashboard(), sent(text), "understood")
+
+
+def point(f: float, force: float) -> CurvePoint:
+    """A point of a curve."""
+    dashboard_scene = Dashboard().session.scene
+    return CurvePoint(f, force, force, force, Regime("periodic", 1, None, None, 9), ForceErrors(), rest(dashboard_scene))
+
+
+def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve() -> None:
+    dashboard = Dashboard()
+    assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: 2 points")
+    assert dashboard.views.tabs.state["misfit"] is None
+    figure = dashboard.views.curve
+    figure.add("rest", [point(30.0, 4.0), point(50.0, 6.0), point(70.0, 16.0)], covers=True)
+    figure.finished("rest")
+    dashboard.curves.compared(figure.difference)
+    misfit = dashboard.views.tabs.state["misfit"]
+    # the model has 5 N at 40 Hz and 11 N at 60 Hz: +0.5 and +1.1 N
+    assert "rms 0.854 N" in misfit["sentence"] and "largest +1.1 N at 60 Hz" in misfit["sentence"]
+    assert misfit["rows"][0] == ["40 Hz", "5.5 N", "5 N", "+500 mN"]
+    figure.begin(["rest"])
+    assert figure.difference is None
+
+
+def test_residuals_are_nan_where_there_is_no_curve() -> None:
+    measured = read_data(b"f [Hz],F [N],error [N]\n10,1,0.1\n50,3,0.5\n")
+    assert isinstance(measured, Measured)
+    found = compared(measured, np.array([40.0, 60.0]), np.array([1.0, 3.0]))
+    assert list(found.compared) == [False, True] and found.residuals[1] == pytest.approx(1.0)
+    assert found.sentence.endswith("rms 2 stated errors.") and "1 of 2 frequencies" in found.sentence
+    assert measured_columns(measured, 1.0, found.residuals)["residual"] == ["no model here", "+1 N"]
+
+
+def test_bars_are_errors_or_the_extremes_of_repeats() -> None:
+    stated = read_data(b"f [Hz],F [N],error [N]\n50,3,0.5\n")
+    repeated = read_data(b"f [Hz],F [N]\n50,3\n50,4\n")
+    assert isinstance(stated, Measured) and isinstance(repeated, Measured)
+    assert [measured_columns(stated, 1.0)[name] for name in ("low", "high")] == [[2.5], [3.5]]
+    assert [measured_columns(repeated, 0.5)[name] for name in ("low", "high")] == [[6.0], [8.0]]
+
+
+def test_the_sample_file_is_read_and_says_what_it_is() -> None:
+    found = read_data((SAMPLES / "curve.csv").read_bytes())
+    assert isinstance(found, Measured) and found.note.startswith("Not measured: computed by granchain")
+    assert found.repeats is not None and found.repeats.max() == 3
+    dashboard = Dashboard()
+    told: list[dict[str, Any]] = []
+    dashboard.views.tabs.send = lambda **message: told.append(message)  # type: ignore[method-assign]
+    dashboard.received({"do": "csv-sample"})
+    assert told[0]["type"] == "sample" and told[0]["text"].startswith("# Not measured")

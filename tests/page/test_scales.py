@@ -1,0 +1,65 @@
+"""One scale for all pictures of a scene, or each picture on its own; what the scene's scale rests on."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+
+import pytest
+
+from app.frames import extremes_of, samples_for, settled_frames
+from app.page.scales import FILE, Scales
+from app.parts.chain import energy_labels, frames_message
+from granchain_core import Scene, scene, scene_names, settle
+from tools.scales import over_frequencies
+
+
+def frames_at(chain: Scene):
+    return settled_frames(settle(chain, samples=samples_for(chain)).run)
+
+
+LOUD, QUIET = (scene("sec2").evolve(f=f) for f in (1130.0, 2500.0))
+
+
+def test_pictures_of_a_scene_share_a_scale_and_a_larger_one_widens_it() -> None:
+    scales = Scales()
+    first = scales.of(frames_at(LOUD), LOUD)
+    assert scales.of(frames_at(QUIET), QUIET) == first
+    driven = LOUD.evolve(A0=2e-6)
+    wider = scales.of(frames_at(driven), driven)
+    assert wider.output_force > first.output_force
+    assert scales.of(frames_at(QUIET), QUIET) == wider
+    scales.forget()
+    assert scales.of(frames_at(QUIET), QUIET) == first
+
+
+def test_a_fitted_picture_is_drawn_to_its_own_values() -> None:
+    scales = Scales()
+    scales.fit = True
+    frames = frames_at(QUIET)
+    own = scales.of(frames, QUIET)
+    assert own == extremes_of(frames)
+    assert own.kinetic_energy < 0.05 * Scales().of(frames, QUIET).kinetic_energy
+    message = frames_message(1, frames, QUIET, own, True, False, False)
+    assert message["scale"] is None
+
+
+def test_every_scene_has_a_scale() -> None:
+    tables = tomllib.loads(FILE.read_text(encoding="utf-8"))
+    assert sorted(tables) == sorted(scene_names())
+
+
+def test_the_scale_of_a_scene_is_what_its_motion_needs() -> None:
+    """Computed afresh at every frequency; the file keeps three figures."""
+    told = tomllib.loads(FILE.read_text(encoding="utf-8"))["sec2"]
+    assert told == pytest.approx(dict(over_frequencies(scene("sec2")).items()), rel=5e-3)
+
+
+def test_the_middle_of_the_colour_bar_is_a_quarter_of_its_end() -> None:
+    assert energy_labels(4e-7) == ["0", "100", "400 nJ"]
+
+
+def test_an_overlap_counts_driver_and_wall() -> None:
+    frames = frames_at(LOUD)
+    pressed = replace(frames, drive_displacement=frames.displacement[:, 0] + 1e-3)
+    assert extremes_of(pressed).overlap == pytest.approx(1e-3)

@@ -1,0 +1,51 @@
+"""The wheel installs only names that are ours, and works without the tree."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+#: What the hook in hatch_build.py is asked, without a network to fetch hatchling.
+PLACES = """
+import sys, types
+for name in ("hatchling", "hatchling.builders", "hatchling.builders.hooks", "hatchling.builders.hooks.plugin",
+             "hatchling.builders.hooks.plugin.interface"):
+    sys.modules[name] = types.ModuleType(name)
+sys.modules[name].BuildHookInterface = object
+import hatch_build
+hook, standard, editable = hatch_build.CustomBuildHook(), {}, {}
+hook.root = "."
+hook.initialize("standard", standard)
+hook.initialize("editable", editable)
+assert editable == {}, editable
+for here, there in standard["force_include"].items():
+    print(here, there)
+"""
+
+
+def wheel(folder: Path) -> set[str]:
+    """Put what a wheel has where pip would put it; the names at the top."""
+    said = subprocess.run([sys.executable, "-c", PLACES], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    places = [(name, name) for name in ("granchain", "granchain_core", "granchain_start")]
+    places += [(here, there) for here, there in map(str.split, said.splitlines())]
+    for here, there in places:
+        target = folder / there
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if (ROOT / here).is_dir():
+            shutil.copytree(ROOT / here, target, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(ROOT / here, target)
+    return {path.name for path in folder.iterdir()}
+
+
+def test_the_wheel_has_only_names_that_are_ours_and_runs(tmp_path: Path) -> None:
+    assert wheel(tmp_path) == {"granchain", "granchain_core", "granchain_app", "granchain_start"}
+    assert not (tmp_path / "granchain_app" / "main.py").exists()
+    code = ("import sys; sys.path.insert(0, sys.argv.pop(1)); import granchain_start; status = granchain_start.entry(); "
+            "sys.exit(status or int('app' in sys.modules or 'granchain_app' not in sys.modules))")
+    ran = subprocess.run([sys.executable, "-c", code, str(tmp_path), "scenes", "--json"], cwd=tmp_path, text=True,
+                         capture_output=True, check=False)
+    assert ran.returncode == 0 and '"sec2"' in ran.stdout, ran.stderr

@@ -1,0 +1,98 @@
+"""A0 over the frequency: formulas, tables, what is refused, and that it drives a curve and stays with it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.cli import main
+from granchain_core import Amplitude, BadInput, resonance_curve, scene
+from granchain_core.experiment import read_amplitude
+from granchain_core.steady.curve.resonance_curve import Curve
+from granchain_core.store import save_curve
+from granchain_core.store.curves import load_curve
+
+CHAIN = scene("sec2").evolve(N=2)
+
+
+@pytest.mark.parametrize(("formula", "value", "expected"), [
+    ("constant-displacement", 7e-6, 7e-6), ("constant-velocity", 3e-3, 3e-3 / (2 * np.pi * 60)),
+    ("constant-acceleration", 1.5, 1.5 / (2 * np.pi * 60) ** 2)])
+def test_a_formula(formula: str, value: float, expected: float) -> None:
+    assert Amplitude(formula, (value,)).at(60.0) == pytest.approx(expected)
+    assert read_amplitude(f"{formula}={value}") == Amplitude(formula, (value,))
+
+
+def test_a_table_is_straight_between_and_ends_where_it_ends(tmp_path: Path) -> None:
+    path = tmp_path / "shaker.csv"
+    path.write_text("f [Hz];A0 [µm]\n100;6\n50;8\n", encoding="utf-8")
+    table = read_amplitude(str(path))
+    assert table.at(75.0) == pytest.approx(7e-6) and table.at(50.0) == pytest.approx(8e-6)
+    with pytest.raises(BadInput, match=r"from 50 to 100 Hz, not at 101 Hz; the nearest valid value is 100"):
+        table.at(101.0)
+    assert "A0 from 6 to 8 µm over 2 frequencies of shaker.csv" in table.words
+
+
+@pytest.mark.parametrize(("text", "sentence"), [
+    ("constant-speed=1", "Unknown drive 'constant-speed'"), ("constant-velocity=fast", "is not a number in m/s"),
+    ("constant-velocity=0", "above 0"), ("none.csv", "Cannot read")])
+def test_what_is_no_drive(text: str, sentence: str) -> None:
+    with pytest.raises(BadInput, match=sentence):
+        read_amplitude(text)
+
+
+@pytest.mark.parametrize("data", [
+    None, {}, {"formula": "table", "values": [1e-6], "frequencies": [], "source": ""},
+    {"formula": 1, "values": [1e-6], "frequencies": [], "source": ""},
+    {"formula": "table", "values": [True, 2.0], "frequencies": [1, 2], "source": ""},
+    {"formula": "table", "values": [1e-6, 1e-6], "frequencies": [2, 1], "source": ""}])
+def test_a_damaged_description_is_refused(data: Any) -> None:
+    with pytest.raises(BadInput):
+        Amplitude.from_json(data)
+
+
+def test_every_point_has_its_own_amplitude() -> None:
+    """The same as one curve for each amplitude; k stays."""
+    drive = Amplitude.table([1800.0, 2000.0], [4e-7, 6e-7])
+    curve = resonance_curve(CHAIN, [1800.0, 1900.0, 2000.0], amplitude=drive)
+    assert list(curve.drive_amplitude) == pytest.approx([4e-7, 5e-7, 6e-7])
+    for point, a in zip(curve.points, curve.drive_amplitude, strict=True):
+        alone = resonance_curve(CHAIN.evolve(A0=a), [point.frequency]).points[0]
+        assert point.max_output_force == pytest.approx(alone.max_output_force, rel=1e-9)
+
+
+def test_it_is_saved_with_the_curve(tmp_path: Path) -> None:
+    drive = Amplitude("constant-velocity", (6e-3,))
+    curve = resonance_curve(CHAIN, [1800.0, 2000.0], amplitude=drive)
+    save_curve(curve, tmp_path / "a.h5")
+    again = load_curve(tmp_path / "a.h5")
+    assert again.amplitude == drive and list(again.drive_amplitude) == list(curve.drive_amplitude)
+    plain = Curve(CHAIN, "rest", curve.points)
+    save_curve(plain, tmp_path / "b.h5")
+    assert load_curve(tmp_path / "b.h5").amplitude is None
+
+
+def test_the_command_line_takes_it_and_goes_on_with_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["curve", "sec2", "--set", "N=2", "--from", "1800", "--to", "2000", "--points", "3", "--json", "--out", str(tmp_path / "a.h5")]
+    assert main([*words, "--amplitude", "constant-velocity=6e-3"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["drive_amplitude"] == pytest.approx([6e-3 / (2 * np.pi * f) for f in told["frequency"]])
+    assert main([*words, "--amplitude", "constant-velocity=6e-3", "--resume"]) == 0
+    assert "finished already" in capsys.readouterr().err
+    assert main([*words, "--amplitude", "constant-velocity=7e-3", "--resume"]) == 2
+    assert "the finished curve of other words" in capsys.readouterr().err
+
+
+def test_what_is_unclear_in_a_file_is_asked_with_its_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "shaker.csv"
+    path.write_text("1.8;5\n2.0;6\n", encoding="utf-8")
+    words = ["curve", "sec2", "--set", "N=2", "--from", "1800", "--to", "2000", "--points", "2", "--amplitude", str(path)]
+    assert main(words) == 2
+    asked = capsys.readouterr().err
+    assert "line 1" in asked and "1.8" in asked and "--column" in asked
+    assert main([*words, "--column", "f=1:kHz", "--column", "A0=2:nm", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["drive_amplitude"] == pytest.approx([5e-9, 6e-9])

@@ -1,0 +1,320 @@
+"""What docs/security.md promises a server that strangers reach: each sentence is a test here."""
+
+from __future__ import annotations
+
+import asyncio
+import http.client
+import json
+import logging
+import re
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from bokeh.util.token import generate_jwt_token, generate_session_id
+from tornado.ioloop import IOLoop
+
+from app import server
+from app.cli import main
+from app.serve import guard
+from app.serve.compiler import Compiler
+from app.server import Access, is_loopback, server_at
+
+SECRET = b"a secret of this test alone, long enough"
+
+
+class Listening:
+    """A signed dashboard in a thread, reached as 127.0.0.1."""
+
+    def __init__(self, access: Access) -> None:
+        started = threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(access, started), daemon=True)
+        self._thread.start()
+        assert started.wait(60)
+
+    def _run(self, access: Access, started: threading.Event) -> None:
+        asyncio.set_event_loop(asyncio.new_event_loop())
+        self.loop = IOLoop.current()
+        one = server_at(0, "127.0.0.1", access=access)
+        self.port = one.port
+        one.start()
+        self.loop.add_callback(started.set)
+        self.loop.start()
+        one.stop()
+
+    def stop(self) -> None:
+        """End it."""
+        self.loop.add_callback(self.loop.stop)
+        self._thread.join(20)
+
+    def ask(self, path: str = "/", **headers: str) -> tuple[int, dict[str, str], str]:
+        """Status, headers and text of an answer."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        connection.request("GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()})
+        answer = connection.getresponse()
+        found = answer.status, dict(answer.getheaders()), answer.read().decode(errors="replace")
+        connection.close()
+        return found
+
+    def token(self) -> str:
+        """The token in a new page."""
+        found = re.search(r'"token":"([^"]+)"', self.ask()[2])
+        assert found is not None
+        return found.group(1)
+
+    def connect(self, token: str, **headers: str) -> int:
+        """The status that a websocket with this token gets: 101 where it is let in."""
+        return self.open(token, **headers)[0]
+
+    def open(self, token: str, **headers: str) -> tuple[int, socket.socket]:
+        """The same, and its socket."""
+        one = socket.create_connection(("127.0.0.1", self.port), timeout=60)
+        words = {"Host": f"127.0.0.1:{self.port}", "Upgrade": "websocket", "Connection": "Upgrade",
+                 "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version": "13",
+                 "Sec-WebSocket-Protocol": f"bokeh, {token}", "Origin": f"http://127.0.0.1:{self.port}", **headers}
+        one.sendall(("GET /ws HTTP/1.1\r\n" + "".join(f"{a}: {b}\r\n" for a, b in words.items()) + "\r\n").encode())
+        return int(one.recv(4096).split()[1]), one
+
+
+@pytest.fixture(scope="module")
+def dashboard() -> Iterator[Listening]:
+    """As a public one is served, but here."""
+    one = Listening(Access(secret=SECRET, most_visitors=40))
+    yield one
+    one.stop()
+
+
+def test_every_answer_has_its_headers(dashboard: Listening) -> None:
+    for path in ("/", "/liveness", "/nothing", "/static/js/bokeh.min.js", "/metrics", "/favicon.ico"):
+        headers = dashboard.ask(path)[1]
+        assert headers["X-Content-Type-Options"] == "nosniff", path
+        assert "frame-ancestors 'self'" in headers["Content-Security-Policy"] and "object-src 'none'" in headers["Content-Security-Policy"]
+        assert headers["X-Frame-Options"] == "SAMEORIGIN" and re.fullmatch("[0-9a-f]{12}", headers["X-Request-Id"])
+        assert headers["Server"] == "granchain"
+
+
+def test_embedding_is_allowed_where_it_is_asked_for() -> None:
+    headers = guard.Rules(embedding=("https://courses.example.org",)).headers()
+    assert "frame-ancestors 'self' https://courses.example.org" in headers["Content-Security-Policy"]
+    assert "X-Frame-Options" not in headers
+
+
+def test_another_host_is_refused(dashboard: Listening) -> None:
+    """A page of a stranger's that resolves its own name to this machine asks under that name."""
+    for name in ("evil.example.org", "127.0.0.1.evil.example.org", f"evil.example.org:{dashboard.port}"):
+        assert dashboard.ask("/", Host=name)[0] == 421
+    assert dashboard.ask("/", Host=f"localhost:{dashboard.port}")[0] == 200
+
+
+def test_names_may_have_wildcards() -> None:
+    rules = guard.Rules(frozenset({"*.example.org", "localhost"}))
+    assert rules.serves("granchain.example.org") and rules.serves("LOCALHOST")
+    assert not rules.serves("example.org.evil.net") and not rules.serves("127.0.0.1")
+
+
+@pytest.mark.parametrize(("path", "headers"), [
+    ("/?bokeh-session-id=mine", {}), ("/", {"Bokeh_Session_Id": "mine"}), ("/autoload.js?bokeh-session-id=mine", {}),
+    ("/?bokeh-token=mine", {}), ("/metadata?bokeh-session-id=mine", {})])
+def test_a_clients_own_session_id_is_refused(path: str, headers: dict[str, str], dashboard: Listening) -> None:
+    assert dashboard.ask(path, **headers)[0] == 403
+
+
+def test_a_session_has_one_connection(dashboard: Listening) -> None:
+    token = dashboard.token()
+    assert dashboard.connect(token) == 101
+    assert dashboard.connect(token) == 403, "a second one, or a replayed token"
+
+
+def test_a_token_of_another_secret_gets_no_session(dashboard: Listening) -> None:
+    for secret in (b"another secret, of a stranger", None):
+        session = generate_session_id(secret_key=secret, signed=secret is not None)
+        token = generate_jwt_token(session, secret_key=secret, signed=secret is not None)
+        status, one = dashboard.open(token)
+        assert status in (101, 403)
+        if status == 101:  # Bokeh looks at the signature after the handshake, and closes
+            one.settimeout(20)
+            rest = b""
+            while more := one.recv(4096):
+                rest += more
+            assert b"ACK" not in rest
+        one.close()
+
+
+@pytest.mark.parametrize("token", ["", "nonsense", "a.b", "é", "A" * 5000])
+def test_no_token_no_connection(token: str, dashboard: Listening) -> None:
+    assert dashboard.connect(token) in (400, 403)
+
+
+def test_another_origin_gets_no_connection(dashboard: Listening) -> None:
+    assert dashboard.connect(dashboard.token(), Origin="https://evil.example.org") == 403
+
+
+def test_an_error_has_an_id_that_is_in_the_log_and_no_traceback(dashboard: Listening, monkeypatch: pytest.MonkeyPatch,
+                                                                caplog: pytest.LogCaptureFixture) -> None:
+    def fails(*_: object) -> Any:
+        raise ZeroDivisionError("the words of an error of ours")
+
+    monkeypatch.setattr("app.serve.meters.METERS.text", fails)
+    with caplog.at_level(logging.WARNING, logger="granchain.requests"):
+        status, headers, text = dashboard.ask("/metrics")
+    assert status == 500 and headers["X-Request-Id"] in text
+    assert not any(word in text for word in ("Traceback", "/", "ZeroDivision", "words of"))
+    (record,) = [one for one in caplog.records if getattr(one, "request", "") == headers["X-Request-Id"]]
+    assert record.exc_info and "words of an error" in str(record.exc_info[1])
+
+
+def test_a_page_that_is_only_fetched_starts_no_compiler(dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[object] = []
+    monkeypatch.setattr(Compiler, "prepare", lambda *words: asked.append(words))
+    monkeypatch.setattr(Compiler, "ask", lambda *words: asked.append(words))
+    for query in ("/", "/?k=1e5&dissipation=tsuji&tension=cut", "/?scene=rig&F0=10"):
+        assert dashboard.ask(query)[0] == 200
+    assert asked == []
+
+
+def test_there_are_at_most_so_many_visitors() -> None:
+    one = Listening(Access(secret=SECRET, most_visitors=2))
+    try:
+        assert [one.ask()[0] for _ in range(3)] == [200, 200, 503]
+        assert "try again in a minute" in one.ask()[2]
+        assert one.ask("/liveness")[0] == 200
+    finally:
+        one.stop()
+
+
+def test_a_connection_that_sends_half_a_request_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "IDLE", 1)
+    one = Listening(Access(secret=SECRET))
+    try:
+        with socket.create_connection(("127.0.0.1", one.port), timeout=30) as half:
+            half.sendall(b"GET / HTTP/1.1\r\nHost: local")
+            assert half.recv(100) == b""
+    finally:
+        one.stop()
+
+
+def test_a_websocket_that_answers_no_ping_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "PING", 1)
+    one = Listening(Access(secret=SECRET))
+    try:
+        status, silent = one.open(one.token())
+        assert status == 101
+        silent.settimeout(60)
+        while silent.recv(4096):
+            pass
+        silent.close()
+    finally:
+        one.stop()
+
+
+def test_too_large_a_body_is_refused(dashboard: Listening) -> None:
+    with socket.create_connection(("127.0.0.1", dashboard.port), timeout=30) as one:
+        one.sendall(b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000000000\r\n\r\n")
+        answer = one.recv(1000)
+        assert answer == b"" or b" 4" in answer.split(b"\r\n")[0]
+
+
+class Socket:
+    """What a guarded websocket is mixed with here."""
+
+    def __init__(self) -> None:
+        self.taken, self.closed = 0, 0
+        self.request = type("Request", (), {"remote_ip": "127.0.0.1"})
+
+    async def on_message(self, fragment: str) -> None:
+        """One more."""
+        self.taken += 1
+
+    def close(self, code: int, reason: str) -> None:
+        """Closed with a reason."""
+        self.closed = code
+
+
+def test_a_flood_of_messages_closes_the_connection() -> None:
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+
+    async def flood() -> None:
+        for _ in range(int(guard.FRAMES_AT_ONCE) + 2000):
+            await one.on_message("x")
+            if one.closed:
+                return
+
+    asyncio.run(flood())
+    assert one.closed == 1008 and one.taken <= guard.FRAMES_AT_ONCE + 1500
+
+
+@pytest.mark.parametrize(("address", "only_here"), [
+    ("127.0.0.1", True), ("localhost", True), ("::1", True), ("127.8.8.8", True), ("0.0.0.0", False), ("", False),
+    ("::", False), ("192.168.1.4", False), ("granchain.example.org", False)])
+def test_which_addresses_are_public(address: str, only_here: bool) -> None:
+    assert is_loopback(address) is only_here
+
+
+@pytest.mark.parametrize("words", [
+    [], ["--allow-websocket-origin", "granchain.example.org"], ["--generate-secret"]])
+def test_a_public_address_needs_origins_and_a_secret(words: list[str], capsys: pytest.CaptureFixture[str],
+                                                     monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("BOKEH_SECRET_KEY", raising=False)
+    assert main(["serve", "--address", "0.0.0.0", "--port", "6199", *words]) == 2
+    said = capsys.readouterr().err
+    assert "--allow-websocket-origin" in said and "--generate-secret" in said and "docs/security.md" in said
+
+
+def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(server, "serve", lambda *words, **named: asked.append((words, named)))
+    (tmp_path / "secret").write_bytes(SECRET + b"\n")
+    (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
+    assert main(["serve", "--address", "0.0.0.0", "--allow-websocket-origin", "a.example.org", "--secret-file",
+                 str(tmp_path / "secret"), "--basic-auth", str(tmp_path / "users.json"), "--most-visitors", "9"]) == 0
+    (words, named), = asked
+    access = named["access"]
+    assert words == (5006, "0.0.0.0") and access.secret == SECRET and access.most_visitors == 9
+    assert access.origins == ("a.example.org",) and dict(access.sign_in)["basic_auth"] == str(tmp_path / "users.json")
+    assert len(dict(access.sign_in)["cookie_secret"]) == 64
+
+
+@pytest.mark.parametrize(("words", "sentence"), [
+    (["--secret-file", "/nowhere/secret"], "cannot be read"), (["--oauth-provider", "github"], "PANEL_OAUTH_KEY"),
+    (["--most-visitors", "0"], "outside 1 to 10000"), (["--basic-auth", "/nowhere"], "cannot be read")])
+def test_what_cannot_be_used_is_refused_with_a_sentence(words: list[str], sentence: str,
+                                                        capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serve", *words]) == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_with_basic_auth_a_page_asks_who_it_is(tmp_path: Any) -> None:
+    (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
+    one = Listening(Access(secret=SECRET, sign_in=(("basic_auth", str(tmp_path / "users.json")), ("cookie_secret", "x" * 32))))
+    try:
+        status, headers, _ = one.ask()
+        assert status == 302 and "/login" in headers["Location"]
+        session = generate_session_id(secret_key=SECRET, signed=True)
+        token = generate_jwt_token(session, secret_key=SECRET, signed=True)
+        assert one.connect(token) == 403
+        assert one.ask("/liveness")[0] == 200
+    finally:
+        one.stop()
+
+
+def test_the_metrics_have_the_format_of_prometheus(dashboard: Listening) -> None:
+    status, headers, text = dashboard.ask("/metrics")
+    assert status == 200 and headers["Content-Type"].startswith("text/plain; version=0.0.4")
+    for line in text.splitlines():
+        assert re.fullmatch(r'# (HELP|TYPE) granchain_\w+ .+|granchain_\w+(\{le="[^"]+"\})? \S+', line), line
+    for name in ("visitors", "pictures_total", "answer_seconds_bucket", "queue", "cancelled_total", "picture_cache_hits_total",
+                 "resident_memory_bytes"):
+        assert f"granchain_{name}" in text
+
+
+def test_a_line_of_the_log_is_json_with_the_requests_id() -> None:
+    from app.serve.logs import Lines
+
+    record = logging.LogRecord("granchain", logging.WARNING, __file__, 1, "refused: %s", ("why",), None)
+    record.request = "0123456789ab"
+    said = json.loads(Lines().format(record))
+    assert said["message"] == "refused: why" and said["request"] == "0123456789ab" and said["level"] == "warning"
+    assert time.strptime(said["time"][:19], "%Y-%m-%dT%H:%M:%S")

@@ -1,0 +1,93 @@
+"""A visit that is over leaves nothing: no page, no computation, no call."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import logging
+import time
+
+import pytest
+from bokeh.document import Document
+from test_security import Listening
+
+from app.page.controller import Controller
+from app.serve.queues import PICTURES, VISITORS
+from app.server import Access
+from granchain_core import OverBudget, scene
+from granchain_core.run.budget import check_picture
+from tools.visitors.viewer import Viewer, query_of
+
+
+def alive(kind: type) -> int:
+    """How many objects of a kind there are."""
+    gc.collect()
+    return sum(issubclass(type(one), kind) for one in gc.get_objects())
+
+
+def until(holds: object, seconds: float = 60.0) -> None:
+    """Wait until something holds."""
+    end = time.monotonic() + seconds
+    while not holds():  # type: ignore[operator]
+        assert time.monotonic() < end, "did not come"
+        time.sleep(0.1)
+
+
+async def visit(address: str, query: str = "", moves: int = 2) -> Viewer:
+    """Open, move and leave."""
+    viewer = Viewer(address, query)
+    await viewer.open()
+    for number in range(moves):
+        assert await viewer.move("f", 400.51 + number) is not None
+    await viewer.leave()
+    return viewer
+
+
+def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) -> None:
+    """A handler that Panel keeps for each document once kept every page: 1.5 MB a visit."""
+    one = Listening(Access())
+    try:
+        address = f"http://127.0.0.1:{one.port}"
+        before = alive(Controller), alive(Document)
+        with caplog.at_level(logging.ERROR):
+            for _ in range(3):
+                asyncio.run(visit(address))
+            until(lambda: (alive(Controller), alive(Document)) == before)
+        assert not [record for record in caplog.records if record.levelno >= logging.ERROR]
+    finally:
+        one.stop()
+
+
+def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit() -> None:
+    """The bomb of ten thousand beads at 0.1 Hz: refused, insisted on, and left."""
+
+    async def insist(address: str) -> str:
+        viewer = Viewer(address, query_of(N=10000, f=0.1, A0=1e-4))
+        opening = asyncio.create_task(viewer.open(600.0))
+        while not any("would take" in said for said in viewer.sentences):
+            await asyncio.sleep(0.05)
+        assert PICTURES.busy == 0, "nothing is computed before"
+        await viewer.say(do="insist")
+        while PICTURES.busy == 0:
+            await asyncio.sleep(0.05)
+        await viewer.leave()
+        opening.cancel()
+        return " ".join(viewer.sentences)
+
+    one = Listening(Access())
+    try:
+        said = asyncio.run(asyncio.wait_for(insist(f"http://127.0.0.1:{one.port}"), 300))
+        assert "would take about" in said and "N = " in said and "insist" in said
+        until(lambda: PICTURES.busy == 0 and VISITORS.busy == 0)
+    finally:
+        one.stop()
+
+
+def test_what_is_said_to_fit_fits() -> None:
+    chain = scene("sec2").evolve(N=10_000, f=0.5)
+    with pytest.raises(OverBudget, match=r"N = (\d+) or f = ([\d.]+) Hz would fit") as refused:
+        check_picture(chain, 6, 384, 5.0)
+    words = str(refused.value).split()
+    beads, frequency = int(words[words.index("N") + 2]), float(words[words.index("f") + 2])
+    check_picture(chain.evolve(N=beads), 6, 384, 5.0)
+    check_picture(chain.evolve(f=frequency), 6, 384, 5.0)
