@@ -1,7 +1,12 @@
 """What was measured: the features the paper's text states, and a user's own data."""
 
+from .compare import Difference, compared
+from .drive import read_amplitude
 from .features import Feature, stated_features
-from .measured import Measured, read_measured_csv
-from .series import Series, Shaker, read_experiment
+from .measured import Measured
+from .question import Answers, Question, Unclear, answers_of
+from .reader import read_data, read_experiment
+from .series import Series, Shaker
 
-__all__ = ["Feature", "Measured", "Series", "Shaker", "read_experiment", "read_measured_csv", "stated_features"]
+__all__ = ["Answers", "Difference", "Feature", "Measured", "Question", "Series", "Shaker", "Unclear", "answers_of",
+           "compared", "read_amplitude", "read_data", "read_experiment", "stated_features"]

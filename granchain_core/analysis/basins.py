@@ -1,0 +1,121 @@
+"""Basins of attraction in a plane of starts: to which steady state each start leads.
+
+A start is the chain at rest but for two coordinates at drive phase 0, each the displacement or the velocity of a bead.
+The space of starts has 2N dimensions; of it a plane shows a slice, in which a basin may be missing or in pieces.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..diagram.attractors import Attractor, Origin, attractors_from
+from ..errors import BadInput
+from ..integrate import State
+from ..scene import Scene
+from ..stop import Stop
+
+#: Most starts of one picture.
+MOST_CELLS = 250_000
+
+
+@dataclass(frozen=True, eq=False)
+class Basins:
+    """Where the starts of a plane lead.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    x, y : tuple of (str, numpy.ndarray)
+        The coordinates, "u3" for bead 3's displacement [m] or "v3" for its velocity [m/s], and their values.
+    attractors : list of Attractor
+        The steady states that were found, the one with the most starts first.
+    number : numpy.ndarray of int, shape (len(y), len(x))
+        Place in `attractors`; −1 where the numbers failed or the computation was stopped.
+
+    Examples
+    --------
+    >>> from granchain_core import basins, scene
+    >>> found = basins(scene("sec2").evolve(N=2, f=2000.0), ("u1", [0.0, 1e-7]), ("v1", [0.0, 1e-3]))
+    >>> found.number
+    array([[0, 0],
+           [0, 0]])
+    """
+
+    scene: Scene
+    x: tuple[str, np.ndarray]
+    y: tuple[str, np.ndarray]
+    attractors: list[Attractor]
+    number: np.ndarray
+
+    @property
+    def shares(self) -> np.ndarray:
+        """Part of the plane's starts that leads to each attractor."""
+        return np.array([(self.number == i).mean() for i in range(len(self.attractors))])
+
+
+def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]], stop: Stop | None = None,
+           progress: Callable[[float], None] | None = None) -> Basins:
+    """To which steady state each start of a plane leads.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    x, y : tuple of (str, iterable of float)
+        A coordinate, "u1" … "uN" [m] or "v1" … "vN" [m/s], and its values. All others are 0 at the start.
+    stop : Stop, optional
+        Once it is set the computation ends with what is there; other starts are −1.
+    progress : callable, optional
+        Told the part that is done, 0 to 1.
+
+    Returns
+    -------
+    Basins
+        Attractors, and the place of each start's among them.
+
+    Raises
+    ------
+    BadInput
+        Another coordinate, twice the same, or too many starts.
+    NumbersFailed
+        No start stays finite.
+
+    Examples
+    --------
+    >>> from granchain_core import basins, scene
+    >>> found = basins(scene("sec2").evolve(N=2, f=2000.0), ("u1", [0.0, 1e-7]), ("u2", [0.0]))
+    >>> [(one.regime.period, len(one.origins)) for one in found.attractors]
+    [(1, 2)]
+    """
+    axes = [_axis(scene, *x), _axis(scene, *y)]
+    (x_place, xs), (y_place, ys) = axes
+    if x_place == y_place:
+        raise BadInput(f"x and y are both {x[0]}; a plane has two different coordinates.")
+    if not 1 <= len(xs) * len(ys) <= MOST_CELLS:
+        raise BadInput(f"A plane has 1 to {MOST_CELLS} starts, not {len(xs)} × {len(ys)}.")
+    origins = []
+    for number in range(len(xs) * len(ys)):
+        state = np.zeros((2, scene.N))
+        state[x_place], state[y_place] = xs[number % len(xs)], ys[number // len(xs)]
+        origins.append(Origin(str(number), State(*state)))
+    listed = sorted(attractors_from(scene, origins, stop, progress), key=lambda one: -len(one.origins))
+    place = np.full(len(origins), -1)
+    for i, attractor in enumerate(listed):
+        place[[int(origin.name) for origin in attractor.origins]] = i
+    return Basins(scene, (x[0], xs), (y[0], ys), listed, place.reshape(len(ys), len(xs)))
+
+
+def _axis(scene: Scene, name: str, values: Iterable[float]) -> tuple[tuple[int, int], np.ndarray]:
+    """Place of a coordinate in a state (2, N), and its values."""
+    found = re.fullmatch(r"([uv])([1-9][0-9]{0,4})", name, re.ASCII)
+    if found is None or int(found[2]) > scene.N:
+        raise BadInput(f"Coordinate {name[:40]!r} is none; there are u1 to u{scene.N} [m] and v1 to v{scene.N} [m/s].")
+    numbers = np.asarray(list(values), dtype=float)
+    if not np.isfinite(numbers).all():
+        raise BadInput(f"The values of {name} must be finite numbers.")
+    return ("uv".index(found[1]), int(found[2]) - 1), numbers

@@ -1,0 +1,147 @@
+"""All Lyapunov exponents of the stroboscopic map, and the Kaplan–Yorke dimension of its attractor.
+
+Equation   Q_{p+1} R_{p+1} = M_p Q_p with M_p the derivative of the map over period p
+           λ_i = ⟨ln |R_ii|⟩ per drive period
+           D_KY = j + (λ_1 + … + λ_j) / |λ_{j+1}| with the largest j for which the sum is not negative
+Source     Benettin et al. 1980; Kaplan & Yorke 1979; standard errors from means of blocks
+Note       The sum of all exponents is the mean of ∫ trace along the motion (Liouville), which is computed beside them.
+           A strong dashpot shrinks some directions by more than double precision resolves in a period: such exponents
+           are bounds from above, and `resolved` says how many are more than that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import check_range
+from ..integrate import State
+from ..orbits.flow import StroboscopicMap
+from ..orbits.orbit import MOST_BEADS_DENSE
+from ..scene import Scene
+from ..steady.settling.settling import run_until_settled
+from ..stop import Stop
+
+#: Directions that shrink in one period by more than this part of the one that grows most are rounding.
+_ROUNDING = 1e-12
+#: Periods in which the directions turn into their places, not counted.
+_TURNING = 50
+#: Most periods of one measurement.
+MOST_PERIODS = 1_000_000
+#: Blocks over which the standard errors are taken.
+_BLOCKS = 20
+
+
+@dataclass(frozen=True, eq=False)
+class LyapunovSpectrum:
+    """The Lyapunov exponents of a motion.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    exponents, errors : numpy.ndarray, shape (2N,)
+        Per drive period, largest first, and their standard errors.
+    resolved : int
+        How many of them are known; the others are at most what is given.
+    periods : int
+        Drive periods over which they are means.
+    mean_trace : float
+        Mean of ∫ trace per period: what the exponents must add up to if all are resolved.
+
+    Examples
+    --------
+    >>> from granchain_core import lyapunov_spectrum, scene
+    >>> found = lyapunov_spectrum(scene("sec2").evolve(N=2, f=2000.0), periods=40)
+    >>> found.exponents.shape, bool(found.exponents[0] < 0.0), found.dimension
+    ((4,), True, 0.0)
+    """
+
+    scene: Scene
+    exponents: np.ndarray
+    errors: np.ndarray
+    resolved: int
+    periods: int
+    mean_trace: float
+
+    @property
+    def dimension(self) -> float | None:
+        """Kaplan–Yorke dimension of the section's attractor; that of the flow is one more.
+
+        2N where no sum is negative, as without damping; None where it depends on exponents that are not resolved.
+        """
+        sums = np.cumsum(self.exponents)
+        if sums[0] < 0.0:
+            return 0.0
+        last = int(np.nonzero(sums >= 0.0)[0][-1])
+        if last + 1 >= self.resolved:
+            return float(len(sums)) if self.resolved == len(sums) else None
+        return float(last + 1 + sums[last] / abs(self.exponents[last + 1]))
+
+    @property
+    def liouville(self) -> float | None:
+        """Difference of their sum from the mean trace, over the larger of it and 1; None unless all are resolved."""
+        if self.resolved < len(self.exponents):
+            return None
+        return float(abs(self.exponents.sum() - self.mean_trace) / max(1.0, abs(self.mean_trace)))
+
+
+def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = None, stop: Stop | None = None,
+                      progress: Callable[[float], None] | None = None) -> LyapunovSpectrum:
+    """All Lyapunov exponents of the motion that a chain settles to.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain, of at most 100 beads, tension allowed.
+    periods : int
+        Drive periods over which the exponents are means, 20 to 1,000,000.
+    start : State, optional
+        Where the chain starts before it settles; its scene's start if not given.
+    stop : Stop, optional
+        Once it is set the computation ends with `Cancelled`.
+    progress : callable, optional
+        Told the part that is done, 0 to 1.
+
+    Returns
+    -------
+    LyapunovSpectrum
+        Exponents with standard errors.
+
+    Raises
+    ------
+    BadInput
+        Too many beads, tension cut, or a number of periods out of range.
+    NumbersFailed
+        The motion did not stay finite.
+
+    Examples
+    --------
+    >>> from granchain_core import lyapunov_spectrum, scene
+    >>> found = lyapunov_spectrum(scene("sec2").evolve(N=2, f=2000.0), periods=20)
+    >>> bool(found.exponents.sum() < 0.0)
+    True
+    """
+    check_range("periods =", periods, _BLOCKS, MOST_PERIODS)
+    check_range("N =", scene.N, 1, MOST_BEADS_DENSE)
+    stroboscopic_map = StroboscopicMap(scene, 1, stop)
+    x = stroboscopic_map.inner(run_until_settled(scene, start, stop).engine.y)
+    size = len(x)
+    directions, growth, traces = np.eye(size), np.zeros((_TURNING + periods, size)), np.zeros(_TURNING + periods)
+    rounding = np.zeros(size, dtype=bool)
+    for p in range(len(growth)):
+        flow = stroboscopic_map(x, directions=directions)
+        directions, triangle = np.linalg.qr(flow.derivative)
+        shrinks = np.abs(np.diag(triangle))
+        rounding |= shrinks <= _ROUNDING * shrinks.max()
+        growth[p] = np.log(np.maximum(shrinks, np.finfo(float).tiny))
+        x, traces[p] = flow.end, flow.log_determinant
+        if progress is not None:
+            progress((p + 1) / len(growth))
+    counted = growth[_TURNING:]
+    blocks = np.array([part.mean(axis=0) for part in np.array_split(counted, _BLOCKS)])
+    resolved = int(np.argmax(rounding)) if rounding.any() else size
+    errors = blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
+    return LyapunovSpectrum(scene, counted.mean(axis=0), errors, resolved, periods, float(traces[_TURNING:].mean()))

@@ -1,0 +1,188 @@
+"""Spectra of forces, and the transfer from the input force to the output force.
+
+Equation   F(t) = Σ_m A_m cos(2π m f t / n + φ_m) for a motion of period n: its Fourier series, without a window
+           H_m = F̂_out,m / F̂_in,m at the lines at which the input force has a part that counts
+Note       A motion that is not periodic has no lines. Its record is weighted by a Hann window, and a peak's height is
+           that of a sine that stands alone; two peaks closer than 2 / duration are one.
+           Samples see nothing above half their frequency, and what is there is folded back. `aliasing` estimates it:
+           twice the largest difference from the lines that every second sample gives, below half of its frequencies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput, unknown_name
+from ..result import Run
+
+#: Forces that have a spectrum, as attributes of a run, and their names.
+FORCES = {"input": "input_force", "output": "output_force", "elastic": "output_force_elastic"}
+#: Part of the input force's largest line that a line must have to be the denominator of a transfer.
+_COUNTS = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Spectrum:
+    """Amplitudes of a force over frequency.
+
+    Attributes
+    ----------
+    run : Run
+        The motion.
+    force : str
+        "input", "output" or "elastic".
+    frequency : numpy.ndarray, shape (M,)
+        From 0 to half the sampling frequency [Hz].
+    amplitude : numpy.ndarray, shape (M,)
+        Of the cosine at each frequency, the mean at 0 [N].
+    phase : numpy.ndarray, shape (M,)
+        Of the cosine at each frequency, counted from drive phase 0 [rad].
+    period : int or None
+        Drive periods of the motion whose Fourier series it is; None: a windowed record of a motion without period.
+    aliasing : float
+        Estimate of the part of an amplitude that is folded back from above half the sampling frequency [N].
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle, spectrum
+    >>> lines = spectrum(settle(scene("sec2").evolve(N=2, f=2000.0)).run)
+    >>> lines.period, float(lines.frequency[1])
+    (1, 2000.0)
+    """
+
+    run: Run
+    force: str
+    frequency: np.ndarray
+    amplitude: np.ndarray
+    phase: np.ndarray
+    period: int | None
+    aliasing: float
+
+    @property
+    def resolution(self) -> float:
+        """Distance of two frequencies that can be told apart [Hz]."""
+        return float(self.frequency[1]) * (1.0 if self.period else 2.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Transfer:
+    """The output force's lines over those of the input force.
+
+    Attributes
+    ----------
+    frequency : numpy.ndarray, shape (M,)
+        Lines at which the input force has at least 1e-6 of its largest part [Hz].
+    gain, phase : numpy.ndarray, shape (M,)
+        |H|, and its argument [rad]: negative where the output is late.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle, transfer
+    >>> through = transfer(settle(scene("sec2").evolve(N=2, f=2000.0)).run)
+    >>> bool(through.gain[0] > 0.9), float(through.frequency[1])
+    (True, 2000.0)
+    """
+
+    frequency: np.ndarray
+    gain: np.ndarray
+    phase: np.ndarray
+
+
+def spectrum(run: Run, force: str = "output") -> Spectrum:
+    """The spectrum of a force of a recorded motion.
+
+    Parameters
+    ----------
+    run : Run
+        A motion whose recorded periods are whole; one of period n must hold n of them.
+    force : str
+        "input", "output", or "elastic", the elastic part of the output force.
+
+    Returns
+    -------
+    Spectrum
+        Lines of the Fourier series where the motion is periodic, else those of the windowed record.
+
+    Raises
+    ------
+    BadInput
+        Another force, less than a period recorded, or fewer than four samples a period.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle, spectrum
+    >>> lines = spectrum(settle(scene("sec2").evolve(N=2, f=2000.0)).run, "input")
+    >>> bool(lines.amplitude[1] > lines.amplitude[2])
+    True
+    """
+    if force not in FORCES:
+        raise unknown_name("force", force, FORCES)
+    values, period = _record(run, np.asarray(getattr(run, FORCES[force]))[:-1])
+    found, half = (cosines(some, period is not None) for some in (values, values[::2]))
+    aliasing = 2.0 * float(np.abs(found[: len(half) // 2] - half[: len(half) // 2]).max())
+    frequency = np.arange(len(found)) * run.scene.f * run.samples / len(values)
+    return Spectrum(run, force, frequency, np.abs(found), np.angle(found), period, aliasing)
+
+
+def transfer(run: Run) -> Transfer:
+    """The transfer from the input force to the output force of a periodic motion.
+
+    Parameters
+    ----------
+    run : Run
+        As for `spectrum`.
+
+    Returns
+    -------
+    Transfer
+        Gain and phase of its lines.
+
+    Raises
+    ------
+    BadInput
+        The motion has no period, or as for `spectrum`.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle, transfer
+    >>> through = transfer(settle(scene("sec2").evolve(N=2, f=2000.0)).run)
+    >>> through.gain.shape == through.phase.shape
+    True
+    """
+    if run.regime.period is None:
+        raise BadInput(f"A transfer needs lines, and this motion has none: {run.regime.sentence}.")
+    into, out = spectrum(run, "input"), spectrum(run, "output")
+    strong = into.amplitude > max(_COUNTS * into.amplitude.max(), 2.0 * into.aliasing)
+    turned = out.phase[strong] - into.phase[strong]
+    return Transfer(into.frequency[strong], out.amplitude[strong] / into.amplitude[strong],
+                    np.angle(np.exp(1j * turned)))
+
+
+def _record(run: Run, values: np.ndarray) -> tuple[np.ndarray, int | None]:
+    """The samples that count, and the motion's period: the last n drive periods of a periodic motion, else all."""
+    if run.samples < 4 or run.samples % 2:
+        raise BadInput(f"A spectrum needs an even number of samples a period, at least 4, not {run.samples}.")
+    recorded = len(values) // run.samples
+    needed = run.regime.period or 1
+    if recorded < needed or len(values) % run.samples:
+        raise BadInput(f"The spectrum of a motion of period {needed} needs {needed} whole recorded drive periods; the "
+                       f"run holds {len(values) / run.samples:g}.")
+    if run.regime.period is None:
+        return values, None
+    return values[-needed * run.samples :], needed
+
+
+def cosines(values: np.ndarray, repeats: bool) -> np.ndarray:
+    """Complex amplitudes of the cosines in equally spaced values, the mean first; a Hann window unless they repeat."""
+    if not repeats:
+        window = np.hanning(len(values) + 1)[:-1]
+        mean = float(np.average(values, weights=window))
+        found = np.fft.rfft((values - mean) * window) * (2.0 / window.sum())
+        found[0] = mean
+        return np.asarray(found)
+    found = np.fft.rfft(values) * (2.0 / len(values))
+    found[0] *= 0.5
+    found[-1] *= 0.5
+    return np.asarray(found)

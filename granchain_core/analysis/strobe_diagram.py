@@ -1,0 +1,172 @@
+"""The strobe diagram: a bead's states once per drive period, over a knob; in the field, the bifurcation diagram.
+
+At each value of the knob the chain settles (regime, with its evidence), and its next strobes are kept: n points of an
+orbit of period n, a closed curve seen from the side, or the many points of chaos. Where sweeps up and down differ,
+more than one attractor exists.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import BadInput, NumbersFailed, check_range, unknown_name
+from ..integrate import State
+from ..quantities import QUANTITIES
+from ..regime import Regime
+from ..scene import Scene
+from ..steady.batch.threads import on_all_cores
+from ..steady.curve.order import STARTS, coarse_first
+from ..steady.settling.settling import run_until_settled
+from ..stop import Stop
+
+#: Strobes closer than this part of the largest are one.
+_APART = 1e-3
+#: Most values of the knob, and most strobes at each.
+MOST_VALUES, MOST_STROBES = 20_000, 10_000
+
+
+@dataclass(frozen=True, eq=False)
+class StrobePoint:
+    """The strobes at one value of the knob: displacement and velocity of every bead at phase 0, (P, 2, N) [m, m/s].
+
+    `failure` is a sentence where the numbers failed; there are no strobes then.
+    """
+
+    value: float
+    regime: Regime
+    strobes: np.ndarray
+    state: State | None = None
+    failure: str = ""
+
+    def distinct(self, bead: int) -> int:
+        """How many of the bead's displacements differ by more than a thousandth of the largest."""
+        found = np.sort(self.strobes[:, 0, bead - 1])
+        if found.size == 0:
+            return 0
+        return 1 + int((np.diff(found) > _APART * np.abs(found).max()).sum())
+
+
+@dataclass(eq=False)
+class StrobeDiagram:
+    """Strobes over a knob.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    knob : str
+        What is varied.
+    start : str
+        "rest": every value from rest; "up" or "down": the state is carried along.
+    points : list of StrobePoint
+        In ascending order of the knob.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, strobe_diagram
+    >>> found = strobe_diagram(scene("sec2").evolve(N=2), "f", [1900.0, 2000.0], keep=8)
+    >>> [point.regime.period for point in found.points], found.cloud(1)[0].shape
+    ([1, 1], (16,))
+    """
+
+    scene: Scene
+    knob: str
+    start: str
+    points: list[StrobePoint] = field(default_factory=list)
+
+    def cloud(self, bead: int, velocity: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """All points of bead 1..N, (M,) each: the knob's values, and displacements [m] or velocities [m/s]."""
+        check_range("bead", bead, 1, self.scene.N)
+        kept = [point for point in self.points if not point.failure]
+        values = np.concatenate([np.full(len(point.strobes), point.value) for point in kept] or [np.zeros(0)])
+        states = np.concatenate([point.strobes[:, int(velocity), bead - 1] for point in kept] or [np.zeros(0)])
+        return values, states
+
+
+def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray, start: str = "up", keep: int = 60,
+                   stop: Stop | None = None, progress: Callable[[float], None] | None = None) -> StrobeDiagram:
+    """The strobe diagram over one knob.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    knob : str
+        A continuous knob: "f", "A0", "D", "k", "kappa" or "F0".
+    values : sequence of float
+        Its values in SI, at most 20,000.
+    start : str
+        "up" or "down": each value starts where the one before it settled; "rest": each from rest, on all cores.
+    keep : int
+        Strobes at each value, 1 to 10,000.
+    stop : Stop, optional
+        Once it is set the diagram ends; what is computed stays.
+    progress : callable, optional
+        Told the part that is done, 0 to 1.
+
+    Returns
+    -------
+    StrobeDiagram
+        Strobes and regime at each value.
+
+    Raises
+    ------
+    BadInput
+        Another knob or start, or a number out of range.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, strobe_diagram
+    >>> found = strobe_diagram(scene("sec2").evolve(N=2, f=2000.0), "A0", [4e-7, 5e-7], keep=4)
+    >>> [point.distinct(bead=1) for point in found.points]
+    [1, 1]
+    """
+    knobs = [name for name, quantity in QUANTITIES.items() if quantity.is_continuous]
+    if knob not in knobs:
+        raise unknown_name("knob of a strobe diagram", knob, knobs)
+    if start not in STARTS:
+        raise unknown_name("start", start, STARTS)
+    if not 1 <= len(values) <= MOST_VALUES:
+        raise BadInput(f"A strobe diagram has 1 to {MOST_VALUES} values of its knob, not {len(values)}.")
+    check_range("keep =", keep, 1, MOST_STROBES)
+    chains = [(float(value), scene.evolve(**{knob: float(value)})) for value in sorted(values)]
+    found = StrobeDiagram(scene, knob, start)
+    for point in _points(chains, start, keep, stop):
+        found.points.append(point)
+        if progress is not None:
+            progress(len(found.points) / len(chains))
+    found.points.sort(key=lambda point: point.value)
+    return found
+
+
+def _points(chains: list[tuple[float, Scene]], start: str, keep: int, stop: Stop | None) -> Iterator[StrobePoint]:
+    if start == "rest":
+        ended = Stop()
+        yield from on_all_cores(lambda shared: (_point(value, chain, None, keep, ended) for value, chain in shared),
+                                [chains[i] for i in coarse_first(len(chains))], ended, stop)
+        return
+    yield from _carried(chains if start == "up" else reversed(chains), keep, stop)
+
+
+def _carried(chains: Iterable[tuple[float, Scene]], keep: int, stop: Stop | None) -> Iterator[StrobePoint]:
+    state: State | None = None
+    for value, chain in chains:
+        if stop:
+            return
+        point = _point(value, chain, state, keep, stop)
+        state = point.state
+        yield point
+
+
+def _point(value: float, chain: Scene, start: State | None, keep: int, stop: Stop | None) -> StrobePoint:
+    try:
+        settling = run_until_settled(chain, start, stop)
+        strobes = settling.engine.periods(keep)[0][1:]
+    except NumbersFailed as failed:
+        return StrobePoint(value, Regime.unsettled(0), np.zeros((0, 2, chain.N)), start, failed.sentence)
+    scales = settling.engine.lowered.scales
+    units = np.array([scales.length, scales.velocity])[:, None]
+    return StrobePoint(value, settling.regime, strobes * units, settling.engine.state)

@@ -1,0 +1,119 @@
+"""Columns in SI become a measured curve, the shaker's amplitudes or a time series, checked row by row."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import BadInput
+from .measured import Measured
+from .series import Series, Shaker
+
+_MOVES = ("velocity", "displacement", "acceleration")
+_IN_TIME = ("velocity", "displacement", "input_force", "output_force")
+#: Fewest samples of a series.
+_FEWEST = 9
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Values in SI by quantity, each (columns, rows); the line of every row; the units that the file had."""
+
+    values: dict[str, np.ndarray]
+    lines: Sequence[int]
+    units: dict[str, str]
+
+    def has(self, *names: str) -> bool:
+        """Whether all of these are there."""
+        return all(name in self.values for name in names)
+
+    def one(self, name: str) -> np.ndarray:
+        """The only column of a quantity."""
+        found = self.values[name]
+        if len(found) != 1:
+            raise BadInput(f"{len(found)} columns hold the {name.replace('_', ' ')}; name one of them.")
+        return np.asarray(found[0])
+
+    def check(self, wrong: np.ndarray, sentence: str, values: np.ndarray | None = None) -> None:
+        """Refuse the first row in which something is wrong."""
+        bad = np.flatnonzero(wrong)
+        if len(bad):
+            value = f" {values[bad[0]]:g}" if values is not None else ""
+            raise BadInput(f"Line {self.lines[int(bad[0])]}: {sentence.format(value)}")
+
+
+def kinds_of(quantities: Sequence[str]) -> list[str]:
+    """What a file with these quantities can be, the likeliest first."""
+    there = set(quantities)
+    found = []
+    if "frequency" in there and "time" not in there:
+        found += ["curve"] if there & {"force", "output_force"} else []
+        found += ["shaker"] if there & set(_MOVES) else []
+    if "time" in there and "frequency" not in there and there & set(_IN_TIME):
+        found.append("series")
+    return found
+
+
+def assembled(columns: Columns, kind: str, layout: str, source: str, note: str) -> Measured | Series | Shaker:
+    """The measurement of a kind. Raises `BadInput` naming the line."""
+    about = {"source": source, "note": note, "units": columns.units}
+    named = ", ".join(f"{name.replace('_', ' ')} in {unit}" for name, unit in columns.units.items())
+    layout = f"{named}; {layout}"
+    if kind == "curve":
+        return _curve(columns, layout, about)
+    return _shaker(columns, layout, about) if kind == "shaker" else _series(columns, layout, about)
+
+
+def _curve(at: Columns, layout: str, about: dict[str, Any]) -> Measured:
+    name = "force" if at.has("force") else "output_force"
+    frequency, forces = at.one("frequency"), at.values[name]
+    at.check(frequency <= 0.0, "frequency{} Hz must be above 0.", frequency)
+    for force in forces:
+        at.check(force < 0.0, "force{} N must not be negative; give its maximum.", force)
+    error = at.one("error") if at.has("error") else None
+    if error is not None:
+        at.check(error < 0.0, "error{} N must not be negative.", error)
+    points, of = np.unique(frequency, return_inverse=True)
+    count = np.bincount(of) * len(forces)
+    mean = sum(np.bincount(of, force) for force in forces) / count
+    low, high = np.full(len(points), np.inf), np.full(len(points), -np.inf)
+    for force in forces:
+        np.minimum.at(low, of, force)
+        np.maximum.at(high, of, force)
+    spread = sum(np.bincount(of, (force - mean[of]) ** 2) for force in forces)
+    both = None if error is None else np.sqrt(np.bincount(of, error**2)) / np.bincount(of)
+    repeated = f", means of up to {count.max()} repeats with their extremes" if count.max() > 1 else ""
+    understood = (f"{len(points)} points, {points[0]:g} to {points[-1]:g} Hz, force {mean.min():g} to {mean.max():g} N"
+                  f"{repeated}, {'with' if both is not None else 'no'} errors; {layout}")
+    return Measured(points, mean, both, understood, low, high, count,
+                    np.sqrt(spread / np.maximum(count - 1, 1)), **about)
+
+
+def _shaker(at: Columns, layout: str, about: dict[str, Any]) -> Shaker:
+    frequency = at.one("frequency")
+    name = next(one for one in _MOVES if at.has(one))
+    size, rate = at.one(name), 2.0 * math.pi * frequency
+    at.check((frequency <= 0.0) | (size < 0.0), "a frequency must be above 0, an amplitude not negative.")
+    velocity = {"velocity": size, "displacement": size * rate, "acceleration": size / rate}[name]
+    points, of = np.unique(frequency, return_inverse=True)
+    mean = np.bincount(of, velocity) / np.bincount(of)
+    repeated = ", means of repeats" if len(points) < len(frequency) else ""
+    return Shaker(points, mean, f"{len(points)} amplitudes of {name} from {points[0]:g} to {points[-1]:g} Hz"
+                                f"{repeated}; {layout}", **about)
+
+
+def _series(at: Columns, layout: str, about: dict[str, Any]) -> Series:
+    time = at.one("time")
+    if len(time) < _FEWEST:
+        raise BadInput(f"Line {at.lines[-1]}: a series has at least {_FEWEST} samples; this one ends after "
+                       f"{len(time)}.")
+    at.check(np.diff(time, prepend=time[0] - 1.0) <= 0.0, "times must ascend.")
+    told = ", ".join(name.replace("_", " ") for name in at.values if name != "time")
+    found = {name: at.one(name) if at.has(name) else None for name in ("velocity", "input_force", "output_force")}
+    return Series(time - time[0], found["velocity"], found["input_force"], found["output_force"],
+                  f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {told}; {layout}",
+                  at.one("displacement") if at.has("displacement") else None, **about)

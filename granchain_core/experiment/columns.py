@@ -1,0 +1,149 @@
+"""Which column of a file is which quantity in which unit: from titles where they settle it, from answers, or asked."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import BadInput
+from .assembled import Columns, assembled, kinds_of
+from .measured import Measured
+from .question import Answers, Guess, Question, Unclear
+from .series import Series, Shaker
+from .units import QUANTITIES, UNITS, VOLTS, bracketed_unit, factor_of
+
+#: A curve whose header names no unit is in Hz and N, as README says, unless these say otherwise: a frequency [Hz]
+#: below which all would lie, a force [N] that one would exceed.
+_TOO_SLOW, _TOO_STRONG = 5.0, 1e4
+_WORDS = {"curve": "a curve", "shaker": "shaker amplitudes", "series": "a series"}
+_NEEDS = {"curve": "a curve needs frequency and force",
+          "shaker": "shaker amplitudes need frequency and displacement, velocity or acceleration",
+          "series": "a series needs time and velocity, displacement, input force or output force"}
+
+#: Columns by quantity: (place from 0, unit or sensitivity).
+Chosen = dict[str, list[tuple[int, str]]]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """The columns of a file with what is known of them, its first rows, and whether they have titles."""
+
+    guesses: Sequence[Guess]
+    rows: tuple[tuple[int, tuple[str, ...]], ...]
+    titled: bool
+
+    def ask(self, reason: str) -> Unclear:
+        """The question for its columns."""
+        return Unclear(Question(reason, ("columns",), tuple(self.guesses), self.rows))
+
+
+def chosen_columns(asked: Asked, answers: Answers, wanted: Sequence[str], numeric: Sequence[int]) -> Chosen:
+    """The columns that are read. Raises `Unclear` where titles and answers do not settle it."""
+    if answers.columns:
+        return answered(asked, answers)
+    if not asked.titled:
+        if len(numeric) in (2, 3) and not any(one.unit for one in asked.guesses):
+            likely = [Guess(i + 1, "", quantity, unit) for i, (quantity, unit) in
+                      enumerate((("frequency", "Hz"), ("force", "N"), ("error", "N"))[: len(asked.guesses)])]
+            asked = replace(asked, guesses=likely)
+        raise asked.ask("The columns have no titles.")
+    found: Chosen = {}
+    for place, guess in enumerate(asked.guesses):
+        if guess.quantity is None or place not in numeric:
+            continue
+        found.setdefault(guess.quantity, []).append((place, guess.unit or ""))
+    kinds = [kind for kind in kinds_of(list(found)) if kind in wanted]
+    if not kinds:
+        raise asked.ask(_missing(asked, wanted))
+    kind = kinds[0]
+    needed = _needed(kind, found)
+    found = {name: places for name, places in found.items() if name in needed}
+    for name, places in found.items():
+        _check_places(name, places, kind, asked)
+    return found
+
+
+def _needed(kind: str, found: Chosen) -> tuple[str, ...]:
+    """The quantities that a kind uses of those that there are."""
+    if kind == "curve":
+        return ("frequency", "force" if "force" in found else "output_force", "error")
+    if kind == "shaker":
+        return ("frequency", next(one for one in ("displacement", "velocity", "acceleration") if one in found))
+    return ("time", "velocity", "displacement", "input_force", "output_force")
+
+
+def _check_places(name: str, places: list[tuple[int, str]], kind: str, asked: Asked) -> None:
+    titles = [asked.guesses[place].title for place, _ in places]
+    numbered = len(set(titles)) == len(titles) and all(re.search(r"\d", one) for one in titles)
+    repeats = numbered and kind == "curve" and name in ("force", "output_force")
+    if len(places) > 1 and not repeats:
+        raise asked.ask(f"The columns {' and '.join(map(repr, titles))} both say {name.replace('_', ' ')}.")
+    for place, unit in places:
+        title = asked.guesses[place].title
+        if unit in VOLTS:
+            raise asked.ask(f"Column {title!r} is a voltage; its sensor's sensitivity is needed, as 2.248V/kN.")
+        strange = bracketed_unit(title)
+        if not unit and strange:
+            raise asked.ask(f"The unit {strange[:20]!r} of column {title[:40]!r} is not known.")
+        if not unit and kind != "curve":
+            raise asked.ask(f"Column {title[:40]!r} has no unit.")
+
+
+def _missing(asked: Asked, wanted: Sequence[str]) -> str:
+    unknown = [one.title for one in asked.guesses if one.quantity is None and one.title]
+    several = "" if len(unknown) > 1 else "s"
+    said = (f"What {' and '.join(repr(one[:30]) for one in unknown[:4])} hold{several} is not clear" if unknown
+            else "These columns are not enough")
+    return f"{said}: {'; '.join(_NEEDS[kind] for kind in wanted)}."
+
+
+def answered(asked: Asked, answers: Answers) -> Chosen:
+    """The columns that a person has named."""
+    found: Chosen = {}
+    for quantity, places in answers.columns.items():
+        for number, unit in places:
+            if number > len(asked.guesses):
+                raise BadInput(f"There is no column {number}; the file has {len(asked.guesses)}.")
+            if any(place == number - 1 for there in found.values() for place, _ in there):
+                raise BadInput(f"Column {number} is given two quantities; give it one.")
+            found.setdefault(quantity, []).append((number - 1, unit))
+    return found
+
+
+def in_si(values: dict[str, np.ndarray], chosen: Chosen, asked: Asked, lines: Sequence[int], layout: str,
+          wanted: Sequence[str], source: str, note: str, asked_for: bool) -> Series | Shaker | Measured:
+    """The measurement of columns as they stand in the file."""
+    scaled, units = {}, {}
+    for quantity, places in chosen.items():
+        factors = []
+        for place, unit in places:
+            stated = asked.guesses[place].unit
+            unit = unit or next(iter(UNITS[QUANTITIES[quantity]]))
+            factor = factor_of(quantity, unit, stated)
+            if factor is None:
+                raise BadInput(f"{unit!r} is not a unit of {quantity.replace('_', ' ')}.")
+            factors.append(factor)
+            units[quantity] = unit
+        scaled[quantity] = values[quantity] * np.array(factors)[:, None]
+    kinds = [kind for kind in kinds_of(list(scaled)) if kind in wanted]
+    if not kinds:
+        there = " and ".join(one.replace("_", " ") for one in scaled)
+        raise BadInput(f"{there[0].upper()}{there[1:]} do not make {' or '.join(_WORDS[kind] for kind in wanted)}.")
+    if not asked_for:
+        _check_plausible(scaled, chosen, asked)
+    return assembled(Columns(scaled, lines, units), kinds[0], layout, source, note)
+
+
+def _check_plausible(scaled: dict[str, np.ndarray], chosen: Chosen, asked: Asked) -> None:
+    """Ask for units that no title names where Hz and N would be strange."""
+    for quantity, strange in (("frequency", f"all would be below {_TOO_SLOW:g} Hz"),
+                              ("force", f"one would exceed {_TOO_STRONG:g} N")):
+        if quantity not in chosen or chosen[quantity][0][1]:
+            continue
+        largest = float(scaled[quantity].max())
+        if largest < _TOO_SLOW if quantity == "frequency" else largest > _TOO_STRONG:
+            title = asked.guesses[chosen[quantity][0][0]].title
+            raise asked.ask(f"Column {title[:40]!r} has no unit, and {strange}.")

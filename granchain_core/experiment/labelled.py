@@ -1,0 +1,98 @@
+"""Measurements in HDF5 and netCDF-4: rows of numbers with names and units, read through the border for such files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import BadInput
+from ..hdf5 import File, opened
+from ..hdf5.plain import Refused, Stored
+from .columns import Asked, chosen_columns, in_si
+from .measured import Measured
+from .question import Answers, Guess
+from .series import Series, Shaker
+from .units import heading, unit_named
+
+#: What every HDF5 file, and so every netCDF-4 file, begins with.
+HDF5 = b"\x89HDF\r\n\x1a\n"
+#: Most rows of a measurement.
+_MOST_ROWS = 1_000_000
+
+
+def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str],
+                  source: str) -> Series | Shaker | Measured:
+    """The measurement in a file. Columns are its rows of equal length; of several lengths those with an axis count.
+
+    Raises `Unclear` and `BadInput`.
+    """
+    with opened(path, "is not a measurement that can be read") as file:
+        stored, refused = _rows(file)
+        if not stored:
+            raise Refused(refused or "it has no two rows of numbers of one length")
+        names = _group(stored)
+        guesses = [_guess(i, name, stored[name].units) for i, name in enumerate(names)]
+        columns = [np.asarray(file.numbers(name, stored[name].shape, "any"), dtype=float) for name in names]
+        note = answers.note or _note(file)
+    rows = tuple((i + 1, tuple(f"{values[i]:.6g}" for values in columns)) for i in range(min(5, len(columns[0]))))
+    asked = Asked(guesses, rows, True)
+    chosen = chosen_columns(asked, answers, wanted, range(len(columns)))
+    values = {}
+    for quantity, places in chosen.items():
+        values[quantity] = np.array([columns[place] for place, _ in places])
+        bad = np.argwhere(~np.isfinite(values[quantity]))
+        if len(bad):
+            raise BadInput(f"Row {bad[0][1] + 1} of {names[places[bad[0][0]][0]]} is not a finite number.")
+    used = {place for places in chosen.values() for place, _ in places}
+    left = [name for place, name in enumerate(names) if place not in used]
+    layout = "HDF5" + (f"; left out: {', '.join(left)[:200]}" if left else "")
+    return in_si(values, chosen, asked, range(1, len(columns[0]) + 1), layout, wanted, answers.source or source, note,
+                 bool(answers.columns))
+
+
+def _rows(file: File) -> tuple[dict[str, Stored], str]:
+    """The rows of numbers in a file, and why others are not read."""
+    found, refused = {}, ""
+    for name in file.names():
+        try:
+            stored = file.described(name)
+        except Refused as problem:
+            refused = refused or str(problem)
+            continue
+        if len(stored.shape) == 1 and 2 <= stored.shape[0] <= _MOST_ROWS and stored.type != "text":
+            found[name] = stored
+    return found, refused
+
+
+def _group(stored: dict[str, Stored]) -> list[str]:
+    """Rows of one group and one length: those with an axis (frequency or time) first, then the most."""
+    groups: dict[tuple[str, int], list[str]] = {}
+    for name, one in stored.items():
+        groups.setdefault((name.rpartition("/")[0], one.shape[0]), []).append(name)
+    axis = ("frequency", "time")
+    return max(groups.values(), key=lambda names: (
+        any(_guess(0, name, stored[name].units).quantity in axis for name in names) and len(names) > 1, len(names)))
+
+
+def _guess(place: int, name: str, units: str | None) -> Guess:
+    """What a row's name and its attribute `units` say."""
+    bare = name.rpartition("/")[2]
+    if not units:
+        quantity, unit, _ = heading(bare)
+        return Guess(place + 1, bare, quantity, unit)
+    title = f"{bare} ({units})"
+    quantity, unit, _ = heading(title)
+    return Guess(place + 1, title, quantity, unit or unit_named(units))
+
+
+def _note(file: File) -> str:
+    """What the file says about itself in the attributes that the CF conventions name."""
+    said = []
+    for name in ("title", "source", "comment", "history"):
+        try:
+            said.append(file.text(name))
+        except Refused:
+            continue
+    return " ".join(said)[:500]

@@ -1,0 +1,56 @@
+"""Numbers in the dialects of spreadsheets: decimal point or comma, thousands apart by the other mark, ' or a space.
+
+A file has one decimal mark. Which one is certain where only one reading fits every number and no number stands for
+another under the other reading; else it is asked.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+from ..errors import BadInput
+from ..text import number_in
+from .grid import LIKE_A_NUMBER
+
+_EXPONENT = r"(?:[eEdD][+-]?\d+)?"
+_WHOLE = r"[+-]?(?:\d+|[1-9]\d{0,2}(?:(MARKS)\d{3})(?:\1\d{3})*)?"
+_READ_AS = {
+    "point": re.compile(_WHOLE.replace("MARKS", "[, '’]") + rf"(?:\.\d*)?{_EXPONENT}", re.ASCII),
+    "comma": re.compile(_WHOLE.replace("MARKS", "[. '’]") + rf"(?:,\d*)?{_EXPONENT}", re.ASCII),
+}
+_OTHER = {"point": ",", "comma": "."}
+#: A group of thousands beside nothing that shows that it is one.
+_BARE_GROUP = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}", re.ASCII)
+
+
+def number_as(field: str, decimal: str) -> float | None:
+    """The finite number that a field is with this decimal mark; None for anything else."""
+    if not _READ_AS[decimal].fullmatch(field):
+        return None
+    plain = re.sub(rf"[{re.escape(_OTHER[decimal])} '’]", "", field).replace(",", ".")
+    return number_in(re.sub("[dD]", "e", plain))
+
+
+def decimal_mark(fields: Iterable[tuple[int, str]]) -> str | None:
+    """The decimal mark of numbers with their lines, None where it has to be asked.
+
+    Raises `BadInput` where neither reading fits all of them.
+    """
+    marked = [(line, one) for line, one in fields if ("." in one or "," in one) and LIKE_A_NUMBER.fullmatch(one)]
+    fits = {mark: next(((line, one) for line, one in marked if not _READ_AS[mark].fullmatch(one)), None)
+            for mark in _READ_AS}
+    possible = [mark for mark, misfit in fits.items() if misfit is None]
+    if not possible:
+        (line, one), (other_line, other) = fits["point"], fits["comma"]  # type: ignore[misc]  # neither is None
+        raise BadInput(f"Line {line}: {one[:30]!r} does not have a decimal point, and {other[:30]!r} in line "
+                       f"{other_line} no decimal comma; write every number with the same decimal mark.")
+    different = [one for _, one in marked if number_as(one, "point") != number_as(one, "comma")]
+    if not different:
+        return possible[0] if len(possible) == 1 else "point"
+    if len(possible) == 2:
+        return None
+    mark = possible[0]
+    groups = [one for one in different if _OTHER[mark] in one]
+    proven = not groups or any(not _BARE_GROUP.fullmatch(one) for one in groups)
+    return mark if proven else None

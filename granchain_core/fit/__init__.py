@@ -1,0 +1,9 @@
+"""A model's parameters from measurements: misfit, search, intervals, and the verdict where the model cannot."""
+
+from .fit import Fit, fit
+from .parameters import Free
+from .targets import CurveTarget, FeatureTarget, SeriesTarget
+from .virtual import virtual_curve, virtual_series
+
+__all__ = ["CurveTarget", "FeatureTarget", "Fit", "Free", "SeriesTarget", "fit", "virtual_curve",
+           "virtual_series"]

@@ -1,0 +1,241 @@
+"""`fit`: the parameters of a scene from a measurement, their intervals, and whether the model can describe it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.stats import chi2
+
+from ..errors import BadInput
+from ..scene import Amplitude, Scene
+from ..stop import Stop
+from .intervals import LEVEL, Lower, Profile, profile
+from .parameters import Free, with_values
+from .search import Problem, Target, descended, searched
+from .targets import CurveTarget, Evaluation, FeatureTarget
+
+#: Probability of a misfit as large, if the model were true, below which the verdict is that it cannot.
+CANNOT = 0.01
+#: Most parameters, and times that the search goes on from a better place that a profile found.
+MOST_FREE, _AGAIN = 30, 4
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """What a fit found.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene with the best values.
+    amplitude : Amplitude or None
+        The drive amplitude over the frequency, where one was fitted for each.
+    free : tuple of Free
+        What was fitted, with bounds and priors.
+    best : numpy.ndarray, shape (p,)
+        Values with the least misfit.
+    profiles : tuple of Profile
+        For each parameter its profile and its 95 % interval; empty if none was asked for.
+    misfit : float
+        Least χ².
+    data : int
+        Data and priors compared.
+    freedom : int
+        Data and priors less parameters.
+    probability : float or None
+        Of a misfit as large if the model were true; None where the data's errors are not known.
+    verdict : str
+        "can", "cannot" or "not known".
+    sentence : str
+        The verdict with its evidence.
+    evaluation : Evaluation
+        Residuals and model values at the best place.
+    landscape : tuple of numpy.ndarray
+        Values (n, p) and χ² (n,) of everything that was evaluated.
+    target : CurveTarget, SeriesTarget or FeatureTarget
+        What was compared.
+    scale : float
+        Unit of χ²: 1, or χ² per degree of freedom where the data's errors are not known.
+    wall_s : float
+        Wall-clock time [s].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from granchain_core import fit, scene
+    >>> from granchain_core.fit import CurveTarget, Free, virtual_curve
+    >>> truth = scene("sec2").evolve(N=2, D=120.0)
+    >>> measured = virtual_curve(truth, np.linspace(1500.0, 2500.0, 9), 0.02, np.random.default_rng(1))
+    >>> found = fit(truth.evolve(D=80.0), CurveTarget(measured), [Free("D", 50.0, 200.0)])
+    >>> found.profiles[0].low < 120.0 < found.profiles[0].high, found.verdict
+    (True, 'can')
+    """
+
+    scene: Scene
+    amplitude: Amplitude | None
+    free: tuple[Free, ...]
+    best: np.ndarray
+    profiles: tuple[Profile, ...]
+    misfit: float
+    data: int
+    freedom: int
+    probability: float | None
+    verdict: str
+    sentence: str
+    evaluation: Evaluation
+    landscape: tuple[np.ndarray, np.ndarray]
+    target: Target
+    scale: float = 1.0
+    wall_s: float = 0.0
+
+    def to_json(self) -> dict[str, Any]:
+        """The result as plain data."""
+        parameters = []
+        for i, one in enumerate(self.free):
+            entry: dict[str, Any] = {"name": one.name, "unit": one.unit, "best": float(self.best[i]),
+                                     "bounds": [one.low, one.high], "prior": list(one.prior) if one.prior else None}
+            if self.profiles:
+                found = self.profiles[i]
+                entry |= {"low": found.low, "high": found.high, "open_low": found.open_low,
+                          "open_high": found.open_high, "profile": [list(found.values), list(found.rises)]}
+            parameters.append(entry)
+        return {"scene": self.scene.name, "knobs": self.scene.knobs, "parameters": parameters, "level": LEVEL,
+                "misfit": self.misfit, "data": self.data, "freedom": self.freedom, "probability": self.probability,
+                "verdict": self.verdict, "sentence": self.sentence, "evaluations": len(self.landscape[1]),
+                "residuals": [float(r) for r in self.evaluation.residuals],
+                "model": [float(m) if np.isfinite(m) else None for m in self.evaluation.model],
+                "frequency": [float(f) for f in self.target.frequencies],
+                "regimes": list(self.evaluation.regimes), "wall_s": self.wall_s}
+
+
+def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, intervals: bool = True,
+        stop: Stop | None = None, progress: Callable[[int], None] | None = None) -> Fit:
+    """Fit parameters of a scene to a measurement.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; parameters that are not free stay as they are.
+    target : CurveTarget, SeriesTarget or FeatureTarget
+        What is compared.
+    free : sequence of Free
+        Parameters with bounds and, if there are any, priors.
+    design : int
+        Places over the bounds that are tried first; 0 for 32, 64 or 128 for up to 2, 3 or more parameters.
+    intervals : bool
+        Whether profile likelihoods and their 95 % intervals are computed.
+    stop : Stop, optional
+        Ends the fit when another thread sets it.
+    progress : callable, optional
+        Told how many sets of parameters have been evaluated.
+
+    Returns
+    -------
+    Fit
+        Best values, intervals, misfit and verdict.
+
+    Raises
+    ------
+    BadInput
+        No parameter, too many, one twice, or fewer data than parameters.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import fit, scene
+    >>> from granchain_core.experiment import read_data
+    >>> from granchain_core.fit import CurveTarget, Free
+    >>> measured = read_data(b"f [Hz],F [N],error [N]\\n1800,3.3,0.1\\n2000,2.3,0.1\\n2200,1.9,0.1\\n")
+    >>> found = fit(scene("sec2").evolve(N=2), CurveTarget(measured), [Free("D", 50.0, 200.0)], intervals=False)
+    >>> found.data, found.freedom
+    (3, 2)
+    """
+    began = time.perf_counter()
+    names = [one.name for one in free]
+    if not 1 <= len(free) <= MOST_FREE or len(set(names)) < len(names) or {"k", "kappa"} <= set(names):
+        raise BadInput(f"A fit has 1 to {MOST_FREE} different parameters, of k and kappa only one; not "
+                       f"{', '.join(names) or 'none'}.")
+    problem = Problem(scene, target, tuple(free), Stop() if stop is None else stop,
+                      progress or (lambda _: None))
+    middle = np.full(len(free), 0.5)
+    data = len(problem.evaluate(middle).residuals) + sum(one.prior is not None for one in free)
+    freedom = data - len(free)
+    if freedom < 0:
+        raise BadInput(f"{data} data and priors do not determine {len(free)} parameters; give priors or fewer of them.")
+    known = target.sigma_known
+
+    def enough(misfit: float) -> bool:
+        return _verdict(_probability(problem, misfit, data, freedom)) != "cannot"
+
+    best = searched(problem, design or (32 if len(free) <= 2 else 64 if len(free) == 3 else 128), enough)
+    profiles: tuple[Profile, ...] = ()
+    for again in range(_AGAIN):
+        scale = 1.0 if known else problem.misfit(best) / max(freedom, 1)
+        try:
+            if intervals and target.smooth and freedom > 0:
+                profiles = tuple(profile(problem, best, j, scale, again == _AGAIN - 1) for j in range(len(free)))
+            break
+        except Lower as lower:
+            best = descended(problem, lower.place, range(len(free)))
+    return _result(problem, best, profiles, data, freedom, scale, time.perf_counter() - began)
+
+
+def _counted(problem: Problem, data: int, freedom: int) -> int:
+    """Degrees of freedom of the verdict: of features each datum, as an extremum need not follow every parameter."""
+    return data if isinstance(problem.target, FeatureTarget) else freedom
+
+
+def _probability(problem: Problem, misfit: float, data: int, freedom: int) -> float | None:
+    """Of a misfit as large as this if the model were true; None where no errors are known, or nothing is left free."""
+    counted = _counted(problem, data, freedom)
+    return float(chi2.sf(misfit, counted)) if problem.target.sigma_known and counted > 0 else None
+
+
+def _verdict(probability: float | None) -> str:
+    return "not known" if probability is None else "can" if probability >= CANNOT else "cannot"
+
+
+def _result(problem: Problem, best: np.ndarray, profiles: tuple[Profile, ...], data: int, freedom: int, scale: float,
+            wall_s: float) -> Fit:
+    misfit, evaluation = problem.misfit(best), problem.evaluate(best)
+    values = problem.values(best)
+    fitted, amplitude = with_values(problem.scene, problem.free, values)
+    probability = _probability(problem, misfit, data, freedom)
+    verdict = _verdict(probability)
+    landscape = (np.array([problem.values(place) for place in problem.places]), np.array(problem.misfits))
+    return Fit(fitted, amplitude, tuple(problem.free), values, profiles, misfit, data, freedom, probability, verdict,
+               _sentence(problem, evaluation, best, misfit, _counted(problem, data, freedom), probability, verdict),
+               evaluation, landscape,
+               problem.target, scale, wall_s)
+
+
+def _sentence(problem: Problem, evaluation: Evaluation, best: np.ndarray, misfit: float, counted: int,
+              probability: float | None, verdict: str) -> str:
+    """The verdict with its evidence."""
+    if verdict == "not known":
+        return ("Whether the model can describe the data is not known: their errors are not. Intervals hold if it can."
+                if not problem.target.sigma_known else "There are as many parameters as data: any model would fit.")
+    numbers = f"χ² = {misfit:.4g} for {counted} degrees of freedom, probability {probability:.2g}"
+    edge = [one.name for one, x in zip(problem.free, best, strict=True) if min(x, 1.0 - x) < 1e-3]
+    bounds = f"; {', '.join(edge)} at {'a bound' if len(edge) == 1 else 'bounds'}" if edge else ""
+    if verdict == "can":
+        return f"The model can describe the data ({numbers}{bounds})."
+    worst = int(np.argmax(np.abs(evaluation.residuals)))
+    at = problem.target.frequencies
+    where = f" at {at[worst]:g} Hz" if len(at) > worst else ""
+    return (f"The model cannot describe the data within these bounds: the best of {len(problem.misfits)} sets of "
+            f"parameters has {numbers}{bounds}; it is {abs(evaluation.residuals[worst]):.1f} standard deviations "
+            f"away{where}.")
+
+
+def curve_of(found: Fit, frequencies: np.ndarray, stop: Stop | None = None) -> Any:
+    """The fitted model's curve over other frequencies, for a picture; where each datum has its own A0, over those."""
+    from ..steady.curve.resonance_curve import resonance_curve
+
+    start = found.target.start if isinstance(found.target, (CurveTarget, FeatureTarget)) else "rest"
+    return resonance_curve(found.scene, frequencies, start, stop=stop, amplitude=found.amplitude)

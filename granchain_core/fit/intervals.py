@@ -1,0 +1,109 @@
+"""Profile likelihood: for every parameter the least misfit that is left when it is held, and where that is too much."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from .search import Problem, descended
+
+#: The part of repetitions in which an interval holds the truth.
+LEVEL = 0.95
+#: Steps towards each end, evaluations of a descent on the way, and how near √Δχ² must come to its limit.
+_STEPS, _DESCENT, _NEAR = 8, 6, 0.03
+#: A misfit that much below the least so far, in its unit, is another minimum.
+_LOWER = 0.3
+
+
+class Lower(Exception):
+    """A profile found a place with a smaller misfit than the best one; the search goes on from there."""
+
+    def __init__(self, place: np.ndarray) -> None:
+        super().__init__("a smaller misfit")
+        self.place = place
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The profile of one parameter: values and least misfits above the minimum; the interval, and which ends are open.
+
+    An open end is a bound at which the misfit is not yet too large: the data do not limit the parameter there.
+    """
+
+    values: tuple[float, ...]
+    rises: tuple[float, ...]
+    low: float
+    high: float
+    open_low: bool
+    open_high: bool
+
+
+def limit(scale: float) -> float:
+    """Δχ² at the ends of an interval for one parameter; `scale` is the misfit's unit."""
+    return float(chi2.ppf(LEVEL, 1)) * scale
+
+
+def profile(problem: Problem, best: np.ndarray, j: int, scale: float, last: bool) -> Profile:
+    """The profile of parameter j. Raises `Lower` where the best place is not, unless it is the `last` try."""
+    least, top = problem.misfit(best), math.sqrt(limit(scale))
+    others = [i for i in range(len(best)) if i != j]
+    slopes = problem.jacobian(best, range(len(best)))
+    normal = slopes.T @ slopes
+    ridge = np.zeros(len(best))
+    if others:
+        ridge[others] = -np.linalg.lstsq(normal[np.ix_(others, others)], normal[others, j], rcond=None)[0]
+    ridge[j] = 1.0
+    curvature = float(ridge @ normal @ ridge)
+    reach = min(1.0, top / math.sqrt(curvature)) if curvature > 0.0 else 0.25
+    found: dict[float, float] = {float(best[j]): 0.0}
+    ends = []
+    for sign in (-1.0, 1.0):
+        lowest = -math.inf if last else -_LOWER * scale
+        ends.append(_end(problem, best, j, others, ridge, sign, reach, top, least, lowest, found))
+    one = problem.free[j]
+    places = sorted(found)
+    (low, open_low), (high, open_high) = ends
+    return Profile(tuple(one.value(x) for x in places), tuple(found[x] for x in places), one.value(low),
+                   one.value(high), open_low, open_high)
+
+
+def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: np.ndarray, sign: float, reach: float,
+         top: float, least: float, lowest: float, found: dict[float, float]) -> tuple[float, bool]:
+    """Where √Δχ² crosses its limit on one side: the root between places below and above it, by the secant."""
+    bound = 1.0 if sign > 0.0 else 0.0
+    inside, root_inside = float(best[j]), 0.0
+    outside, root_outside = math.nan, math.nan
+    start, trial = best, best[j] + sign * reach
+    for _ in range(_STEPS):
+        trial = min(max(trial, 0.0), 1.0)
+        if abs(trial - inside) < 1e-9:
+            break
+        place = np.clip(start + ridge * (trial - start[j]), 0.0, 1.0)
+        place[j] = trial
+        place = descended(problem, place, others, _DESCENT)
+        rise = problem.misfit(place) - least
+        if rise < lowest:
+            raise Lower(place)
+        root = math.sqrt(max(rise, 0.0))
+        found[float(trial)] = max(rise, 0.0)
+        if root <= top:
+            inside, root_inside, start = trial, root, place
+        else:
+            outside, root_outside = trial, root
+        if abs(root - top) < _NEAR * top:
+            return trial, False
+        if root <= top and trial == bound:
+            return bound, True
+        if math.isnan(outside):
+            slope = root_inside / abs(inside - best[j]) if root_inside > 0.0 else 0.0
+            ahead = (top - root_inside) / slope if slope > 0.0 else 2.0 * abs(inside - best[j])
+            trial = inside + sign * min(1.2 * ahead, 2.0 * abs(inside - best[j]) + 1e-6)
+        else:
+            part = (top - root_inside) / (root_outside - root_inside)
+            trial = inside + min(max(part, 0.1), 0.9) * (outside - inside)
+    if math.isnan(outside):
+        return inside, inside == bound
+    return inside + (top - root_inside) / (root_outside - root_inside) * (outside - inside), False

@@ -1,0 +1,117 @@
+"""What is fitted: knobs of a scene with bounds and priors, and the scene that belongs to values of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import BadInput, unknown_name
+from ..quantities import QUANTITIES
+from ..scene import Amplitude, Bead, Scene
+from ..text import number_in
+
+#: What can be fitted, with its unit. K is the contact stiffness; it is changed by Young's modulus of all beads.
+UNITS = {"A0": "m", "k": "N/m", "kappa": "1", "D": "N s/m", "K": "N/m^{3/2}", "F0": "N", "wall": "1"}
+
+
+@dataclass(frozen=True)
+class Free:
+    """A parameter to be fitted.
+
+    `name` is one of `UNITS`, or A0@f for the drive amplitude at one measured frequency [Hz]. Between `low` and `high`
+    it is searched on a logarithmic scale where both are above 0. `prior` has mean and standard deviation of what is
+    known beside the data.
+    """
+
+    name: str
+    low: float
+    high: float
+    prior: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if self.knob not in UNITS or (self.at is None) != ("@" not in self.name) or (self.at and self.knob != "A0"):
+            raise unknown_name("parameter", self.name, [*UNITS, "A0@60"])
+        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
+            raise BadInput(f"The bounds of {self.name} are {self.low:g} and {self.high:g}; the first must be below the "
+                           "second.")
+        if self.knob in QUANTITIES:
+            for value in (self.low, self.high):
+                QUANTITIES[self.knob].check(value)
+        elif self.low <= 0.0:
+            raise BadInput(f"{self.name} must be above 0, so its lower bound cannot be {self.low:g}.")
+        if self.prior is not None and not self.prior[1] > 0.0:
+            raise BadInput(f"The standard deviation {self.prior[1]:g} of {self.name}'s prior must be above 0.")
+
+    @property
+    def knob(self) -> str:
+        """The knob without its frequency."""
+        return self.name.partition("@")[0]
+
+    @property
+    def at(self) -> float | None:
+        """The frequency [Hz] of an amplitude that holds at one only."""
+        return number_in(self.name.partition("@")[2])
+
+    @property
+    def unit(self) -> str:
+        """Its unit."""
+        return UNITS[self.knob]
+
+    def value(self, place: float) -> float:
+        """Its value at a place from 0 (low) to 1 (high)."""
+        if self.low > 0.0:
+            return float(self.low * (self.high / self.low) ** place)
+        return float(self.low + (self.high - self.low) * place)
+
+    def place(self, value: float) -> float:
+        """The place of a value."""
+        if self.low > 0.0:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+
+def free_of(text: str, prior: str | None = None) -> Free:
+    """A parameter from words: NAME=low:high, and mean:sd of its prior. Raises `BadInput`."""
+    name, _, bounds = text.partition("=")
+    return Free(name, *_two(f"--free {text!r}", bounds, "NAME=low:high"),
+                None if prior is None else _two(f"--prior {prior!r}", prior.partition("=")[2], "NAME=mean:sd"))
+
+
+def _two(what: str, text: str, form: str) -> tuple[float, float]:
+    numbers = [number_in(one) for one in text.split(":")]
+    if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
+        raise BadInput(f"{what} must have the form {form}.")
+    return numbers[0], numbers[1]
+
+
+def per_frequency(free: Sequence[Free], frequencies: Sequence[float] | np.ndarray) -> list[Free]:
+    """The same parameters with one A0 for each frequency in place of the constant one."""
+    found: list[Free] = []
+    for one in free:
+        found += [replace(one, name=f"A0@{f:.10g}") for f in frequencies] if one.name == "A0" else [one]
+    return found
+
+
+def with_values(scene: Scene, free: Sequence[Free],
+                values: Sequence[float] | np.ndarray) -> tuple[Scene, Amplitude | None]:
+    """The scene with these values, and the drive amplitude over the frequency where there is one for each."""
+    changes = {one.knob: float(value) for one, value in zip(free, values, strict=True) if one.at is None}
+    stiffness = changes.pop("K", None)
+    amplitudes = sorted((one.at, float(value)) for one, value in zip(free, values, strict=True) if one.at is not None)
+    if stiffness is not None:
+        scene = stiffened(scene, stiffness / scene.K)
+    scene = scene.evolve(**changes)
+    table = np.array(amplitudes).reshape(-1, 2)
+    return scene, Amplitude.table(table[:, 0], table[:, 1]) if amplitudes else None
+
+
+def stiffened(scene: Scene, factor: float) -> Scene:
+    """The scene with contacts `factor` times as stiff; what is stated in N/m stays."""
+    def harder(bead: Bead) -> Bead:
+        return replace(bead, young=bead.young * factor)
+
+    return replace(scene, pattern=tuple(map(harder, scene.pattern)),
+                   impurities=tuple((place, harder(bead)) for place, bead in scene.impurities))

@@ -1,0 +1,172 @@
+"""The least misfit over bounds, for residuals that are smooth between regimes and jump where these change.
+
+A Sobol sequence (scipy.stats.qmc) covers the bounds: no slope leads from one regime to the next, so only a look at all
+of them finds the right one. From the best places SciPy's `least_squares` goes down, a trust-region method that keeps to
+bounds (Branch, Coleman & Li 1999): it uses that χ² is a sum of squares, needs some ten times fewer curves than a
+method that does not, and refuses a step over a jump that makes χ² larger. Where the regimes differ around the place
+where it stops, or residuals are not smooth at all (frequencies of peaks), Nelder and Mead's simplex, which uses no
+slopes, goes on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import least_squares, minimize
+from scipy.stats import qmc
+
+from ..scene import Scene
+from ..stop import Stop
+from .parameters import Free, with_values
+from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
+
+Target = CurveTarget | SeriesTarget | FeatureTarget
+#: Step of derivatives, in parts of the bounds: above the noise of a curve's points (1e-5), below a peak's width.
+STEP = 2e-3
+#: Places from which the search goes down, evaluations of each, and of the simplex for every parameter.
+_STARTS, _DESCENT, _SIMPLEX = 3, 20, 40
+#: How far apart they are, in parts of the bounds, and how often the design is doubled.
+_APART, _ROUNDS = 0.1, 3
+
+
+@dataclass(eq=False)
+class Problem:
+    """Misfit of a target over places in the unit cube of the free parameters; all that was evaluated is kept."""
+
+    scene: Scene
+    target: Target
+    free: Sequence[Free]
+    stop: Stop
+    tell: Callable[[int], None]
+    places: list[np.ndarray] = field(default_factory=list)
+    misfits: list[float] = field(default_factory=list)
+    _known: dict[bytes, Evaluation] = field(default_factory=dict)
+
+    def evaluate(self, place: np.ndarray) -> Evaluation:
+        """Residuals at a place, those of the priors behind those of the data."""
+        place = np.clip(place, 0.0, 1.0)
+        key = place.tobytes()
+        if key not in self._known:
+            self.stop.check()
+            scene, amplitude = with_values(self.scene, self.free, self.values(place))
+            found = self.target.evaluate(scene, amplitude, self.stop)
+            self._known[key] = found
+            self.places.append(place)
+            self.misfits.append(self._misfit(found, place))
+            self.tell(len(self.misfits))
+        return self._known[key]
+
+    def values(self, place: np.ndarray) -> np.ndarray:
+        """Parameters at a place."""
+        return np.array([one.value(float(x)) for one, x in zip(self.free, place, strict=True)])
+
+    def priors(self, place: np.ndarray) -> np.ndarray:
+        """Residuals of the priors."""
+        return np.array([(value - one.prior[0]) / one.prior[1]
+                         for one, value in zip(self.free, self.values(np.clip(place, 0, 1)), strict=True) if one.prior])
+
+    def residuals(self, place: np.ndarray) -> np.ndarray:
+        """All residuals; the last one is the root of what χ² has beyond their squares."""
+        found = self.evaluate(place)
+        return np.concatenate([found.residuals, self.priors(place), [np.sqrt(max(found.beyond, 0.0))]])
+
+    def misfit(self, place: np.ndarray) -> float:
+        """χ² at a place."""
+        return self._misfit(self.evaluate(place), np.clip(place, 0.0, 1.0))
+
+    def _misfit(self, found: Evaluation, place: np.ndarray) -> float:
+        return float((found.residuals**2).sum() + (self.priors(place) ** 2).sum() + found.beyond)
+
+    def jacobian(self, place: np.ndarray, moving: Sequence[int]) -> np.ndarray:
+        """Derivatives of the residuals by differences to the side that stays within the bounds."""
+        base = self.residuals(place)
+        columns = []
+        for j in moving:
+            step = STEP if place[j] + STEP <= 1.0 else -STEP
+            other = np.array(place, dtype=float)
+            other[j] += step
+            columns.append((self.residuals(other) - base) / step)
+        return np.stack(columns, axis=1)
+
+    def jumps_beside(self, place: np.ndarray) -> bool:
+        """Whether a regime changes within a step of derivatives."""
+        here = self.evaluate(place).regimes
+        for j in range(len(place)):
+            other = np.array(place, dtype=float)
+            other[j] += STEP if place[j] + STEP <= 1.0 else -STEP
+            if self.evaluate(other).regimes != here:
+                return True
+        return False
+
+
+def descended(problem: Problem, place: np.ndarray, moving: Sequence[int], most: int = _DESCENT) -> np.ndarray:
+    """The place to which `least_squares` goes from `place` when only the parameters `moving` may change."""
+    moving = list(moving)
+    if not moving:
+        return place
+
+    def whole(part: np.ndarray) -> np.ndarray:
+        there = np.array(place, dtype=float)
+        there[moving] = part
+        return there
+
+    found = least_squares(lambda part: problem.residuals(whole(part)), np.clip(place[moving], 1e-6, 1.0 - 1e-6),
+                          jac=lambda part: problem.jacobian(whole(part), moving), bounds=(0.0, 1.0), method="trf",
+                          x_scale=0.1, xtol=1e-5, ftol=1e-5, max_nfev=most)
+    better = whole(found.x)
+    return better if problem.misfit(better) <= problem.misfit(place) else place
+
+
+def simplex(problem: Problem, place: np.ndarray, size: float) -> np.ndarray:
+    """The place to which Nelder and Mead's simplex goes."""
+    count = len(place)
+    corners = np.vstack([place, *(place + (size if place[j] + size <= 1.0 else -size) * np.eye(count)[j]
+                                  for j in range(count))])
+    found = minimize(problem.misfit, place, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count,
+                     options={"initial_simplex": corners, "maxfev": _SIMPLEX * count, "xatol": 1e-4, "fatol": 1e-3})
+    better = np.clip(found.x, 0.0, 1.0)
+    return better if problem.misfit(better) <= problem.misfit(place) else place
+
+
+def searched(problem: Problem, design: int, enough: Callable[[float], bool]) -> np.ndarray:
+    """The best place: a design over the bounds, descents from its best places, a simplex where regimes change.
+
+    Where the misfit is not good `enough`, the design is doubled until there were `_ROUNDS`: a valley that was missed
+    must not be a verdict on the model.
+    """
+    count = len(problem.free)
+    size = max(1, (design - 1).bit_length())
+    sequence = qmc.Sobol(count, scramble=False)
+    tried: list[np.ndarray] = []
+    starts: list[np.ndarray] = []
+    ends: list[np.ndarray] = []
+    for turn in range(_ROUNDS):
+        new = sequence.random_base2(size) if turn == 0 else sequence.random(len(tried))
+        tried += list(0.02 + 0.96 * (new + 0.5 * 2.0**-size) % 1.0)
+        ends += [_down(problem, start) for start in _apart(problem, tried, starts)]
+        best = min(ends, key=problem.misfit)
+        if enough(problem.misfit(best)):
+            break
+    if problem.target.smooth and problem.jumps_beside(best):
+        best = descended(problem, simplex(problem, best, 0.02), range(count))
+    return best
+
+
+def _apart(problem: Problem, tried: list[np.ndarray], starts: list[np.ndarray]) -> list[np.ndarray]:
+    """The next `_STARTS` places with the least misfits that are far from all `starts`, to which they are added."""
+    new: list[np.ndarray] = []
+    for place in sorted(tried, key=problem.misfit):
+        if all(np.abs(place - other).max() > _APART for other in starts):
+            starts.append(place)
+            new.append(place)
+        if len(new) == _STARTS:
+            break
+    return new
+
+
+def _down(problem: Problem, start: np.ndarray) -> np.ndarray:
+    if problem.target.smooth:
+        return descended(problem, start, range(len(start)))
+    return simplex(problem, start, 0.1)

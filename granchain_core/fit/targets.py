@@ -1,0 +1,254 @@
+"""What a model is compared with: a curve, a series, or the frequencies of peaks and valleys; each gives residuals.
+
+A residual is a difference over its standard deviation. A motion that is not periodic has no steady maximum and no
+train that comes back: there the model predicts a distribution only, so the variance is enlarged by the model's own, and
+2 ln of the enlargement is added to χ², as in a normal likelihood; else chaos, which predicts nothing, would win.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput, Cancelled, NumbersFailed
+from ..experiment import Feature, Measured, Series
+from ..scene import Amplitude, Scene
+from ..steady.curve.resonance import peaks_and_valleys
+from ..steady.curve.resonance_curve import Curve, CurvePoint, resonance_curve
+from ..steady.settling.recorded import settled
+from ..stop import Stop
+from .trains import Train, moved
+
+#: Scatter, in parts of it, that is given to the largest force of a motion that is not periodic.
+SCATTER = 0.2
+#: The residual of a point whose numbers failed, in standard deviations.
+FAILED = 20.0
+#: Standard deviation assumed where neither errors nor repeats are known, as a part of the largest force; the misfit is
+#: then scaled so that it has the size of its degrees of freedom.
+ASSUMED = 0.05
+#: A relative error of a smaller force than this part of the largest is that of this part.
+_SMALLEST = 1e-3
+#: Repeats that agree better than to this part are no evidence that the next one would.
+_LEAST_SCATTER = 1e-4
+#: Samples of a model's train in a drive period, and most samples of a series that are compared.
+_TRAIN, _COMPARED = 768, 4000
+
+
+@dataclass(frozen=True, eq=False)
+class Evaluation:
+    """Residuals (n,) in standard deviations, what χ² has beyond their squares, and the regimes behind them.
+
+    `model` is the model's value beside each datum, for pictures: forces [N], frequencies [Hz].
+    """
+
+    residuals: np.ndarray
+    beyond: float
+    regimes: tuple[str, ...]
+    model: np.ndarray
+    curve: Curve | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class CurveTarget:
+    """A measured curve: largest output force over the frequency, `elastic` for its elastic part.
+
+    `error` is a standard deviation as a part of each force, used where the measurement has none of its own.
+    """
+
+    measured: Measured
+    error: float | None = None
+    elastic: bool = False
+    start: str = "rest"
+
+    def __post_init__(self) -> None:
+        if self.measured.error is not None and self.error is None and not (self.measured.error > 0.0).all():
+            at = float(self.measured.frequency[self.measured.error <= 0.0][0])
+            raise BadInput(f"The measured error at {at:g} Hz is 0; no force is known exactly, so give all an error.")
+        if not self.measured.force.max() > 0.0:
+            raise BadInput("All measured forces are 0; there is nothing to fit.")
+
+    @property
+    def sigma(self) -> np.ndarray:
+        """Standard deviation of every force [N]: stated, given, from repeats (pooled, relative), or assumed."""
+        known = self._known_sigma
+        return np.full(len(self.measured.force), ASSUMED * self.measured.force.max()) if known is None else known
+
+    @property
+    def sigma_known(self) -> bool:
+        """Whether the standard deviations are more than assumed."""
+        return self._known_sigma is not None
+
+    @property
+    def _known_sigma(self) -> np.ndarray | None:
+        force, repeats, scatter = self.measured.force, self.measured.repeats, self.measured.scatter
+        if self.measured.error is not None and (self.measured.error > 0.0).all():
+            return self.measured.error
+        size = np.maximum(force, _SMALLEST * force.max())
+        if self.error is not None:
+            return np.asarray(self.error * size)
+        if repeats is None or scatter is None or (repeats > 1).sum() < 2:
+            return None
+        spare = repeats - 1
+        relative = math.sqrt(float((spare * (scatter / size) ** 2).sum() / spare.sum()))
+        return np.asarray(max(relative, _LEAST_SCATTER) * size / np.sqrt(repeats))
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Where it was measured [Hz]."""
+        return self.measured.frequency
+
+    @property
+    def smooth(self) -> bool:
+        """Whether residuals are smooth between regimes."""
+        return True
+
+    def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
+        """Residuals at every measured frequency, from the core's own curve."""
+        curve = resonance_curve(scene, self.measured.frequency, self.start, stop=stop, amplitude=amplitude)
+        _check(stop, len(curve.points) == len(self.measured.frequency))
+        name = "max_output_force_elastic" if self.elastic else "max_output_force"
+        model = curve.column(name)
+        periodic = np.array([p.regime.name == "periodic" for p in curve.points])
+        sigma = self.sigma
+        stated = np.array([(p.force_errors.elastic if self.elastic else p.force_errors.output) or 0.0
+                           for p in curve.points])
+        wide = np.sqrt(sigma**2 + np.where(periodic, stated * np.abs(model), SCATTER * np.abs(model)) ** 2)
+        failed = ~np.isfinite(model)
+        wide[failed] = sigma[failed]
+        residuals = np.where(failed, FAILED, (model - self.measured.force) / wide)
+        return Evaluation(residuals, float(2.0 * np.log(wide / sigma).sum()),
+                          tuple(p.regime.name + str(p.regime.period or "") for p in curve.points), model, curve)
+
+
+@dataclass(frozen=True, eq=False)
+class SeriesTarget:
+    """A measured series at the scene's own drive frequency: the forces over time, each the mean over its interval.
+
+    `error` is the standard deviation of the forces [N]. The start of the recording is not known: for each set of
+    parameters the model's trains are moved to where the sum of squares is least.
+    """
+
+    series: Series
+    error: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.channels:
+            raise BadInput("The series has neither an input force nor an output force; there is nothing to fit.")
+
+    @property
+    def channels(self) -> dict[str, np.ndarray]:
+        """The measured forces by name."""
+        both = {"input_force": self.series.input_force, "output_force": self.series.output_force}
+        return {name: values[self._kept] for name, values in both.items() if values is not None}
+
+    @property
+    def _kept(self) -> slice:
+        return slice(None, None, max(1, math.ceil(len(self.series.time) / _COMPARED)))
+
+    @property
+    def sigma_known(self) -> bool:
+        """Whether the standard deviation was given."""
+        return self.error is not None
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """None of its own: it is compared at the scene's."""
+        return np.zeros(0)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether residuals are smooth between regimes."""
+        return True
+
+    def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
+        """Residuals of every sample of every channel."""
+        time, measured = self.series.time[self._kept], self.channels
+        largest = max(float(np.abs(values).max()) for values in measured.values())
+        sigma = self.error or ASSUMED * largest
+        try:
+            found = settled(scene, samples=_TRAIN, stop=stop)
+        except NumbersFailed:
+            count = sum(map(len, measured.values()))
+            return Evaluation(np.full(count, FAILED), 0.0, ("failed",), np.full(count, np.nan))
+        trains = {name: Train.of(found.run, name) for name in measured}
+        width = float(np.median(np.diff(self.series.time)))
+        periodic = found.regime.name == "periodic"
+        late = moved(time, measured, trains, width, len(found.run.time) - 1) if periodic else 0.0
+        residuals, beyond, models = [], 0.0, []
+        for name, values in measured.items():
+            if periodic:
+                model, wide = trains[name].mean_over(time + late, width), sigma
+            else:
+                model = np.full(len(values), float(getattr(found.run, name).mean()))
+                wide = math.hypot(sigma, float(getattr(found.run, name).std()))
+            residuals.append((model - values) / wide)
+            beyond += 2.0 * len(values) * math.log(wide / sigma)
+            models.append(model)
+        return Evaluation(np.concatenate(residuals), beyond, (found.regime.name + str(found.regime.period or ""),),
+                          np.concatenate(models))
+
+
+@dataclass(frozen=True, eq=False)
+class FeatureTarget:
+    """Frequencies of peaks and valleys, each with the same standard deviation [Hz], sought on a grid [Hz].
+
+    A model's extremum counts where it stands out (`steady/curve/resonance.py`) and it and both its neighbours on the
+    grid are periodic; a parabola through the three gives its frequency.
+    """
+
+    features: Sequence[Feature]
+    grid: np.ndarray
+    sigma: float = 3.0
+    start: str = "rest"
+
+    @property
+    def sigma_known(self) -> bool:
+        """The standard deviation is given."""
+        return True
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """The stated frequencies [Hz]."""
+        return np.array([one.frequency for one in self.features])
+
+    @property
+    def smooth(self) -> bool:
+        """Extrema come and go."""
+        return False
+
+    def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
+        """For every feature the distance to the nearest extremum of its kind."""
+        curve = resonance_curve(scene, self.grid, self.start, stop=stop, amplitude=amplitude)
+        _check(stop, len(curve.points) == len(self.grid))
+        found = {kind: extrema(curve.points, kind) for kind in (True, False)}
+        model, residuals = [], []
+        for one in self.features:
+            near = min(found[one.is_resonance], key=lambda f: abs(f - one.frequency), default=math.nan)
+            width = self.grid[-1] - self.grid[0]
+            model.append(near)
+            residuals.append((near - one.frequency if math.isfinite(near) else width) / self.sigma)
+        return Evaluation(np.array(residuals), 0.0, tuple(p.regime.name for p in curve.points), np.array(model), curve)
+
+
+def extrema(points: Sequence[CurvePoint], peaks: bool) -> list[float]:
+    """Frequencies of the peaks (or valleys) of the elastic output force that stand out, at periodic points [Hz]."""
+    force = np.array([p.max_output_force_elastic for p in points])
+    force = np.where(np.isfinite(force), force, 0.0)
+    found = []
+    for i in peaks_and_valleys(force)[0 if peaks else 1]:
+        three = points[i - 1 : i + 2]
+        if any(p.regime.name != "periodic" for p in three):
+            continue
+        left, middle, right = force[i - 1 : i + 2]
+        step = 0.5 * (three[2].frequency - three[0].frequency)
+        found.append(float(three[1].frequency + 0.5 * step * (left - right) / (left - 2.0 * middle + right)))
+    return found
+
+
+def _check(stop: Stop | None, complete: bool) -> None:
+    """A curve that was stopped has fewer points."""
+    if not complete or (stop is not None and stop):
+        raise Cancelled

@@ -1,0 +1,79 @@
+"""A model's force train as a sensor sees it: the mean over each sample's interval, with the jumps at their times.
+
+A force that jumps between two samples makes a misfit that jumps with the parameters; its mean over an interval moves
+smoothly. A recorder with a filter against aliasing averages over about its sample's interval as well.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ..result import Run
+
+#: Shifts tried around the best of the coarse search, in its steps, and how finely the best of them is found.
+_AROUND, _FINE = 1.5, 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Train:
+    """A periodic force: straight lines between nodes (time from 0 [s], force [N]), and their integral [N s]."""
+
+    time: np.ndarray
+    force: np.ndarray
+    integral: np.ndarray
+    length: float
+
+    @classmethod
+    def of(cls, run: Run, name: str) -> Train:
+        """The input or output force of a recorded orbit; a jump is two nodes at one time."""
+        time, force = run.time - run.time[0], getattr(run, name)
+        contact = 0 if name == "input_force" else run.scene.N
+        mine = run.jumps.contact == contact
+        at, top = run.jumps.time[mine] - run.time[0], run.jumps.force[mine]
+        inside = (at > 0.0) & (at < time[-1])
+        at, top = at[inside], top[inside]
+        order = np.argsort(np.concatenate([time, at, at]), kind="stable")  # samples, then 0, then the top
+        nodes = np.concatenate([time, at, at])[order]
+        forces = np.concatenate([force, np.zeros(len(at)), top])[order]
+        steps = 0.5 * (forces[1:] + forces[:-1]) * np.diff(nodes)
+        return cls(nodes, forces, np.concatenate([[0.0], np.cumsum(steps)]), float(time[-1]))
+
+    def mean_over(self, time: np.ndarray, width: float) -> np.ndarray:
+        """Means over intervals of `width` [s] around times [s]."""
+        return np.asarray((self._integral(time + 0.5 * width) - self._integral(time - 0.5 * width)) / width)
+
+    def _integral(self, time: np.ndarray) -> np.ndarray:
+        turns = np.floor(time / self.length)
+        at = time - turns * self.length
+        left = np.clip(np.searchsorted(self.time, at, side="right") - 1, 0, len(self.time) - 2)
+        step = self.time[left + 1] - self.time[left]
+        part = np.divide(at - self.time[left], step, out=np.zeros_like(at), where=step > 0.0)
+        risen = self.force[left] * part + 0.5 * (self.force[left + 1] - self.force[left]) * part**2
+        return np.asarray(turns * self.integral[-1] + self.integral[left] + risen * step)
+
+
+def moved(time: np.ndarray, measured: dict[str, np.ndarray], trains: dict[str, Train], width: float,
+          count: int) -> float:
+    """By how much the trains are moved [s] for the least sum of squares: all shifts at once, then the best exactly."""
+    length = next(iter(trains.values())).length
+    bins = np.floor(np.mod(time, length) / length * count).astype(int) % count
+    score = np.zeros(count)
+    for name, values in measured.items():
+        train = trains[name].mean_over(np.arange(count) * length / count, max(width, length / count))
+        folded, hits = np.bincount(bins, values, count), np.bincount(bins, minlength=count)
+        # Σ (train(t + s) − value)² over all shifts s, as two circular correlations
+        turn = np.conj(np.fft.rfft(np.stack([folded, hits])))
+        squares, products = np.fft.rfft(train**2) * turn[1], np.fft.rfft(train) * turn[0]
+        score += np.fft.irfft(squares - 2.0 * products, count)
+
+    def misfit(late: float) -> float:
+        return sum(float(((trains[name].mean_over(time + late, width) - values) ** 2).sum())
+                   for name, values in measured.items())
+
+    step = length / count
+    best = float(np.argmin(score)) * step
+    return float(minimize_scalar(misfit, bounds=(best - _AROUND * step, best + _AROUND * step), method="bounded",
+                                 options={"xatol": _FINE * step}).x)

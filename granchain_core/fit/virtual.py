@@ -1,0 +1,38 @@
+"""Virtual experiments: measurements that are none, of a model with known parameters, marked as such."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..experiment import Measured, Series
+from ..scene import Scene
+from ..steady.curve.resonance_curve import resonance_curve
+from ..steady.settling.recorded import settled
+from .trains import Train
+
+SOURCE = "virtual experiment"
+#: Samples of the model for one of a series.
+_FINER = 16
+
+
+def virtual_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, error: float,
+                  random: np.random.Generator) -> Measured:
+    """The model's curve with normal noise, a part `error` of each force."""
+    curve = resonance_curve(scene, frequencies)
+    exact = curve.column("max_output_force")
+    force = np.maximum(exact * (1.0 + error * random.standard_normal(len(exact))), 1e-12)
+    return Measured(curve.column("frequency"), force, error * exact,
+                    f"virtual: {scene.name} with noise of {100 * error:g} %", source=SOURCE,
+                    units={"frequency": "Hz", "force": "N"})
+
+
+def virtual_series(scene: Scene, periods: int, samples: int, error: float, random: np.random.Generator) -> Series:
+    """The model's forces over so many drive periods, begun at any phase, with normal noise of `error` [N]."""
+    found = settled(scene, samples=_FINER * samples).run
+    time = np.arange(periods * samples) / (samples * scene.f)
+    begun, width = random.random() * float(found.time[-1] - found.time[0]), 1.0 / (samples * scene.f)
+    forces = [Train.of(found, name).mean_over(time + begun, width) + error * random.standard_normal(len(time))
+              for name in ("input_force", "output_force")]
+    return Series(time, None, forces[0], forces[1], f"virtual: {scene.name} with noise of {error:g} N", source=SOURCE)
