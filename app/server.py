@@ -28,7 +28,7 @@ from .serve.meters import METERS, Liveness, Metrics
 from .serve.queues import PICTURES, SWEEPS
 from .serve.shared import Shared
 from .serve.turns import TURNS
-from .serve.websocket import guard
+from .serve.websocket import guard, remember_defaults
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
@@ -79,6 +79,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
     settings.perform_document_validation.set_value(False)  # 40 ms of every opening, to find mistakes that tests find
+    remember_defaults()
     gc.collect()
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
     server.start()
