@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from .effects.contact import elastic_force, positive_part
-from .effects.dissipation import damping
+from .effects.dissipation import dashpot_force
 from .effects.preload import overlap
 from .effects.tension import cut_at_zero
 from .equations.motion import force_on_bead
@@ -43,9 +43,9 @@ def naive_motion(slots, u0, v0, y, dy, forces):
         dy[i] = y[m + i]
     left = 0.0
     for c in range(m - 1):
-        d = positive_part(overlap(slots.preload, y, c))
-        damped = damping(slots.dissipation, d) * (dy[c] - dy[c + 1])
-        force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped)
+        gap = overlap(slots.preload, y, c)
+        damped = dashpot_force(slots.dissipation, gap, dy[c] - dy[c + 1])
+        force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], positive_part(gap)) + damped)
         forces.e[c] = force - damped
         if c > 0:
             dy[m + c] = inverse_mass[c] * force_on_bead(slots, left - force, y[c], dy[c])

@@ -25,13 +25,6 @@ def test_the_case_holds(name: str) -> None:
     assert not missed
 
 
-@pytest.mark.parametrize("name", [case.name for case in CASES])
-def test_timings_are_within_twice_their_bar(name: str) -> None:
-    for row in rows(name):
-        if any(words in row.case for words in TIMINGS):
-            assert row.value < 2.0 * row.limit
-
-
 def test_the_table_is_the_issues() -> None:
     """Sixteen rows, each with its oracle, what is hard and what a naive solver does."""
     assert len({case.name for case in CASES}) == 16

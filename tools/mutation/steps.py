@@ -14,7 +14,7 @@ MOTION = (
     Mutant("motion-without-last-contact", _MOTION, "for c in range(m - 1):\n        d = pressed(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
            "for c in range(m - 2):\n        d = pressed(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
            "the wall's contact is not summed", k.MOTION),
-    Mutant("contact-force-elastic-only", _MOTION, "e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1]))",
+    Mutant("contact-force-elastic-only", _MOTION, "e[c] + damped)",
            "e[c])", "forces are reported without their damping", k.MOTION),
     Mutant("foundation-over-first-mass", _MOTION,
            "inverse_mass[i] * force_on_bead(slots, e[i - 1] - e[i], y[i], dy[i])",

@@ -19,7 +19,7 @@ IN_LANES = (
            "chains in lanes do not feel the wall", k.LANES),
     Mutant("lane-damping-of-one-side", _LANE, "batch_velocity(values.law, values.unequal, i, bead.w, bead.G - G)",
            "batch_velocity(values.law, values.unequal, i, bead.w, bead.G)", "a bead in lanes is damped by one of its contacts", k.LANES),
-    Mutant("lane-output-force", _LANE, "damping(values.law, positive_part(last.gap)) * last.rate", "0.0 * last.rate",
+    Mutant("lane-output-force", _LANE, "dashpot_force(values.law, last.gap, last.rate)", "0.0 * last.rate",
            "the largest output force in lanes leaves out the wall's dashpot", k.LANE_FORCES),
     Mutant("lane-impulse-sign", _BESIDE, "correct_state(values, y, c, m, gate(changed, impulse))",
            "correct_state(values, y, c, m, gate(changed, blank(gap) - impulse))",

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..effects.contact import positive_part
-from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, damping, shape
+from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, shape
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..forces.crossings import Approach, brief_touch, closing_rate
@@ -151,8 +150,8 @@ def batch_step(values, y, h, u0, middle, end):
 def watch_batch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
     """Follow input force, output force and its elastic part in all lanes, where a step began."""
     first, last = Approach(gap_first, v0 - ends.v_first), Approach(gap_last, ends.v_last)
-    watch_lanes(peaks, INPUT, ends.pushed + damping(values.law, positive_part(first.gap)) * first.rate)
-    watch_lanes(peaks, OUTPUT, ends.passed + damping(values.law, positive_part(last.gap)) * last.rate)
+    watch_lanes(peaks, INPUT, ends.pushed + dashpot_force(values.law, first.gap, first.rate))
+    watch_lanes(peaks, OUTPUT, ends.passed + dashpot_force(values.law, last.gap, last.rate))
     watch_lanes(peaks, OUTPUT_ELASTIC, ends.passed)
     watch_jumps(values.law, values, h, first, last, before, peaks)
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..effects.contact import elastic_force, elastic_slope, positive_part
-from ..effects.dissipation import damping
+from ..effects.dissipation import dashpot_force
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
@@ -44,10 +44,11 @@ class Force(NamedTuple):
 def forces_of(slots, y, dy):
     """Input, output and elastic output force at state y, velocities in dy."""
     last = slots.chain.stiffness.size - 1
-    d0, d1 = positive_part(overlap(slots.preload, y, 0)), positive_part(overlap(slots.preload, y, last))
-    input_force = elastic_force(slots.chain.stiffness[0], d0) + damping(slots.dissipation, d0) * (dy[0] - dy[1])
-    elastic = elastic_force(slots.chain.stiffness[last], d1)
-    output_force = elastic + damping(slots.dissipation, d1) * (dy[last] - dy[last + 1])
+    first_gap, last_gap = overlap(slots.preload, y, 0), overlap(slots.preload, y, last)
+    elastic = elastic_force(slots.chain.stiffness[0], positive_part(first_gap))
+    input_force = elastic + dashpot_force(slots.dissipation, first_gap, dy[0] - dy[1])
+    elastic = elastic_force(slots.chain.stiffness[last], positive_part(last_gap))
+    output_force = elastic + dashpot_force(slots.dissipation, last_gap, dy[last] - dy[last + 1])
     return cut_at_zero(slots.tension, input_force), cut_at_zero(slots.tension, output_force), elastic
 
 
@@ -72,9 +73,10 @@ def keep_end_forces(slots, y, dy, e):
     last = slots.chain.stiffness.size - 1
     for q in range(4):
         c = min(q, last) if q < 2 else max(last + q - 3, 0)
-        d = positive_part(overlap(slots.preload, y, c))
-        damped = damping(slots.dissipation, d) * (dy[c] - dy[c + 1])
-        e[c] = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], d) + damped) - damped
+        gap = overlap(slots.preload, y, c)
+        damped = dashpot_force(slots.dissipation, gap, dy[c] - dy[c + 1])
+        elastic = elastic_force(slots.chain.stiffness[c], positive_part(gap))
+        e[c] = cut_at_zero(slots.tension, elastic + damped) - damped
 
 
 @internal

@@ -6,9 +6,9 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
 Values     coefficient: λ in scaled units, at an overlap of one length unit where a > 0
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
-Terms      damping, damping_slope, primitive, shape = G/λ, velocity and its inverse shifted (absent: v = w);
-           keep_primitive, put_primitive and put_prescribed_primitive write into the array of G, batch_values reads the
-           lanes of a batch
+Terms      damping, dashpot_force, damping_slope, primitive, shape = G/λ, velocity and its inverse shifted (absent:
+           v = w); keep_primitive, put_primitive and put_prescribed_primitive write into the array of G, batch_values
+           reads the lanes of a batch
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import math
 from typing import NamedTuple
 
 from ..jit import by_slot, by_slot_inlined, in_simd_kernels, inline_llvm, require_terms
-from ..simd.functions import gate, root
+from ..simd.functions import clip, gate, root
 from ..simd.vector import load_batch
 
 
@@ -118,6 +118,12 @@ def _(law, d):
 @damping.of(*SMOOTH_LAWS)
 def _(law, d):
     return law.coefficient * power(law, d, root(d))
+
+
+@inline_llvm
+def dashpot_force(law, gap, rate):
+    """F_d = g([δ]_+) δ̇, what a contact's force has beside its elastic part; for numbers and vectors."""
+    return damping(law, clip(gap)) * rate
 
 
 @by_slot

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..jit import by_slot, internal
 from .contact import elastic_energy, positive_part
-from .dissipation import damping, primitive, put_primitive
+from .dissipation import damping, dashpot_force, primitive, put_primitive
 from .preload import overlap
 
 
@@ -82,7 +82,7 @@ def _(tension, slots, y, dy, e):
         if tension.force_free[c] != 0:
             e[c] = -tension.slope[c] * rate
         else:
-            damped = damping(slots.dissipation, positive_part(overlap(slots.preload, y, c))) * rate
+            damped = dashpot_force(slots.dissipation, overlap(slots.preload, y, c), rate)
             if e[c] + damped < 0.0:
                 e[c] = -damped
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..effects.balance import account
 from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
-from ..effects.dissipation import damping, keep_primitive, shifted, velocity
+from ..effects.dissipation import dashpot_force, keep_primitive, shifted, velocity
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.foundation import add_foundation_force, foundation_energy
 from ..effects.given_force import prescribe_force, prescribe_primitive
@@ -95,8 +95,8 @@ def motion(slots, u0, v0, y, dy, forces):
 @internal
 def contact_force(slots, y, dy, e, c):
     """Total force of contact c from the last evaluation of `motion`."""
-    d = positive_part(overlap(slots.preload, y, c))
-    return unless_force_free(slots.tension, c, e[c] + damping(slots.dissipation, d) * (dy[c] - dy[c + 1]))
+    damped = dashpot_force(slots.dissipation, overlap(slots.preload, y, c), dy[c] - dy[c + 1])
+    return unless_force_free(slots.tension, c, e[c] + damped)
 
 
 @internal

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..contact_cubic import GAP, RATE, TINY, hermite_turn
 from ..effects.contact import elastic_force, elastic_slope, positive_part
-from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, damping, damping_slope
+from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, damping, damping_slope, dashpot_force
 from ..effects.driver import driver_acceleration
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
@@ -178,9 +178,9 @@ def watch_ends_at_event(slots, ends, c, theta, log):
     last = slots.chain.stiffness.size - 1
     for q in range(2):
         contact = 0 if q == 0 else last
-        d = positive_part(ends[GAP, contact])
-        force = elastic_force(slots.chain.stiffness[contact], d)
-        reach(log.peaks, q * OUTPUT, force + damping(slots.dissipation, d) * ends[RATE, contact])
+        gap = ends[GAP, contact]
+        force = elastic_force(slots.chain.stiffness[contact], positive_part(gap))
+        reach(log.peaks, q * OUTPUT, force + dashpot_force(slots.dissipation, gap, ends[RATE, contact]))
         if q == 1:
             reach(log.peaks, OUTPUT_ELASTIC, force)
     note_closing(slots.dissipation, ends[RATE, c], c, last, theta, log)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..effects.contact import elastic_force, positive_part
-from ..effects.dissipation import LAWS, damping, primitive
+from ..effects.dissipation import LAWS, dashpot_force, primitive
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
@@ -149,10 +149,10 @@ def watch_long_chain_ends(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
     block, lane = last // LANES, last % LANES
-    d = positive_part(simd.gap[0, 0])
-    watch(peaks, INPUT, simd.elastic[0, 0] + damping(slots.dissipation, d) * (v0 - simd.slope[0, 1]))
-    d, elastic = positive_part(simd.gap[block, lane]), simd.elastic[block, lane]
-    watch(peaks, OUTPUT, elastic + damping(slots.dissipation, d) * simd.slope[block, lane])
+    damped = dashpot_force(slots.dissipation, simd.gap[0, 0], v0 - simd.slope[0, 1])
+    watch(peaks, INPUT, simd.elastic[0, 0] + damped)
+    elastic = simd.elastic[block, lane]
+    watch(peaks, OUTPUT, elastic + dashpot_force(slots.dissipation, simd.gap[block, lane], simd.slope[block, lane]))
     watch(peaks, OUTPUT_ELASTIC, elastic)
 
 

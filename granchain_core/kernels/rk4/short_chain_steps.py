@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR
-from ..effects.contact import positive_part
-from ..effects.dissipation import damping
+from ..effects.dissipation import dashpot_force
 from ..effects.driver import driver_displacement, driver_velocity
 from ..forces.largest import watch_ends_at_event
 from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
@@ -85,8 +84,8 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
 def keep_forces(wide, values, last, k, x):
     """Write input force, output force and its elastic part at step k of a block; returns them."""
     gap, rate, elastic = at(x.gap, last), at(x.rate, last), at(x.elastic, last)
-    input_force = at(x.elastic, 0) + damping(values.dissipation, positive_part(at(x.gap, 0))) * at(x.rate, 0)
-    output_force = elastic + damping(values.dissipation, positive_part(gap)) * rate
+    input_force = at(x.elastic, 0) + dashpot_force(values.dissipation, at(x.gap, 0), at(x.rate, 0))
+    output_force = elastic + dashpot_force(values.dissipation, gap, rate)
     wide.forces[0, k], wide.forces[1, k], wide.forces[2, k] = input_force, output_force, elastic
     return input_force, output_force, elastic
 
