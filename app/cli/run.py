@@ -85,7 +85,7 @@ def _is_asked_for(found: Run, chosen: Scene, arguments: argparse.Namespace) -> b
     rows = arguments.record * arguments.samples + 1
     periods = round(float(found.time[0]) / chosen.period)
     return (found.scene.digest, found.start, found.samples, len(found.time), periods, found.cost.method) == (
-        chosen.digest, "initial velocity" if chosen.start_velocity else "rest", arguments.samples, rows,
+        chosen.digest, "initial velocity" if chosen.moves_at_start else "rest", arguments.samples, rows,
         arguments.periods, method)
 
 
