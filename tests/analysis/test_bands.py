@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, bands, resonance_curve, scene
+from granchain_core import BadInput, bands, branch, resonance_curve, run, scene, settle, spectrum
 
 CHAIN = scene("precompressed")
 
@@ -53,3 +53,32 @@ def test_the_driven_chain_passes_below_the_cut_off_and_not_above() -> None:
 def test_chains_without_bands_are_refused(knobs: dict[str, float], words: str) -> None:
     with pytest.raises(BadInput, match=words):
         bands(CHAIN.evolve(**knobs))
+
+
+def test_the_diode_is_reciprocal_while_it_is_linear() -> None:
+    """Small waves pass both ways alike (reciprocity of linear systems); the light bead's mode is above the cut-off."""
+    small = [scene(name).evolve(A0=1e-9, f=4000.0) for name in ("diode", "diode-reverse")]
+    forward, backward = (resonance_curve(one, [one.f]).points[0].max_output_force_elastic - one.F0 for one in small)
+    # the force's next term is a quarter of dynamic over static overlap, a few 1e-3
+    assert forward == pytest.approx(backward, rel=2e-3) and forward > 0.01
+    spring = 1.5 * small[0].contact_stiffness() * np.sqrt(small[0].static_overlap())
+    root = 1.0 / np.sqrt(small[0].masses())
+    matrix = np.diag(spring[:-1] + spring[1:]) - np.diag(spring[1:-1], 1) - np.diag(spring[1:-1], -1)
+    modes = np.sqrt(np.linalg.eigvalsh(root[:, None] * matrix * root)) / (2.0 * np.pi)
+    ((_, cut_off),) = bands(small[0])
+    assert modes[-2] < cut_off < scene("diode").f < modes[-1]
+
+
+def test_the_diode_lets_the_drive_through_one_way_once_its_orbit_is_unstable() -> None:
+    """A Neimark–Sacker point of the branch separates silence from motion, whose strongest line has its angle's frequency."""
+    chain = scene("diode")
+    (point,) = [one for one in branch(chain, "A0", 7.3e-7, 7.5e-7).special if one.kind == "neimark_sacker"]
+    assert 7.3e-7 < point.knob < 7.5e-7 and point.multiplier is not None
+    below, above = (settle(chain.evolve(A0=amplitude)) for amplitude in (7.3e-7, 7.7e-7))
+    assert below.regime.period == 1 and above.regime.name == "quasi-periodic"
+    assert np.ptp(above.run.output_force_elastic) > 1e5 * np.ptp(below.run.output_force_elastic)
+    assert np.ptp(settle(scene("diode-reverse")).run.output_force_elastic) < 1e-5 * np.ptp(above.run.output_force_elastic)
+    lines = spectrum(run(chain.evolve(A0=7.7e-7), 400, 200, 64, start=above.state), "output")
+    strongest = lines.frequency[1 + int(lines.amplitude[1:].argmax())]
+    # the record of 200 periods tells lines 54 Hz apart; the frequency moves a little beyond the bifurcation
+    assert strongest == pytest.approx(np.angle(point.multiplier) / (2.0 * np.pi) * chain.f, abs=54.0)

@@ -68,6 +68,7 @@ def test_a_link_to_a_scene_as_it_is_means_what_it_meant(name: str) -> None:
 
 #: The same for later scenes: the knobs in which they differ from `sec2`.
 _IMPACT = {"N": 30, "f": 250.0, "drive": "rest", "strike": 0.01, "dissipation": "none"}
+_DIODE = {"f": 10830.0, "A0": 8e-7, "D": 10.0, "F0": 8.0, "site": 2, "impurity": 0.2}
 _LATER = {
     "impact": _IMPACT,
     "impact-train": {**_IMPACT, "f": 150.0, "striker": 6.0},
@@ -75,6 +76,8 @@ _LATER = {
     "impact-dimer": {**_IMPACT, "dimer": 0.3428},
     "impact-taper": {**_IMPACT, "taper": 0.3},
     "precompressed": {"f": 5000.0, "A0": 1e-8, "D": 20.0, "F0": 10.0},
+    "diode": _DIODE,
+    "diode-reverse": {**_DIODE, "site": 10},
 }
 
 
