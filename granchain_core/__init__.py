@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .diagram import Attractor, Diagram, attractors, diagram
     from .fit import Fit, fit
-    from .observe import Observation, observe
+    from .observe import Driven, Observation, Signal, drive, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
     from .orbits import periodic_orbit as orbit
@@ -51,7 +51,8 @@ _MODULES = {
     "steady.settling.recorded": ("Settled", "settled", "settling"), "regime": ("Regime",),
     "steady.curve.resonance_curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
-    "diagram": ("Attractor", "Diagram", "attractors", "diagram"), "observe": ("Observation", "observe"),
+    "diagram": ("Attractor", "Diagram", "attractors", "diagram"),
+    "observe": ("Driven", "Observation", "Signal", "drive", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
@@ -64,11 +65,12 @@ _SHORT = {"settle": "settled", "orbit": "periodic_orbit", "branch": "continue_br
 
 __all__ = [
     "Amplitude", "Attractor", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve", "CurvePoint",
-    "Diagram", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit", "OverBudget", "Pulse",
-    "Regime", "Run", "Scene", "Settled", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision",
-    "__version__", "attractors", "bands", "basins", "branch", "continue_branch", "diagram", "fit", "iter_curve", "load",
-    "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "pulse", "resonance_curve", "run", "save", "scene",
-    "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
+    "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit", "OverBudget",
+    "Pulse", "Regime", "Run", "Scene", "Settled", "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer",
+    "WorkPrecision", "__version__", "attractors", "bands", "basins", "branch", "continue_branch", "diagram", "drive",
+    "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "pulse", "resonance_curve",
+    "run", "save", "scene", "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer",
+    "work_precision",
 ]
 
 
