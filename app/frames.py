@@ -115,8 +115,12 @@ def _jumps(run: Run, contact: int) -> np.ndarray:
 
 
 def samples_for(scene: Scene) -> int:
-    """Rows per drive period: as many as the pulses need, which are short in a slow drive."""
-    needed = _STEP * round(_PER_CONTACT_TIME * scales_of(scene).rate / scene.f / _STEP)
+    """Rows per drive period: as many as the pulses need, which are short in a slow drive.
+
+    Without a drive a picture is one time 1/f, and has the rows of the periods that it would show otherwise.
+    """
+    shown = 1 if scene.is_driven else PERIODS
+    needed = _STEP * round(shown * _PER_CONTACT_TIME * scales_of(scene).rate / scene.f / _STEP)
     return int(min(max(needed, _FEWEST), _MOST))
 
 

@@ -21,13 +21,15 @@ from .version import __version__
 
 if TYPE_CHECKING:
     from .accuracy import WorkPrecision, work_precision
+    from .analysis.bands import bands
     from .analysis.basins import Basins, basins
     from .analysis.lyapunov_spectrum import LyapunovSpectrum, lyapunov_spectrum
+    from .analysis.pulse import Pulse, pulse
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .diagram import Attractor, Diagram, attractors, diagram
     from .fit import Fit, fit
-    from .observe import Observation, observe
+    from .observe import Driven, Observation, Signal, drive, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
     from .orbits import periodic_orbit as orbit
@@ -49,11 +51,13 @@ _MODULES = {
     "steady.settling.recorded": ("Settled", "settled", "settling"), "regime": ("Regime",),
     "steady.curve.resonance_curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
-    "diagram": ("Attractor", "Diagram", "attractors", "diagram"), "observe": ("Observation", "observe"),
+    "diagram": ("Attractor", "Diagram", "attractors", "diagram"),
+    "observe": ("Driven", "Observation", "Signal", "drive", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
-    "analysis.strobe_diagram": ("StrobeDiagram", "strobe_diagram"),
+    "analysis.strobe_diagram": ("StrobeDiagram", "strobe_diagram"), "analysis.pulse": ("Pulse", "pulse"),
+    "analysis.bands": ("bands",),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 #: Short names and what they stand for.
@@ -61,11 +65,12 @@ _SHORT = {"settle": "settled", "orbit": "periodic_orbit", "branch": "continue_br
 
 __all__ = [
     "Amplitude", "Attractor", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve", "CurvePoint",
-    "Diagram", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit", "OverBudget",
-    "Regime", "Run", "Scene", "Settled", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision",
-    "__version__", "attractors", "basins", "branch", "continue_branch", "diagram", "fit", "iter_curve", "load",
-    "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "resonance_curve", "run", "save", "scene",
-    "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
+    "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit", "OverBudget",
+    "Pulse", "Regime", "Run", "Scene", "Settled", "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer",
+    "WorkPrecision", "__version__", "attractors", "bands", "basins", "branch", "continue_branch", "diagram", "drive",
+    "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "pulse", "resonance_curve",
+    "run", "save", "scene", "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer",
+    "work_precision",
 ]
 
 

@@ -140,14 +140,26 @@ class Lowered:
         lightest = float(slots.chain.inverse_mass.max())
         stiffest = float(slots.chain.stiffness.max())
         static = float(slots.preload.static.max()) if slots.preload is not None else 0.0
-        step = _STEP / math.sqrt(lightest * stiffest) / max(1.0, static) ** 0.25
+        overlap = max(1.0, static, self._struck)
+        step = _STEP / math.sqrt(lightest * stiffest) / overlap**0.25
         if slots.dissipation is not None:
-            overlap = max(1.0, static)
             strength = slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
             step = min(step, _DASHPOT_LIMIT / (4.0 * strength * lightest))
         if slots.foundation is not None:
             step = min(step, _FOUNDATION_STEP / math.sqrt(slots.foundation.stiffness * lightest))
         return step
+
+    @property
+    def _struck(self) -> float:
+        """Overlap that the fastest bead at the start can make, all its energy in one contact, in scaled units.
+
+        (2/5) K δ^{5/2} = m v²/2.
+        """
+        speed, slots = np.abs(self.scene.velocities_at_start()) / self.scales.velocity, self.slots
+        if not speed.any():
+            return 0.0
+        energy = 0.5 * float((speed**2 / slots.chain.inverse_mass[1 : self.scene.N + 1]).max())
+        return (2.5 * energy / float(slots.chain.stiffness.min())) ** 0.4
 
     def steps_per_period(self, multiple_of: int = 1) -> int:
         """Steps of the live method in one period, a multiple of `multiple_of`."""
@@ -199,7 +211,7 @@ def lower(scene: Scene, balance: bool = False) -> Lowered:
     filled = {effect.slot: _FILLED[effect.slot](scene, scales) for effect in effects_of(scene)}
     slots = Slots(
         chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K),
-        driver=Harmonic(1.0, beta),
+        driver=Harmonic(1.0 if scene.is_driven else 0.0, beta),
         balance=Balance(1) if balance else None,
         **filled,
     )

@@ -25,7 +25,7 @@ class Quantity:
     `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted too. `main` knobs are
     always on the page, the others under "more". `short` is the label beside a number where `label` is too long.
     `shown_in` is the factor and unit on the page if that is not `unit`. `changes_motion` is False for a knob of the
-    computation alone.
+    computation alone, `at_start` true for one that changes where a motion begins and not the chain.
     """
 
     name: str
@@ -45,6 +45,7 @@ class Quantity:
     short: str = ""
     shown_in: tuple[float, str] | None = None
     changes_motion: bool = True
+    at_start: bool = False
 
     @property
     def is_axis(self) -> bool:
@@ -53,8 +54,8 @@ class Quantity:
 
     @property
     def is_continuous(self) -> bool:
-        """Whether a branch can follow it: an axis without named values."""
-        return self.is_axis and not self.choices
+        """Whether a branch can follow it: an axis without named values, of the chain itself."""
+        return self.is_axis and not self.choices and not self.at_start
 
     def check(self, value: object) -> float | int | str:
         """`value` as this knob's type, or `BadInput` saying what is allowed and what is nearest."""
@@ -110,6 +111,7 @@ class Quantity:
 WALL_FACTORS = {"bead": 1.0, "same-material": math.sqrt(2.0), "rigid": 2.0 * math.sqrt(2.0)}
 DISSIPATION_LAWS = (*LAWS, "none")
 TENSION = ("allowed", "cut")
+DRIVES = ("harmonic", "rest")
 
 _TABLE = (
     Quantity("f", "f", "Hz", "f", "drive frequency", "How often a second the driver moves to and fro.",
@@ -126,6 +128,23 @@ _TABLE = (
              0.0, 100.0, "cubic", 1e-5, main=True, short="k / (K√A₀)"),
     Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
              1, 10_000, "linear", 1, whole=True, short="beads"),
+    Quantity("dimer", "m₂/m₁", "1", "m_2/m_1", "mass of every second bead",
+             "Mass of beads 2, 4, … over that of the others; of the same material, so the radius goes with its cube "
+             "root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer"),
+    Quantity("taper", "R_N/R₁", "1", "R_N/R_1", "taper",
+             "Radius of the last bead over that of the first; each is the same part of the one before it.",
+             0.01, 100.0, "log"),
+    Quantity("striker", "mₛ/m", "1", "m_s/m", "mass of bead 1", "Mass of bead 1 over what it would be: the striker.",
+             1e-3, 1e3, "log", short="striker"),
+    Quantity("site", "j", "1", "j", "place of the impurity", "Number of the bead that is another one.",
+             1, 10_000, "linear", 1, whole=True, short="impurity’s place"),
+    Quantity("impurity", "mⱼ/m", "1", "m_j/m", "mass of the impurity",
+             "Mass of bead j over what it would be; 1 is no impurity.", 1e-3, 1e3, "log", short="impurity"),
+    Quantity("drive", "", "", "", "drive", "Whether the driver moves: harmonic, or at rest as a fixed bead. Without a "
+             "drive 1/f is only the time that is shown.", choices=DRIVES, numeric=False),
+    Quantity("strike", "v₁", "m/s", "v_1", "initial velocity of bead 1",
+             "Speed at which bead 1 moves towards the wall at time 0.", 0.0, 100.0, "cubic", 0.001, short="strike",
+             at_start=True),
     Quantity("F0", "F₀", "N", "F_0", "preload", "Static force that presses the chain together; 0 is the sonic vacuum.",
              0.0, 1e4, "linear", 0.1),
     Quantity("wall", "W", "1", r"K_N/K", "right wall",

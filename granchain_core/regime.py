@@ -32,6 +32,8 @@ class Regime:
         The motion was still on its way, and the orbit that it approaches was found by Newton's method or extrapolation.
     approaches : int or None
         Period of an orbit that an unsettled motion approaches.
+    driven : bool
+        Whether there is a drive; without one the motion only moves from its start.
 
     Examples
     --------
@@ -50,11 +52,17 @@ class Regime:
     multiplier: float | None = None
     followed: bool = False
     approaches: int | None = None
+    driven: bool = True
 
     @classmethod
     def unsettled(cls, periods_run: int) -> Regime:
         """A motion of which nothing is known after `periods_run` periods."""
         return cls("unsettled", None, None, None, periods_run)
+
+    @classmethod
+    def undriven(cls, periods_run: int) -> Regime:
+        """A motion from its start without a drive, after `periods_run` times 1/f."""
+        return cls("unsettled", None, None, None, periods_run, driven=False)
 
     @property
     def contraction(self) -> float:
@@ -80,6 +88,8 @@ class Regime:
         if self.name == "periodic":
             how = "followed to its orbit after" if self.followed else "settled within"
             return f"period {self.period}, {how} {self.periods_run} periods{evidence}"
+        if not self.driven:
+            return "not driven: the motion from its start"
         if self.name == "unsettled":
             towards = f", on its way to period {self.approaches}{evidence}" if self.approaches else ""
             return f"not settled after {self.periods_run} periods{towards}"

@@ -231,7 +231,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
         displacement=samples.displacement * scales.length,
         velocity=samples.velocity * scales.velocity,
         force=samples.force * scales.force,
-        drive_displacement=scene.A0 * np.sin(2 * np.pi * inside / engine.samples),
+        drive_displacement=scene.drive_amplitude * np.sin(2 * np.pi * inside / engine.samples),
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
         status=status, regime=regime, error_estimate=error, energy_residual=residual(samples.energy), cost=cost,
         force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),

@@ -38,7 +38,4 @@ class State:
 
 def rest(scene: Scene) -> State:
     """The scene's start: at rest at drive phase 0, except for beads that are given a velocity."""
-    velocity = np.zeros(scene.N)
-    for bead, v in scene.start_velocity:
-        velocity[bead - 1] = v
-    return State(np.zeros(scene.N), velocity)
+    return State(np.zeros(scene.N), scene.velocities_at_start())

@@ -128,7 +128,7 @@ PIECES: dict[str, Callable[[Scene], None]] = {
 
 def compile_piece(shown: Scene, piece: str) -> None:
     """Compile one piece for the scene's structure, or load it from the cache, and mark it as compiled."""
-    PIECES[piece](shown.evolve(f=max(shown.f, 1000.0)))  # short periods
+    PIECES[piece](shown.evolve(f=max(shown.f, 1000.0), drive="harmonic"))  # short periods, and all that has orbits
     if CACHE_FOLDER is not None:
         with contextlib.suppress(OSError):  # the kernels were not kept either; kernels/cache.py has said so
             _marker(CACHE_FOLDER, structure(shown), piece).touch()

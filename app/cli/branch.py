@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from granchain_core import BadInput, Cancelled, NumbersFailed
-from granchain_core.orbits import Arm, Branch, Continuation, KnobAxis, begin_branch
+from granchain_core.orbits import CONTINUOUS, Arm, Branch, Continuation, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
 from granchain_core.orbits.branch.kept_orbits import KeptOrbits
 
 from .common import check_points, chosen_scene, in_background, say, say_if, show_json, unbroken
+from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
 from .options import add_result, whole
 from .picture import add_option as add_picture
@@ -26,7 +27,7 @@ _EVERY = 25
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `branch`."""
     add_result(parser)
-    parser.add_argument("--knob", metavar="NAME", help="knob that is moved: f, A0, D, k, kappa or F0")
+    parser.add_argument("--knob", metavar="NAME", help=f"knob that is moved: {', '.join(CONTINUOUS)}")
     parser.add_argument("--from", dest="start", metavar="a", help="its value where the branch begins")
     parser.add_argument("--to", dest="end", metavar="b", help="its value where it ends")
     parser.add_argument("--period", type=whole, metavar="n",
@@ -34,6 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--both", action="store_true",
                         help="begin at the scene's own value of the knob and go both ways, to a and to b")
     parser.add_argument("--points", type=whole, default=MOST_POINTS, metavar="m", help="most orbits each way")
+    add_amplitude(parser)
     parser.add_argument("--resume", nargs="?", const="", metavar="FILE",
                         help="go on with the branch of --out that was interrupted, or with the one in FILE")
     add_picture(parser)
@@ -66,6 +68,8 @@ def branch_json(found: Branch) -> dict[str, Any]:
         "special": [{"kind": s.kind, "knob": s.knob, "interval": list(s.interval)} for s in found.special],
         "period": found.period, "max_output_force": [p.max_output_force for p in found.points],
         "max_input_force": [p.max_input_force for p in found.points],
+        **({} if found.axis.amplitude is None else
+           {"drive_amplitude": [found.axis.amplitude.held(p.knob) for p in found.points]}),
         "ended": [{"how": arm.ended or "stopped", "reason": arm.reason} for arm in found.arms],
     }
 
@@ -130,14 +134,15 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
             raise BadInput(f"granchain branch needs {option}, for example --knob f --from 340 --to 100.")
     chosen = chosen_scene(arguments)
     say_if(kept_along(chosen, arguments.knob))
+    amplitude = chosen_amplitude(arguments, chosen)
     kept, there = None, None
     if arguments.out:
-        kept = KeptOrbits(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end), arguments.both,
-                          arguments.out)
+        kept = KeptOrbits(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end, amplitude),
+                          arguments.both, arguments.out)
         kept.kept.open(resume=arguments.resume is not None)
         there = _interrupted(arguments, kept)
     return _Begun(there or begin_branch(chosen, arguments.knob, arguments.start, arguments.end, arguments.period,
-                                        both=arguments.both, stop=stop), kept)
+                                        both=arguments.both, stop=stop, amplitude=amplitude), kept)
 
 
 def _interrupted(arguments: argparse.Namespace, kept: KeptOrbits) -> Branch | None:
@@ -169,9 +174,9 @@ def _in_file(arguments: argparse.Namespace) -> Branch:
     """The branch in the file of --resume."""
     from granchain_core.store import load_branch
 
-    if arguments.knob or arguments.start or arguments.end or arguments.period or arguments.set:
+    if arguments.knob or arguments.start or arguments.end or arguments.period or arguments.set or arguments.amplitude:
         raise BadInput(f"--resume takes everything from {Path(arguments.resume).name}; it cannot be combined with "
-                       "--knob, --from, --to, --period or --set.")
+                       "--knob, --from, --to, --period, --amplitude or --set.")
     found = load_branch(arguments.resume)
     if found.axis.scene.name != arguments.scene:
         raise BadInput(f"{arguments.resume} is a branch of {found.axis.scene.name}, not of {arguments.scene}.")

@@ -46,6 +46,8 @@ _COMMANDS = {
     "lyapunov": "all Lyapunov exponents, and the dimension of the attractor",
     "strobes": "strobes over a knob: the bifurcation diagram",
     "basins": "to which steady state each start of a plane leads",
+    "pulse": "the first pulse along a chain: its force, speed and width at every contact",
+    "bands": "pass bands of a precompressed chain: cut-off and band edges",
     "fit": "parameters of a scene from a measurement, with intervals and a verdict",
     "figure": "a figure of the paper with our numbers",
     "cite": "what to cite for the effects of a scene",

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from granchain_core import BadInput, Cancelled, Scene, scene
+from granchain_core.scene.validity import missing_impurity
 from granchain_core.stop import Stop
 
 from . import ending
@@ -41,6 +42,7 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
     preset = scene(arguments.scene)
     chosen = preset.evolve(**changes)
     say_if(kept_spring(preset, chosen, changes))
+    say_if(missing_impurity(chosen))
     return chosen
 
 

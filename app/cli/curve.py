@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from granchain_core import Amplitude, BadInput, Scene
 
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
-from .data_options import add_answers, with_answers
+from .data_options import add_amplitude, chosen_amplitude
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
 from .picture import add_option as add_picture
@@ -27,9 +27,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="high", type=number, required=True, metavar="F", help="highest frequency [Hz]")
     parser.add_argument("--points", type=whole, required=True, metavar="n")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
-    parser.add_argument("--amplitude", metavar="FILE|constant-velocity=V|constant-acceleration=a",
-                        help="drive amplitude over the frequency: a measured table, or what stays constant [SI]")
-    add_answers(parser)
+    add_amplitude(parser)
     add_resume(parser, "curve")
     add_picture(parser)
 
@@ -38,7 +36,6 @@ def do(arguments: argparse.Namespace) -> None:
     """Compute the resonance curve of a scene."""
     import numpy as np
 
-    from granchain_core.experiment import read_amplitude
     from granchain_core.steady.curve.resonance_curve import MOST_POINTS
     from granchain_core.store import check_writable
 
@@ -50,10 +47,7 @@ def do(arguments: argparse.Namespace) -> None:
     low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
     if low > high:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
-    amplitude = None if arguments.amplitude is None else with_answers(
-        arguments, lambda answers: read_amplitude(arguments.amplitude, answers))
-    if amplitude is not None:
-        say(f"The drive has {amplitude.words}; k stays {chosen.k:g} N/m.")
+    amplitude = chosen_amplitude(arguments, chosen)
     swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points), amplitude)
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", lambda theme: _drawn_curve(swept, theme))
     if arguments.json:

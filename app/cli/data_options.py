@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 from .common import say
 
 if TYPE_CHECKING:
+    from granchain_core import Amplitude, Scene
     from granchain_core.experiment import Answers
 
 Found = TypeVar("Found")
@@ -23,6 +24,24 @@ def add_answers(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--separator", metavar="NAME", help="semicolon, tab, comma, bar or space between its columns")
     parser.add_argument("--dataset", metavar="NAME", help="which dataset of a digitiser's project")
     parser.add_argument("--note", default="", metavar="TEXT", help="a note that stays with the data")
+
+
+def add_amplitude(parser: argparse.ArgumentParser) -> None:
+    """Add the drive amplitude over the frequency, and the answers to what its file may leave open."""
+    parser.add_argument("--amplitude", metavar="FILE|constant-velocity=V|constant-acceleration=a",
+                        help="drive amplitude over the frequency: a measured table, or what stays constant [SI]")
+    add_answers(parser)
+
+
+def chosen_amplitude(arguments: argparse.Namespace, scene: Scene) -> Amplitude | None:
+    """The drive amplitude that --amplitude names, said to the user; None without it."""
+    from granchain_core.experiment import read_amplitude
+
+    if arguments.amplitude is None:
+        return None
+    found = with_answers(arguments, lambda answers: read_amplitude(arguments.amplitude, answers))
+    say(f"The drive has {found.words}; k stays {scene.k:g} N/m.")
+    return found
 
 
 def with_answers(arguments: argparse.Namespace, read: Callable[[Answers], Found]) -> Found:

@@ -20,6 +20,7 @@ from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
 
 from .common import chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
+from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
 from .keeping import add_resume, finished, keeping
 from .options import add_json, add_scene, values_from
@@ -34,6 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(name, required=True, metavar="KNOB=a:b:n",
                             help="n values of a knob from a to b, evenly spaced or, with :log appended, "
                                  f"logarithmically; for example {example}")
+    add_amplitude(parser)
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
     parser.add_argument("--out", required=True, metavar="FILE", help="write an HDF5 file")
     add_resume(parser, "map")
@@ -52,7 +54,9 @@ def do(arguments: argparse.Namespace) -> None:
     """Compute, write and describe a two-parameter diagram."""
     from granchain_core.store import check_writable
 
-    grid = Grid(chosen_scene(arguments), axis_from("--x", arguments.x), axis_from("--y", arguments.y))
+    chosen = chosen_scene(arguments)
+    grid = Grid(chosen, axis_from("--x", arguments.x), axis_from("--y", arguments.y),
+                chosen_amplitude(arguments, chosen))
     say_if(kept_along(grid.scene, grid.x.knob, grid.y.knob))
     check_writable(arguments.out)
     check_picture(arguments.picture)

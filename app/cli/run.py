@@ -12,6 +12,8 @@ from granchain_core.integrate import method_for
 from granchain_core.run.budget import BUDGET
 
 from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
+from .data_options import add_answers
+from .driven import do_driven
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
 
@@ -26,12 +28,20 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--budget", type=number, default=BUDGET, metavar="SECONDS",
                         help="refuse what would take longer")
     parser.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
+    parser.add_argument("--drive", metavar="SIGNAL",
+                        help="another motion of the driver from the start to its end: chirp=f0:f1:T, burst=f:n:T, "
+                             "tones=f1:f2:T[:ratio], noise=f0:f1:T[:seed] with A0, or a FILE of its velocity or "
+                             "displacement over time")
+    add_answers(parser)
     add_resume(parser, "run")
 
 
 def do(arguments: argparse.Namespace) -> None:
     """Run a scene and record it."""
     chosen = chosen_scene(arguments)
+    if arguments.drive:
+        do_driven(arguments, chosen)
+        return
     if arguments.out:
         from granchain_core.store import check_writable
 
@@ -85,7 +95,7 @@ def _is_asked_for(found: Run, chosen: Scene, arguments: argparse.Namespace) -> b
     rows = arguments.record * arguments.samples + 1
     periods = round(float(found.time[0]) / chosen.period)
     return (found.scene.digest, found.start, found.samples, len(found.time), periods, found.cost.method) == (
-        chosen.digest, "initial velocity" if chosen.start_velocity else "rest", arguments.samples, rows,
+        chosen.digest, "initial velocity" if chosen.moves_at_start else "rest", arguments.samples, rows,
         arguments.periods, method)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import Any
 
 from granchain_core import Scene, scene
@@ -14,6 +15,15 @@ from .foundation import beside_kappa, foundation_words
 
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
+#: Knobs of unequal beads and of an impact with the values that leave the chain as it is. A scene that has others shows
+#: them among the main ones.
+_NEUTRAL = {one.name: one.default for one in fields(Scene)
+            if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike")}
+#: What a knob is without a drive: its label and its meaning.
+_UNDRIVEN = {
+    "f": ("1 / time shown", "Nothing drives this chain: 1/f is the time that is shown."),
+    "A0": ("unit of length", "Nothing drives this chain: A₀ is only the unit in which lengths are computed."),
+}
 
 
 class Knobs(Component):
@@ -27,20 +37,24 @@ def knob_state(current: Scene) -> dict[str, Any]:
     """Everything that the browser needs to draw the knobs of a scene."""
     preset = scene(current.name).knobs
     return {
-        "specs": [_spec(name, current) for name in MAIN + MORE],
+        "specs": [_spec(name, current, preset) for name in MAIN + MORE],
         "values": {name: current.knobs[name] for name in MAIN + MORE},
         "preset": {name: preset[name] for name in MAIN + MORE},
         "foundation": foundation_words(current), "kept": beside_kappa(current),
     }
 
 
-def _spec(name: str, current: Scene) -> dict[str, Any]:
+def _spec(name: str, current: Scene, preset: dict[str, Any]) -> dict[str, Any]:
     quantity = QUANTITIES[name]
+    short, meaning = quantity.short or quantity.label, quantity.meaning
+    if name in _UNDRIVEN and preset["drive"] == "rest":
+        short, meaning = _UNDRIVEN[name]
+    folded = name in MORE and not (name in _NEUTRAL and preset[name] != _NEUTRAL[name])
     factor, unit = quantity.shown_in or (1.0, quantity.unit if quantity.unit != "1" else "")
     low, high = slider_range(current, name)
     return {
         "name": name, "symbol": "" if quantity.choices else quantity.symbol, "label": quantity.label,
-        "short": quantity.short or quantity.label, "meaning": quantity.meaning,
+        "short": short, "meaning": meaning,
         "unit": unit, "factor": factor, "choices": list(quantity.choices), "low": low, "high": high,
-        "whole": quantity.whole, "more": name in MORE, "step": quantity.step, "scale": quantity.scale,
+        "whole": quantity.whole, "more": folded, "step": quantity.step, "scale": quantity.scale,
     }

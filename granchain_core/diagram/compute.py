@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..integrate.batch import can_share_batch
-from ..scene import Scene
+from ..scene import Amplitude, Scene
 from ..steady.batch.job import Start
 from ..steady.batch.settle import batch_states
 from ..steady.batch.threads import on_all_cores
@@ -26,10 +26,11 @@ def starts_of(grid: Grid, numbers: Iterable[int]) -> Iterator[Start]:
 
 
 def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
-    """The cells in groups that share a kernel: an axis that reaches 0 switches its effect off there."""
-    groups: dict[tuple[str, ...], list[int]] = {}
+    """The cells in groups that share a kernel: an axis that reaches 0, or equal beads, switches its effect off."""
+    groups: dict[tuple[bool, tuple[str, ...]], list[int]] = {}
     for number in numbers:
-        groups.setdefault(tuple(grid.cell(number).effects), []).append(number)
+        cell = grid.cell(number)
+        groups.setdefault((cell.is_uniform, tuple(cell.effects)), []).append(number)
     return list(groups.values())
 
 
@@ -86,7 +87,7 @@ def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,
 
 def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
             stop: Stop | None = None, progress: Callable[[Diagram, float], None] | None = None,
-            workers: int | None = None) -> Diagram:
+            workers: int | None = None, amplitude: Amplitude | None = None) -> Diagram:
     """Regime and largest forces over two knobs, every cell from rest, on all cores.
 
     Parameters
@@ -94,13 +95,15 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
     scene : Scene
         The chain.
     x, y : tuple of (str, iterable of float)
-        A knob ("f", "A0", "D", "k", "kappa", "F0" or "wall") and its ascending values in SI.
+        A knob ("f", "A0", "D", "k", "kappa", "F0", "wall", "dimer", …) and its ascending values in SI.
     stop : Stop, optional
         Read between cells; once it is set the diagram ends, and cells that are not computed have regime −1.
     progress : callable, optional
         Called with the diagram so far and the fraction that is done, after every cell.
     workers : int, optional
         Threads; one for each core if not given.
+    amplitude : Amplitude, optional
+        The drive amplitude over the frequency, which is then one of the axes; the scene's A0 if not given.
 
     Returns
     -------
@@ -123,7 +126,7 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
     True
     """
     began = time.perf_counter()
-    grid = Grid(scene, Axis.of(*x), Axis.of(*y))
+    grid = Grid(scene, Axis.of(*x), Axis.of(*y), amplitude)
     found = Diagram(grid, empty_cells(grid))
     for done, result in enumerate(iter_diagram(grid, None, stop, workers), start=1):
         found.cells[result.number] = cell_of(result)

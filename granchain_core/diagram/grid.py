@@ -14,7 +14,8 @@ import numpy as np
 from ..errors import BadInput, unknown_name
 from ..lower import lower
 from ..quantities import QUANTITIES
-from ..scene import Scene
+from ..scene import Amplitude, Scene
+from ..scene.driven import refuse_undriven
 
 #: Knobs that may be an axis: the continuous ones that change the motion.
 KNOBS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_axis)
@@ -57,14 +58,21 @@ class Axis:
 
 @dataclass(frozen=True)
 class Grid:
-    """A scene and two axes; cell (i, j) has y value i and x value j, its number is i · len(x) + j."""
+    """A scene and two axes; cell (i, j) has y value i and x value j, its number is i · len(x) + j.
+
+    With `amplitude` A0 follows f, which is one of the axes.
+    """
 
     scene: Scene
     x: Axis
     y: Axis
+    amplitude: Amplitude | None = None
 
     def __post_init__(self) -> None:
+        refuse_undriven(self.scene)
         names = {self.x.knob, self.y.knob}
+        if self.amplitude is not None:
+            self.amplitude.check_knobs(*names)
         if len(names) == 1:
             raise BadInput(f"Both axes are {self.x.knob}; give two distinct knobs.")
         if names == {"k", "kappa"}:
@@ -89,13 +97,17 @@ class Grid:
     def cell(self, number: int) -> Scene:
         """The scene of one cell."""
         i, j = divmod(number, self.shape[1])
-        return self.scene.evolve(**{self.x.knob: self.x.values[j], self.y.knob: self.y.values[i]})
+        knobs = {self.x.knob: self.x.values[j], self.y.knob: self.y.values[i]}
+        if self.amplitude is not None:
+            knobs["A0"] = self.amplitude.at(knobs["f"])
+        return self.scene.evolve(**knobs)
 
     @property
     def digest(self) -> str:
         """Hash of everything that changes the cells: the scene but for the accuracy of its pictures, and both axes."""
         described = {"scene": self.scene.evolve(accuracy=1e-6).digest, "x": [self.x.knob, self.x.values],
-                     "y": [self.y.knob, self.y.values]}
+                     "y": [self.y.knob, self.y.values],
+                     **({} if self.amplitude is None else {"amplitude": self.amplitude.to_json()})}
         return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:16]
 
     def spacing(self) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..scene import Scene
+from ..scene import Amplitude, Scene
 from ..stop import Stop
 from .compute import block_cells
 from .grid import Axis, Grid
@@ -24,13 +24,15 @@ _LOOK = 0.2
 def work_on(described: dict[str, Any], numbers: Sequence[int]) -> np.ndarray:
     """The cells of one block, from plain data that can be sent: scene, x and y as `describe` gives them."""
     grid = Grid(Scene.from_json(described["scene"]), Axis(described["x"][0], tuple(described["x"][1])),
-                Axis(described["y"][0], tuple(described["y"][1])))
+                Axis(described["y"][0], tuple(described["y"][1])),
+                None if described["amplitude"] is None else Amplitude.from_json(described["amplitude"]))
     return block_cells(grid, numbers)
 
 
 def describe(grid: Grid) -> dict[str, Any]:
     """A grid as plain data."""
-    return {"scene": grid.scene.to_json(), "x": (grid.x.knob, grid.x.values), "y": (grid.y.knob, grid.y.values)}
+    return {"scene": grid.scene.to_json(), "x": (grid.x.knob, grid.x.values), "y": (grid.y.knob, grid.y.values),
+            "amplitude": None if grid.amplitude is None else grid.amplitude.to_json()}
 
 
 def blocks_of(numbers: Sequence[int], size: int = CELLS_IN_TASK) -> list[list[int]]:

@@ -1,4 +1,7 @@
-"""The chain of model (3) ready for its kernel: scaled, with the force's cubics and the steps between its samples."""
+"""A chain ready for the kernel that goes from sample to sample: scaled, with the pieces and the steps between samples.
+
+It is pushed by a measured force, model (3) of Zhang et al. 2016, or by a driver with a given motion.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,9 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..integrate import Counts, State
+from ..integrate.stepper import empty_samples
 from ..kernels.contact_cubic import ENDS
+from ..kernels.effects.driver import Moved
 from ..kernels.effects.given_force import Sampled
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
@@ -17,31 +22,33 @@ from ..kernels.rk4.observed import SampledForce, run_observed
 from ..kernels.rk4.step import DriveTable, Rk4Split, Stages
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import CANCELLED, NOT_FINITE
-from ..lower import lower
+from ..lower import Lowered, lower
 from ..scene import Scene
 from ..stop import Stop
 from .record import ForceRecord
+from .signal import Signal
 
 #: More steps than this are refused: minutes of computing.
 MOST_STEPS = 200_000_000
 
 
-class PushedChain:
-    """A scene's chain without its driver, pushed by a record's force; `counts` adds up over its runs."""
+class ChainInPieces:
+    """A lowered chain whose driver has one polynomial (T − 1, k) between two times [s]; `counts` adds up over its runs.
 
-    def __init__(self, scene: Scene, record: ForceRecord, stop: Stop, counts: Counts | None = None) -> None:
-        driven = lower(scene)
-        self.lowered = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
-        self.record = record
+    `pieces` are scaled, constant term first. `overlap` is about how large overlaps are, in scaled units: the live
+    method's step is for 1, and more makes contacts stiffer.
+    """
+
+    def __init__(self, lowered: Lowered, time: np.ndarray, pieces: np.ndarray, overlap: float, stop: Stop,
+                 counts: Counts | None = None) -> None:
+        self.lowered = lowered
         self.counts = Counts() if counts is None else counts
+        self._time = time
         self._stop = stop
         self._log = new_log()
-        scales = driven.scales
-        self._spans = np.diff(record.time) * scales.rate
-        self._pieces = record.cubics() / scales.force / scales.rate ** np.arange(4)
-        # the live method's step is for overlaps of about A0; a stronger push makes contacts stiffer
-        overlap = (float(np.abs(record.force).max()) / scales.force) ** (2.0 / 3.0)
-        self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / driven.step).astype(np.int64)
+        self._spans = np.diff(time) * lowered.scales.rate
+        self._pieces = pieces
+        self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / lowered.step).astype(np.int64)
 
     @property
     def maxima(self) -> np.ndarray:
@@ -65,8 +72,7 @@ class PushedChain:
         lo.slots.driver.piece[:] = self._pieces[0]
         place(lo.slots, 0.0, y, stages.k[0], stages.forces, True)
         reset_peaks(self._log.peaks)
-        rows = len(self._spans) + 1
-        samples = Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), None)
+        samples = empty_samples(lo, len(self._spans) + 1)
         nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)
         status, done = run_observed(Rk4Split(0), Trajectory(lo.slots, nothing, y, stages),
                                     SampledForce(self._spans, self._pieces, substeps), samples,
@@ -76,6 +82,29 @@ class PushedChain:
         if status == NOT_FINITE:
             bead = max(1, first_not_finite(y, row))
             raise NumbersFailed(f"The motion of bead {bead} stopped being a finite number at about "
-                                f"{self.record.time[done - 1]:.6g} s; look at the force there, or lower the damping.",
+                                f"{self._time[done - 1]:.6g} s; look at the force there, or lower the damping.",
                                 "not-finite")
         return samples
+
+
+class PushedChain(ChainInPieces):
+    """A scene's chain without its driver, pushed by a record's force."""
+
+    def __init__(self, scene: Scene, record: ForceRecord, stop: Stop, counts: Counts | None = None) -> None:
+        driven = lower(scene)
+        scales = driven.scales
+        lowered = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
+        pieces = record.cubics() / scales.force / scales.rate ** np.arange(4)
+        overlap = (float(np.abs(record.force).max()) / scales.force) ** (2.0 / 3.0)
+        super().__init__(lowered, record.time, pieces, overlap, stop, counts)
+
+
+class MovedChain(ChainInPieces):
+    """A scene's chain whose driver moves as a signal says, with the energy account."""
+
+    def __init__(self, scene: Scene, signal: Signal, stop: Stop) -> None:
+        driven = lower(scene, balance=True)
+        lowered = replace(driven, slots=driven.slots._replace(driver=Moved(np.zeros(3))))
+        pieces = signal.quadratics() / driven.scales.length / driven.scales.rate ** np.arange(3)
+        overlap = float(np.ptp(signal.displacement)) / driven.scales.length
+        super().__init__(lowered, signal.time, pieces, overlap, stop)

@@ -20,6 +20,7 @@ from ..kernels.simd.vector import LANES, aligned
 from ..kernels.status import EVENTS_PER_CONTACT
 from ..lower import Lowered
 from ..scene import Scene
+from ..scene.driven import refuse_undriven
 from ..stop import Stop
 
 #: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
@@ -58,6 +59,7 @@ class StroboscopicMap:
     """
 
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None) -> None:
+        refuse_undriven(scene)
         refuse_cut(scene)
         self.engine = Engine(scene, certified(TOLERANCE), 1, stop=stop)
         self.periods = periods

@@ -165,7 +165,7 @@ def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Sett
 def _origin(scene: Scene, start: State | None) -> str:
     if start is not None:
         return "given state"
-    return "initial velocity" if scene.start_velocity else "rest"
+    return "initial velocity" if scene.moves_at_start else "rest"
 
 
 def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
@@ -236,6 +236,8 @@ def _least(now: _Attempt, setting: Setting) -> np.ndarray:
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime:
     """The regime shown by these periods; a slow motion is classified by multipliers or its Lyapunov exponent."""
+    if not scene.is_driven:
+        return Regime.undriven(periods)
     tolerance = 10.0 * scene.accuracy
     regime = replace(find_period(attempt.strobes, rounding=min(1e-6, tolerance)), periods_run=periods)
     if periods < _ENOUGH or attempt.engine.grid_index != 0:

@@ -71,6 +71,17 @@ class Amplitude:
                            f"valid value is {min(max(f, low), high):g}.")
         return float(np.interp(f, self.frequencies, self.values))
 
+    def held(self, f: float) -> float:
+        """A0 [m] as `at` gives it, and beyond a table that of its end: for steps past the end of a range."""
+        return self.at(min(max(f, self.frequencies[0]), self.frequencies[-1]) if self.frequencies else f)
+
+    def check_knobs(self, *knobs: str) -> None:
+        """`BadInput` unless f is among the knobs that vary and A0 is not."""
+        if "f" not in knobs:
+            raise BadInput("A drive amplitude over the frequency needs a frequency that varies: make f a knob.")
+        if "A0" in knobs:
+            raise BadInput("The drive amplitude follows the frequency, so A0 cannot vary by itself; leave one out.")
+
     @property
     def words(self) -> str:
         """The drive in words."""

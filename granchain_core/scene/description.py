@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -85,15 +85,41 @@ class Description:
     start_velocity: tuple[tuple[int, float], ...] = ()
     ranges: tuple[tuple[str, float, float], ...] = ()
     preset: tuple[tuple[str, Any], ...] = ()
+    dimer: float = 1.0
+    taper: float = 1.0
+    striker: float = 1.0
+    site: int = 1
+    impurity: float = 1.0
+    drive: str = "harmonic"
+    strike: float = 0.0
 
     # --- derived quantities -------------------------------------------------------------------------------
 
     def bead(self, number: int) -> Bead:
-        """The bead with this number, 1 to N."""
+        """The bead with this number, 1 to N: that of `impurities`, else the pattern's with its part of the mass."""
         for place, bead in self.impurities:
             if place == number:
                 return bead
-        return self.pattern[(number - 1) % len(self.pattern)]
+        bead, part = self.pattern[(number - 1) % len(self.pattern)], self.mass_part(number)
+        if part == 1.0:
+            return bead
+        return replace(bead, mass=part * bead.mass, radius=math.cbrt(part) * bead.radius)
+
+    def mass_part(self, number: int) -> float:
+        """Mass of a bead over that of the pattern there: dimer, taper, striker and impurity, of the same material."""
+        part = 1.0 if self.N == 1 else self.taper ** (3.0 * (number - 1) / (self.N - 1))
+        if number % 2 == 0:
+            part *= self.dimer
+        if number == 1:
+            part *= self.striker
+        if number == self.site:
+            part *= self.impurity
+        return part
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether all beads are alike."""
+        return len(set(self.beads)) == 1
 
     @property
     def beads(self) -> tuple[Bead, ...]:
@@ -134,6 +160,29 @@ class Description:
     def period(self) -> float:
         """Drive period 1/f [s]."""
         return 1.0 / self.f
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether the driver moves."""
+        return self.drive != "rest"
+
+    @property
+    def drive_amplitude(self) -> float:
+        """How far the driver moves from its middle position [m]: A0, or 0 for one at rest."""
+        return self.A0 if self.is_driven else 0.0
+
+    @property
+    def moves_at_start(self) -> bool:
+        """Whether beads have a velocity at time 0."""
+        return bool(self.start_velocity) or self.strike > 0.0
+
+    def velocities_at_start(self) -> np.ndarray:
+        """Velocities of the beads at time 0 (N,) [m/s]: the strike, and those of `start_velocity`, which come first."""
+        velocity = np.zeros(self.N)
+        velocity[0] = self.strike
+        for bead, speed in self.start_velocity:
+            velocity[bead - 1] = speed
+        return velocity
 
     @property
     def foundation_frequency(self) -> float:

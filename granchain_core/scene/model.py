@@ -56,6 +56,18 @@ class Scene(Description):
         Ranges of the sliders.
     preset : tuple
         The knobs of the preset it comes from.
+    dimer : float
+        Mass of beads 2, 4, … over that of the others; beads made heavier or lighter are of the same material.
+    taper : float
+        Radius of the last bead over that of the first; each is the same part of the one before it.
+    striker : float
+        Factor of the mass of bead 1.
+    site, impurity : int, float
+        Number of a bead, and the factor of its mass.
+    drive : str
+        "harmonic", or "rest" for a driver that stands still; 1/f is then only a length of time.
+    strike : float
+        Velocity of bead 1 at time 0 [m/s].
 
     Examples
     --------

@@ -59,4 +59,13 @@ def overlap_warnings(scene: Description, largest_overlap: float | np.ndarray) ->
 
 def warnings(scene: Description) -> list[str]:
     """Sentences known before anything is run: the drive amplitude and the preload already overlap the beads."""
-    return overlap_warnings(scene, np.maximum(scene.A0, scene.static_overlap()))
+    found = overlap_warnings(scene, np.maximum(scene.drive_amplitude, scene.static_overlap()))
+    return [*found, *([missing] if (missing := missing_impurity(scene)) else [])]
+
+
+def missing_impurity(scene: Description) -> str:
+    """A sentence where the impurity's place is behind the last bead; otherwise empty."""
+    if scene.impurity == 1.0 or scene.site <= scene.N:
+        return ""
+    return (f"The impurity's place, bead {scene.site}, is not in this chain of {scene.N} beads, so there is no "
+            f"impurity; the nearest valid value is {scene.N}.")

@@ -6,6 +6,7 @@
 /special         kind, knob, knob_low, knob_high, multiplier_real, multiplier_imag, contact, event, arm (special)
 /special_before, /special_after   the two orbits around each special point, as in /branch
 /turns           turning points of the overlaps on each arm's last orbit, with which the next step is compared
+The root's attribute `amplitude` describes A0 over f where it is not the scene's.
 Components are the beads' displacements, then their w, scaled by the chain's own A0 and A0·φ (docs/model.md).
 """
 
@@ -25,6 +26,7 @@ from ..integrate.methods import CERTIFIED
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
 from ..quantities import QUANTITIES
+from ..scene import Amplitude
 from .writing import write_axis, write_file, write_root, write_values
 
 _FORCES = ("max_input_force", "max_output_force", "max_output_force_elastic")
@@ -46,6 +48,8 @@ def save_branch(branch: Branch, path: str | Path) -> Path:
             "knob": branch.axis.knob, "start": branch.axis.start, "end": branch.axis.end, "period": branch.period,
             "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
                      for arm in branch.arms]})
+        if branch.axis.amplitude is not None:
+            file.attrs["amplitude"] = json.dumps(branch.axis.amplitude.to_json())
         numbered = [(place, point) for place, arm in enumerate(branch.arms) for point in arm.points]
         group = _orbits(file, "branch", branch, [point for _, point in numbered])
         write_values(group, "arm", np.array([place for place, _ in numbered]), ("point",), "1",
@@ -139,7 +143,8 @@ def _special(group: h5py.Group, branch: Branch, special: list[tuple[int, Special
 
 def _read(file: File) -> Branch:
     told, scene = _told(file.json("branch")), file.scene()
-    axis = KnobAxis.of(scene, told["knob"], told["start"], told["end"])
+    amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
+    axis = KnobAxis.of(scene, told["knob"], told["start"], told["end"], amplitude)
     points = _read_orbits(file, "branch", scene.N)
     place = _places(file, "branch/arm", len(points), len(told["arms"]))
     special = _read_special(file, scene.N)

@@ -3,6 +3,7 @@
 /map    one dimension scale per knob, named as the knob; max_input_force, max_output_force, max_output_force_elastic,
         their relative errors error_estimate_input, error_estimate (of the output force), error_estimate_elastic,
         decay, multiplier, lyapunov, lyapunov_error, regime, period, periods_run (y, x)
+The root's attribute `amplitude` describes A0 over f where it is not the scene's.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
 from ..quantities import QUANTITIES
+from ..scene import Amplitude
 from .writing import write_axis, write_file, write_root, write_values
 
 _COLUMNS = {  # name: (unit, meaning)
@@ -49,6 +51,8 @@ def save_diagram(diagram: Diagram, path: str | Path) -> Path:
         write_root(file, grid.scene, "rk4 in lanes", float(known.max()) if len(known) else None)
         file.attrs["map_digest"], file.attrs["wall_s"] = grid.digest, diagram.wall_s
         file.attrs["map_axes"] = json.dumps([grid.y.knob, grid.x.knob])
+        if grid.amplitude is not None:
+            file.attrs["amplitude"] = json.dumps(grid.amplitude.to_json())
         group = file.create_group("map")
         for axis in (grid.y, grid.x):
             quantity = QUANTITIES[axis.knob]
@@ -80,7 +84,8 @@ def _read(file: File) -> Diagram:
     axes = (Axis.of(knob, file.numbers(f"map/{knob}", (count,), unit=QUANTITIES[knob].unit))
             for knob, count in zip((y, x), shape, strict=True))
     down, across = axes
-    grid = Grid(scene, across, down)
+    amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
+    grid = Grid(scene, across, down, amplitude)
     cells, kept = empty_cells(grid), [name for name in CELL.names or () if file.has(f"map/{name}")]
     for name in kept:  # earlier versions kept fewer columns
         cells[name] = _column(file, name, shape)

@@ -178,13 +178,13 @@ def _regime(file: File) -> Regime:
     lyapunov = found.pop("lyapunov", None) if isinstance(found, dict) else None
     told = entries("regime", found, {
         "name": "text", "period": "whole?", "decay": "number?", "distance": "number?", "periods_run": "whole",
-        "multiplier": "number?", "followed": "flag?", "approaches": "whole?"})
+        "multiplier": "number?", "followed": "flag?", "approaches": "whole?", "driven": "flag?"})
     one_of("regime", told["name"], NAMES)
     if lyapunov is not None:
         mean, error = lyapunov
         told["lyapunov"] = tuple(entries("regime.lyapunov", {"mean": mean, "error": error},
                                          {"mean": "number", "error": "number"}).values())
-    return Regime(**{**told, "followed": bool(told["followed"])})
+    return Regime(**{**told, "followed": bool(told["followed"]), "driven": told["driven"] is not False})
 
 
 def _read_jumps(file: File, beads: int) -> Jumps:

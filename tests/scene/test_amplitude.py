@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,14 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from granchain_core import Amplitude, BadInput, resonance_curve, scene
+from granchain_core import Amplitude, BadInput, branch, diagram, resonance_curve, scene, settle
+from granchain_core.diagram import Grid
+from granchain_core.diagram.scheduled import describe
 from granchain_core.experiment import read_amplitude
 from granchain_core.steady.curve.resonance_curve import Curve
-from granchain_core.store import save_curve
+from granchain_core.store import load_branch, save_branch, save_curve
 from granchain_core.store.curves import load_curve
+from granchain_core.store.diagrams import load_diagram, save_diagram
 
 CHAIN = scene("sec2").evolve(N=2)
 
@@ -96,3 +100,38 @@ def test_what_is_unclear_in_a_file_is_asked_with_its_rows(tmp_path: Path, capsys
     assert "line 1" in asked and "1.8" in asked and "--column" in asked
     assert main([*words, "--column", "f=1:kHz", "--column", "A0=2:nm", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["drive_amplitude"] == pytest.approx([5e-9, 6e-9])
+
+
+DRIVE = Amplitude.table([1900.0, 2000.0, 2100.0], [4e-7, 5e-7, 5.5e-7], "a shaker")
+
+
+def test_a_map_drives_each_frequency_with_its_amplitude(tmp_path: Path) -> None:
+    """Each cell is the cell of a map at that amplitude; the file brings the drive back and the digest knows it."""
+    axes = ("f", [1900.0, 2000.0]), ("D", [80.0, 100.0])
+    found = diagram(CHAIN, *axes, amplitude=DRIVE)
+    for f in (1900.0, 2000.0):
+        alone = diagram(CHAIN.evolve(A0=DRIVE.at(f)), ("f", [f]), axes[1]).column("max_output_force")[:, 0]
+        np.testing.assert_array_equal(found.column("max_output_force")[:, axes[0][1].index(f)], alone)
+    again = load_diagram(save_diagram(found, tmp_path / "a.h5"))
+    assert again.grid == found.grid and again.grid.amplitude == DRIVE
+    assert found.grid.digest != replace(found.grid, amplitude=None).digest
+    assert Grid(**{**vars(found.grid), "amplitude": Amplitude.from_json(describe(found.grid)["amplitude"])}) == found.grid
+
+
+def test_a_branch_follows_its_amplitude_and_keeps_it(tmp_path: Path) -> None:
+    """Its ends are the orbits at these frequencies and amplitudes."""
+    found = branch(CHAIN, "f", 2000.0, 2100.0, amplitude=DRIVE)
+    for point in (found.points[0], found.points[-1]):
+        alone = settle(CHAIN.evolve(f=point.knob, A0=DRIVE.at(point.knob))).run.max_output_force_elastic
+        assert point.max_output_force_elastic == pytest.approx(alone, rel=1e-5)  # the settled orbit's accuracy is 1e-6
+    assert load_branch(save_branch(found, tmp_path / "a.h5")).axis == found.axis
+
+
+@pytest.mark.parametrize(("words", "sentence"), [
+    (["map", "sec2", "--x", "D=1:2:2", "--y", "F0=1:2:2"], "make f a knob"),
+    (["map", "sec2", "--x", "f=1900:2000:2", "--y", "A0=1e-7:2e-7:2"], "A0 cannot vary by itself"),
+    (["branch", "sec2", "--knob", "D", "--from", "1", "--to", "2"], "make f a knob"),
+])
+def test_knobs_that_do_not_go_with_it_are_refused(words: list[str], sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*words, "--amplitude", "constant-velocity=6e-3", "--out", str(tmp_path / "a.h5")]) == 2
+    assert sentence in capsys.readouterr().err

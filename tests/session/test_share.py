@@ -31,7 +31,8 @@ def test_a_link_that_was_sent_once_means_today_what_it_meant() -> None:
     assert shown.name == "rig"
     assert {name: value for name, value in shown.knobs.items() if name != "kappa"} == {
         "f": 72.5, "A0": 6e-6, "D": 12.5, "k": 1500.0, "N": 9, "F0": 0.25, "wall": "rigid", "dissipation": "tsuji",
-        "tension": "cut", "accuracy": 1e-8}
+        "tension": "cut", "accuracy": 1e-8, "dimer": 1.0, "taper": 1.0, "striker": 1.0, "site": 1, "impurity": 1.0,
+        "drive": "harmonic", "strike": 0.0}
     bead = shown.bead(1)  # what the link leaves to the preset
     assert (bead.mass, bead.radius, bead.young, bead.poisson) == (0.067355, 0.0127, 210e9, 0.3)
 
@@ -65,8 +66,30 @@ def test_a_link_to_a_scene_as_it_is_means_what_it_meant(name: str) -> None:
     assert all((bead.mass, bead.radius, bead.young, bead.poisson) == (mass, radius, young, 0.3) for bead in shown.beads)
 
 
+#: The same for later scenes: the knobs in which they differ from `sec2`.
+_IMPACT = {"N": 30, "f": 250.0, "drive": "rest", "strike": 0.01, "dissipation": "none"}
+_DIODE = {"f": 10830.0, "A0": 8e-7, "D": 10.0, "F0": 8.0, "site": 2, "impurity": 0.2}
+_LATER = {
+    "impact": _IMPACT,
+    "impact-train": {**_IMPACT, "f": 150.0, "striker": 6.0},
+    "impact-impurity": {**_IMPACT, "site": 15, "impurity": 0.2},
+    "impact-dimer": {**_IMPACT, "dimer": 0.3428},
+    "impact-taper": {**_IMPACT, "taper": 0.3},
+    "precompressed": {"f": 5000.0, "A0": 1e-8, "D": 20.0, "F0": 10.0},
+    "diode": _DIODE,
+    "diode-reverse": {**_DIODE, "site": 10},
+}
+
+
+@pytest.mark.parametrize("name", _LATER)
+def test_a_link_to_a_later_scene_means_what_it_meant(name: str) -> None:
+    shown, extras, refused = decode(f"v=1&scene={name}")
+    assert (shown.name, extras, refused) == (name, {}, [])
+    assert shown.knobs == {**scene("sec2").knobs, **_LATER[name]} and shown.pattern == scene("sec2").pattern
+
+
 def test_every_scene_has_its_literal_link() -> None:
-    assert set(_BARE) == set(scene_names())
+    assert {*_BARE, *_LATER} == set(scene_names())
 
 
 def test_a_link_with_kappa_means_the_k_it_meant() -> None:

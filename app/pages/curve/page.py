@@ -116,13 +116,19 @@ class Curves:
 
     @staticmethod
     def _affordable(scene: Scene) -> bool:
-        """Whether the curve is short enough to be computed without being asked for."""
+        """Whether there is a curve, and it is short enough to be computed without being asked for."""
+        if not scene.is_driven:
+            return False
         low, high = slider_range(scene, "f")
         return curve_affordable(scene.evolve(f=0.5 * (low + high)))
 
     def _begin_when_compiled(self, scene: Scene) -> None:
         if not self._affordable(scene):
             self.stop()
+            if not scene.is_driven:  # another drive has no curve that could stay
+                self._computed.clear()
+                with unlocked():
+                    self._figure.clear()
             return
         if COMPILER.has(scene, *PICTURE_PIECES):
             self._begin(scene)
@@ -177,6 +183,8 @@ class Curves:
                 found.append((title, READY, "all points are computed"))
             elif not self._visible:
                 found.append((title, OFF, "not on the screen"))
+            elif self._asked is not None and not self._asked.is_driven:
+                found.append((title, OFF, "nothing drives the chain"))
             elif self._asked is not None and not self._affordable(self._asked):
                 found.append((title, OFF, "it would take too long; granchain curve computes it"))
             elif name in self._remaining and self.computing:

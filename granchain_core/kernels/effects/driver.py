@@ -1,8 +1,11 @@
 """The driver, body 0, with a prescribed motion.
 
-Equation   u_0 = A sin θ,  θ = 2πft;  v_0 = β A cos θ
-Source     Zhang et al. 2016, eqs. (1) and (2)
-Values     amplitude: 1 in scaled units, 0 for a driver at rest; beta = 2πf/φ
+Equation   Harmonic: u_0 = A sin θ,  θ = 2πft;  v_0 = β A cos θ
+           Moved: u_0 = p_0 + p_1 θ + p_2 θ² between two knots, θ the time since the first of them
+Source     Zhang et al. 2016, eqs. (1) and (2); Moved: chirps, bursts, tones, noise, measured motion (observe/signal.py)
+Values     Harmonic: amplitude: 1 in scaled units, 0 for a driver at rest; beta = 2πf/φ
+           Moved: piece (3,), which kernels/rk4/observed.py fills for each interval. The velocity is a straight line
+           there, so that the acceleration, which the energy account needs, does not depend on the time
 Absent     bead 1 has nothing on its left: body 0 stands BODY_FAR_AWAY away and its contact never closes
 """
 
@@ -10,6 +13,8 @@ from __future__ import annotations
 
 from math import cos, sin
 from typing import NamedTuple
+
+import numpy as np
 
 from ..jit import by_slot, in_simd_kernels
 
@@ -25,6 +30,12 @@ class Harmonic(NamedTuple):
     beta: float
 
 
+class Moved(NamedTuple):
+    """Slot of a driver with a given motion."""
+
+    piece: np.ndarray
+
+
 @by_slot
 def driver_displacement(driver, theta):
     """u_0 at drive phase θ."""
@@ -35,6 +46,12 @@ def driver_displacement(driver, theta):
 def harmonic_displacement(driver, theta):
     """A sin θ."""
     return driver.amplitude * sin(theta)
+
+
+@driver_displacement.of(Moved)
+def _(driver, theta):
+    p = driver.piece
+    return p[0] + theta * (p[1] + theta * p[2])
 
 
 @by_slot
@@ -49,6 +66,11 @@ def harmonic_velocity(driver, theta):
     return driver.amplitude * driver.beta * cos(theta)
 
 
+@driver_velocity.of(Moved)
+def _(driver, theta):
+    return driver.piece[1] + 2.0 * theta * driver.piece[2]
+
+
 @by_slot
 def driver_acceleration(driver, u0):
     """v̇_0 where the driver is at u_0."""
@@ -59,3 +81,8 @@ def driver_acceleration(driver, u0):
 def harmonic_acceleration(driver, u0):
     """−β² u_0."""
     return -driver.beta * driver.beta * u0
+
+
+@driver_acceleration.of(Moved)
+def _(driver, u0):
+    return 2.0 * driver.piece[2]

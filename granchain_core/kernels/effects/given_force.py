@@ -24,6 +24,7 @@ from .dissipation import put_prescribed_primitive
 from .driver import (
     BODY_FAR_AWAY,
     Harmonic,
+    Moved,
     driver_acceleration,
     driver_displacement,
     driver_velocity,
@@ -79,6 +80,11 @@ def _(driver, slots, y, G):
     pass
 
 
+@prescribe_primitive.of(Moved)
+def _(driver, slots, y, G):
+    pass
+
+
 @prescribe_primitive.of(Sampled)
 def _(driver, slots, y, G):
     pass
@@ -95,6 +101,11 @@ def prescribe_force(driver, dy, e):
 
 
 @prescribe_force.of(Harmonic)
+def _(driver, dy, e):
+    pass
+
+
+@prescribe_force.of(Moved)
 def _(driver, dy, e):
     pass
 

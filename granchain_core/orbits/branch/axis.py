@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from ...errors import BadInput, unknown_name
 from ...quantities import QUANTITIES
-from ...scene import Scene
+from ...scene import Amplitude, Scene
 
 #: Knobs that change a chain continuously; N and the laws are discrete, `accuracy` does not change the chain.
 CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
@@ -24,15 +24,19 @@ _LINEAR = 20.0
 
 @dataclass(frozen=True)
 class KnobAxis:
-    """One knob of a scene from `start` to `end`, with its coordinate p (0 at `start`)."""
+    """One knob of a scene from `start` to `end`, with its coordinate p (0 at `start`).
+
+    With `amplitude` A0 follows the knob, which is f.
+    """
 
     scene: Scene
     knob: str
     start: float
     end: float
+    amplitude: Amplitude | None = None
 
     @classmethod
-    def of(cls, scene: Scene, knob: str, start: object, end: object) -> KnobAxis:
+    def of(cls, scene: Scene, knob: str, start: object, end: object, amplitude: Amplitude | None = None) -> KnobAxis:
         """The checked axis; `BadInput` for a knob that is unknown or discrete, and for values that it cannot take."""
         if knob not in QUANTITIES:
             raise unknown_name("knob", knob, CONTINUOUS)
@@ -43,7 +47,11 @@ class KnobAxis:
         first, last = float(quantity.check(start)), float(quantity.check(end))
         if first == last:
             raise BadInput(f"The branch would go from {knob} = {first:g} to the same value; give two different ones.")
-        return cls(scene, knob, first, last)
+        if amplitude is not None:
+            amplitude.check_knobs(knob)
+            for value in (first, last):
+                amplitude.at(value)
+        return cls(scene, knob, first, last, amplitude)
 
     @property
     def logarithmic(self) -> bool:
@@ -86,7 +94,9 @@ class KnobAxis:
 
     def scene_at(self, value: float) -> Scene:
         """The scene with the knob at `value`."""
-        return self.scene.evolve(**{self.knob: value})
+        if self.amplitude is None:
+            return self.scene.evolve(**{self.knob: value})
+        return self.scene.evolve(f=value, A0=self.amplitude.held(value))
 
     def said(self, value: float) -> str:
         """A knob value in words."""

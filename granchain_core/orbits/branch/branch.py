@@ -16,7 +16,7 @@ import numpy as np
 
 from ...errors import BadInput, check_range
 from ...integrate import State
-from ...scene import Scene
+from ...scene import Amplitude, Scene
 from ...stop import Stop
 from ..orbit import periodic_orbit
 from .axis import KnobAxis
@@ -126,14 +126,16 @@ class Continuation(Iterator[BranchPoint]):
 
 
 def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
-                 start_state: State | None = None, both: bool = False, stop: Stop | None = None) -> Branch:
+                 start_state: State | None = None, both: bool = False, stop: Stop | None = None,
+                 amplitude: Amplitude | None = None) -> Branch:
     """The seed of a branch, to be followed by a `Continuation`.
 
     The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
     rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
-    and to `end`. Raises `BadInput`, `NumbersFailed` where there is no such orbit, and `Cancelled`.
+    and to `end`. With `amplitude` A0 follows f. Raises `BadInput`, `NumbersFailed` where there is no such orbit, and
+    `Cancelled`.
     """
-    axis = KnobAxis.of(scene, knob, start, end)
+    axis = KnobAxis.of(scene, knob, start, end, amplitude)
     seed_at = float(scene.knobs[knob]) if both else axis.start
     if not axis.contains(seed_at):
         nearest = min(max(seed_at, axis.low), axis.high)
@@ -160,7 +162,8 @@ def arms_from(equations: BranchEquations, x: np.ndarray, value: float, direction
 
 def continue_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
                     start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
-                    on_point: Callable[[Arm], None] | None = None, stop: Stop | None = None) -> Branch:
+                    on_point: Callable[[Arm], None] | None = None, stop: Stop | None = None,
+                    amplitude: Amplitude | None = None) -> Branch:
     """Follow a branch of periodic orbits over one knob, by pseudo-arclength. Also called `branch`.
 
     An arm ends where the knob reaches `end` or comes back to `start`, where the branch closes on itself or merges with
@@ -171,7 +174,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     scene : Scene
         The chain; its tension must not be cut.
     knob : str
-        "f", "A0", "D", "k", "kappa" or "F0".
+        "f", "A0", "D", "k", "kappa", "F0", or a ratio of masses: "dimer", "taper", "striker" or "impurity".
     start, end : float
         Values of the knob in SI between which the branch is followed; the first orbit is at `start`.
     period : int, optional
@@ -186,6 +189,8 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
         Called with the arm that has grown.
     stop : Stop, optional
         Ends the computation when another thread sets it.
+    amplitude : Amplitude, optional
+        The drive amplitude over the frequency, where the knob is "f"; the scene's A0 if not given.
 
     Returns
     -------
@@ -211,7 +216,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     True
     """
     check_range("most_points =", most_points, 2, MOST_POINTS)
-    begun = begin_branch(scene, knob, start, end, period, start_state, both, stop)
+    begun = begin_branch(scene, knob, start, end, period, start_state, both, stop, amplitude)
     return Continuation(begun, stop).run(most_points, on_point)
 
 

@@ -25,7 +25,9 @@ _ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "turns")
 
 def asked_digest(axis: KnobAxis, both: bool) -> str:
     """Hash of everything that changes a branch but for its period, which may be left to the settled motion."""
-    return digest_of({"scene": axis.scene.digest, "knob": axis.knob, "from": axis.start, "to": axis.end, "both": both})
+    driven = {} if axis.amplitude is None else {"amplitude": axis.amplitude.to_json()}
+    return digest_of({"scene": axis.scene.digest, "knob": axis.knob, "from": axis.start, "to": axis.end, "both": both,
+                      **driven})
 
 
 class KeptOrbits:

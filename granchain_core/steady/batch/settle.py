@@ -20,6 +20,7 @@ from ...integrate.batch import NEVER, Batch
 from ...kernels.width import BATCH_LANES
 from ...lower import lower
 from ...scene import Scene
+from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
 from ..lyapunov import MOST_APART, exponents_in_pairs
@@ -150,6 +151,7 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
     first = next(starts, None)
     if first is None:
         return
+    refuse_undriven(first.scene)
     lanes = _Lanes(first, starts, stop, draft)
     while True:
         lanes.fill()

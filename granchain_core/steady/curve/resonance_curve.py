@@ -16,6 +16,7 @@ from ...integrate.batch import can_share_batch
 from ...regime import Regime
 from ...result import ForceErrors
 from ...scene import Amplitude, Scene
+from ...scene.driven import refuse_undriven
 from ...stop import Stop
 from ..batch.settle import batch_results
 from ..batch.threads import on_all_cores
@@ -126,6 +127,7 @@ def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray,
     """The scenes of a curve; `BadInput` for no points, too many, or a frequency or amplitude out of range."""
     if not 1 <= len(frequencies) <= MOST_POINTS:
         raise BadInput(f"A curve has 1 to {MOST_POINTS} points, not {len(frequencies)}.")
+    refuse_undriven(scene)
     if amplitude is None:
         return [scene.evolve(f=float(f)) for f in frequencies]
     return [scene.evolve(f=float(f), A0=amplitude.at(float(f))) for f in frequencies]

@@ -11,10 +11,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...integrate import Engine, State
+from ...integrate import Counts, Engine, Setting, State, live
+from ...integrate.methods import typical_error
+from ...kernels.samples import Samples
 from ...regime import Regime
 from ...result import Cost, Run, run_from
 from ...scene import Scene
+from ...state import rest
 from ...stop import Stop
 from ..orbit_errors import errors_between
 from .relax import relax
@@ -24,6 +27,8 @@ from .settling import Settling, run_until_settled
 PICTURE_SAMPLES = 96
 #: Periods shown of a motion that is not periodic.
 _SHOWN = 4
+#: Finest steps of a picture without a drive, the live method's over this.
+_MOST_REFINED = 64
 #: Time after which a first picture is shown although nothing is decided yet [s].
 _PREVIEW_AFTER = 0.012
 
@@ -98,6 +103,9 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     """
     origin = "rest" if start is None else "previous state"
     began = time.perf_counter()
+    if not scene.is_driven:
+        yield from_start(scene, start, samples, began, stop)
+        return
     motion = Settling(scene, start, stop)
     motion.run(_PREVIEW_AFTER)
     while not motion.decided:
@@ -149,11 +157,39 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
     '2.260 N'
     """
     began = time.perf_counter()
+    if not scene.is_driven:
+        return from_start(scene, start, samples, began, stop)
     motion = run_until_settled(scene, start, stop)
     origin = "rest" if start is None else "previous state"
     if motion.regime.name == "periodic":
         return orbit_picture(motion, samples, began, origin)
     return live_picture(motion, samples, began, origin, final=True)
+
+
+def from_start(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
+    """The motion of a chain without a drive from its start, over the time 1/f, to the accuracy asked for."""
+    begin, setting, total = rest(scene) if start is None else start, live(), Counts()
+
+    def recorded(chosen: Setting) -> tuple[Engine, Samples]:
+        engine = Engine(scene, chosen, samples, stop=stop)
+        engine.start(begin)
+        rows = engine.record(samples)
+        total.array += engine.counts.array
+        return engine, rows
+
+    coarse, before = recorded(setting)
+    while True:
+        setting = setting.finer_than(coarse.lowered, samples)
+        fine, rows = recorded(setting)
+        largest = float(np.abs(rows.displacement).max())
+        change = float(np.abs(rows.displacement - before.displacement).max()) / largest if largest > 0 else 0.0
+        if change <= scene.accuracy or setting.refine >= _MOST_REFINED:
+            break
+        coarse, before = fine, rows
+    regime, cost = Regime.undriven(1), Cost.of(time.perf_counter() - began, total, setting.method)
+    forces = errors_between(fine, coarse.maxima, 0.0, 0.0)
+    run = run_from(fine, rows, 0, regime, max(change, typical_error(setting)), cost, force_errors=forces)
+    return Settled(run, regime, begin, "rest" if start is None else "previous state", False, True)
 
 
 def live_picture(motion: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:

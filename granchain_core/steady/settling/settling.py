@@ -15,6 +15,7 @@ import numpy as np
 from ...integrate import Engine, State, live
 from ...regime import Regime
 from ...scene import Scene
+from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
 from ..regime import find_period
@@ -28,6 +29,7 @@ class Settling:
     """Runs a chain by the live method towards its steady state, chunk by chunk, until the regime is decided."""
 
     def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
+        refuse_undriven(scene)
         self.scene = scene
         self.engine = Engine(scene, live(), 1, stop=stop)
         self.stop = self.engine.stop

@@ -1,0 +1,29 @@
+"""`granchain bands`: the pass bands of a precompressed chain."""
+
+from __future__ import annotations
+
+import argparse
+
+from .common import chosen_scene, show_json
+from .options import add_json, add_scene
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `bands`."""
+    add_scene(parser)
+    add_json(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Print the bands of small waves."""
+    from granchain_core import bands
+
+    chosen = chosen_scene(arguments)
+    found = bands(chosen)
+    if arguments.json:
+        show_json({"bands": found, "cut_off": found[-1][1]})
+        return
+    print(f"{chosen.name}: small waves of an endless chain of these beads, pressed together by {chosen.F0:g} N")
+    for number, (low, high) in enumerate(found, start=1):
+        print(f"band {number}: {low:.6g} to {high:.6g} Hz")
+    print(f"cut-off {found[-1][1]:.6g} Hz")

@@ -1,0 +1,98 @@
+"""`granchain run --drive`: a chain whose driver moves otherwise than harmonically."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from granchain_core import BadInput, Scene
+
+from .common import in_background, say, show_json, unbroken
+from .data_options import with_answers
+
+if TYPE_CHECKING:
+    from granchain_core import Driven, Signal
+    from granchain_core.experiment import Answers
+
+#: Options of `run` that count drive periods, or choose among methods, with the values they have if they are not given.
+_PERIODIC = {"periods": 100, "record": 20, "samples": 96, "method": None, "resume": False, "explain": False}
+
+
+def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
+    """Run a scene with the signal of --drive in place of its own drive."""
+    from granchain_core import drive
+    from granchain_core.store import check_writable
+
+    for option, usual in _PERIODIC.items():
+        if getattr(arguments, option) != usual:
+            raise BadInput(f"--{option} is for a harmonic drive; with --drive the motion goes from the start to the "
+                           "end of the signal, by the method with split steps.")
+    signal = chosen_signal(arguments, chosen)
+    if arguments.out:
+        check_writable(arguments.out)
+    say(f"The driver moves by {signal.words}: {len(signal.time)} knots, {signal.time[-1] - signal.time[0]:.4g} s.")
+    found = in_background(lambda stop: drive(chosen, signal, stop=stop))
+    if found.status != "done":
+        say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
+            f"{found.error_estimate:.1e} of the largest displacement.")
+    if arguments.out:
+        from granchain_core.store.driven import save_driven
+
+        with unbroken():
+            save_driven(found, arguments.out)
+    if arguments.json:
+        show_json(_json(found))
+    else:
+        _show(found)
+
+
+def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> Signal:
+    """The signal that --drive names: a formula with the scene's A0, or a file."""
+    from granchain_core.observe.signal import formula_signal
+
+    if not chosen.is_driven:
+        raise BadInput("The scene has drive = rest, and --drive moves the driver: give one of them; the nearest valid "
+                       "value is --set drive=harmonic.")
+    found = formula_signal(arguments.drive, chosen.A0)
+    return found if found is not None else with_answers(arguments, lambda given: _measured(arguments.drive, given))
+
+
+def _measured(path: str, answers: Answers) -> Signal:
+    """The signal in a file: its velocity if that was measured, else its displacement."""
+    from granchain_core import Signal
+    from granchain_core.experiment.reader import read_experiment
+    from granchain_core.experiment.series import Series
+
+    series = read_experiment(path, answers, wanted=("series",))
+    assert isinstance(series, Series)
+    if series.velocity is not None:
+        return Signal.from_velocity(series.time, series.velocity, f"the velocity in {series.source or path}")
+    if series.displacement is not None:
+        return Signal.from_displacement(series.time, series.displacement,
+                                        f"the displacement in {series.source or path}")
+    raise BadInput(f"{path} has neither velocity nor displacement of the driver; a force is for granchain observe.")
+
+
+def _json(found: Driven) -> dict[str, Any]:
+    chosen = found.scene
+    return {
+        "scene": chosen.name, "knobs": chosen.knobs, "effects": chosen.effects, "drive": found.signal.words,
+        "duration": float(found.time[-1] - found.time[0]), "status": found.status,
+        "max_output_force": found.max_output_force, "max_output_force_elastic": found.max_output_force_elastic,
+        "max_input_force": found.max_input_force, "error_estimate": found.error_estimate,
+        "error_estimate_output": found.force_errors.output, "error_estimate_input": found.force_errors.input,
+        "error_estimate_elastic": found.force_errors.elastic, "energy_residual": found.energy_residual,
+        "cost": asdict(found.cost)}
+
+
+def _show(found: Driven) -> None:
+    errors = found.force_errors
+    inward, outward, elastic = ("none claimed" if e is None else f"{e:.1e}"
+                                for e in (errors.input, errors.output, errors.elastic))
+    print(f"{found.scene.name}: {found.signal.words}; {found.status}")
+    print(f"largest output force {found.max_output_force:.6g} N (elastic {found.max_output_force_elastic:.6g} N), "
+          f"input force {found.max_input_force:.6g} N")
+    print(f"relative errors: displacement {found.error_estimate:.1e}, output force {outward} (elastic {elastic}), "
+          f"input force {inward}; energy closes to {found.energy_residual:.1e}; {found.cost.method}, "
+          f"{found.cost.steps} steps, {found.cost.events} contact events, {1e3 * found.cost.wall_s:.1f} ms")

@@ -1,0 +1,59 @@
+"""`granchain pulse`: the first pulse that runs along a chain, contact by contact."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import TYPE_CHECKING, Any
+
+from .common import chosen_scene, finite_or_null, in_background, show_json
+from .options import add_json, add_scene, whole
+
+if TYPE_CHECKING:
+    from granchain_core import Pulse
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `pulse`."""
+    add_scene(parser)
+    parser.add_argument("--accuracy", metavar="E", help="the same as --set accuracy=E")
+    parser.add_argument("--samples", type=whole, default=4000, metavar="S", help="samples in the time 1/f")
+    add_json(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Record the motion from the start over the time 1/f and follow its first pulse."""
+    from granchain_core import pulse, run
+
+    chosen = chosen_scene(arguments)
+    motion = in_background(lambda stop: run(chosen, periods=0, record=1, samples=arguments.samples, stop=stop))
+    found = pulse(motion)
+    if arguments.json:
+        show_json(_json(found))
+    else:
+        _show(found)
+
+
+def _json(found: Pulse) -> dict[str, Any]:
+    speed, metres, width = ([finite_or_null(float(x)) for x in values]
+                            for values in (found.speed, found.speed_in_metres, found.width))
+    return {"contact": found.contact.tolist(), "time": found.time.tolist(), "force": found.force.tolist(),
+            "speed_beads": speed, "speed": metres, "width": width, "velocity": found.velocity.tolist(),
+            "error_estimate": found.run.error_estimate, "energy_residual": found.run.energy_residual}
+
+
+def _show(found: Pulse) -> None:
+    """One line for each contact; the speed of a solitary wave with the same force stands beside the one found."""
+    from granchain_core.analysis.pulse import CONTINUUM, solitary_speed
+
+    chosen = found.run.scene
+    print("contact     time_s     force_N  speed_m_s  speed_beads_s  solitary_wave  continuum  width_beads")
+    for i, contact in enumerate(found.contact):
+        force = float(found.force[i])
+        row = (found.speed_in_metres[i], 9, 6), (found.speed[i], 13, 6), (solitary_speed(chosen, force), 13, 6), \
+            (solitary_speed(chosen, force, CONTINUUM), 9, 6), (found.width[i], 11, 4)
+        shown = "  ".join(f"{'–' if math.isnan(x) else f'{x:.{digits}g}':>{wide}}" for x, wide, digits in row)
+        print(f"{contact:7}  {found.time[i]:9.4e}  {force:10.6g}  {shown}")
+    energy = found.run.energy_residual
+    print(f"relative error of displacements {found.run.error_estimate:.1e}; "
+          f"{'no energy account' if energy is None else f'energy closes to {energy:.1e}'}")

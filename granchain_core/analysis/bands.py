@@ -1,0 +1,73 @@
+"""Pass bands of a precompressed chain: the frequencies of its small waves.
+
+Every contact is a spring k_c = dF/dδ = (3/2) K_c^{2/3} F0^{1/3} about the compressed rest. Equal beads have one band,
+from 0, or √(k/m)/2π on a foundation, to the cut-off f_c = (1/π) √(k_c/m); dimers have an acoustic and an optical one
+with a gap between them (Nesterenko, Dynamics of Heterogeneous Materials, 2001, section 1.2). In one dimension a band
+ends where the waves of neighbouring cells are in phase or opposite.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import BadInput
+from ..scene import Scene
+from ..scene.description import hertz_stiffness
+
+
+def bands(scene: Scene) -> list[tuple[float, float]]:
+    """Pass bands of small waves in an endless chain of a scene's beads.
+
+    Parameters
+    ----------
+    scene : Scene
+        A chain with a preload; a striker and an impurity, which are single beads, are left out.
+
+    Returns
+    -------
+    list of (float, float)
+        Lowest and highest frequency of each band [Hz], ascending: as many as the pattern has beads. The last one's end
+        is the cut-off.
+
+    Raises
+    ------
+    BadInput
+        The chain is not precompressed, or tapered.
+
+    Examples
+    --------
+    >>> from granchain_core import bands, scene
+    >>> [f"{low:.0f} to {high:.0f} Hz" for low, high in bands(scene("precompressed"))]
+    ['0 to 7200 Hz']
+    """
+    if scene.F0 == 0.0:
+        raise BadInput("Without a preload no small wave can travel, so there are no bands; set F0 above 0, for example "
+                       "F0=10.")
+    if scene.taper != 1.0:
+        raise BadInput("A tapered chain has no cell that repeats, so it has no bands; the nearest valid value is "
+                       "taper = 1.")
+    count = math.lcm(len(scene.pattern), 1 if scene.dimer == 1.0 else 2)
+    host = replace(scene, striker=1.0, impurity=1.0, impurities=())
+    cell = [host.bead(2 * count + 1 + i) for i in range(count + 1)]
+    mass = np.array([bead.mass for bead in cell[:count]])
+    spring = np.array([1.5 * hertz_stiffness(a, b) ** (2.0 / 3.0) * scene.F0 ** (1.0 / 3.0)
+                       for a, b in itertools.pairwise(cell)])
+    edges = np.sort([_frequencies(mass, spring, scene.k, phase) for phase in (1.0, -1.0)], axis=0)
+    return [(float(low), float(high)) for low, high in edges.T]
+
+
+def _frequencies(mass: np.ndarray, spring: np.ndarray, ground: float, phase: float) -> np.ndarray:
+    """Frequencies of a cell [Hz], ascending, whose next one moves with the factor `phase`."""
+    count = len(mass)
+    matrix = np.diag(spring + np.roll(spring, 1) + ground)
+    for i in range(count):
+        j, factor = (i + 1, 1.0) if i + 1 < count else (0, phase)
+        matrix[i, j] -= factor * spring[i]
+        matrix[j, i] -= factor * spring[i]
+    root = 1.0 / np.sqrt(mass)
+    squares = np.linalg.eigvalsh(root[:, None] * matrix * root)
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi))

@@ -1,0 +1,148 @@
+"""The first pulse that runs along a chain: when it passes each contact, its force, its speed and its width.
+
+A chain of equal beads without precompression carries a solitary wave whose shape does not depend on its strength. With
+K = m = 1 and the distance of two beads as the unit of length its speed is V = c F^{1/6} for the largest force F, in
+Nesterenko's continuum c = 2/√5 (J. Appl. Mech. Tech. Phys. 24, 733, 1983), for the discrete chain c = 0.9055158. The
+discrete constant follows from the traveling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
+V² δ(ξ) = ∫ Λ(ξ − s) δ(s)^{3/2} ds with Λ(s) = max(0, 1 − |s|), δ being the overlap; tests solve that equation.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from ..result import Run
+from ..scene import Scene
+from ..scene.description import hertz_stiffness
+
+#: Speed of the solitary wave [beads per time] over F^{1/6}, K = m = 1: of the discrete chain, and of the continuum.
+DISCRETE, CONTINUUM = 0.9055158, 2.0 / math.sqrt(5.0)
+#: Part of a contact's largest force below which a maximum is no pulse.
+_PART = 0.02
+
+
+def solitary_speed(scene: Scene, force: float, constant: float = DISCRETE) -> float:
+    """Speed of a solitary wave with this largest force [N], c K^{1/3} F^{1/6} / √m [beads/s].
+
+    NaN for dimers, tapered and precompressed chains, whose waves are others. A striker and an impurity, which are
+    single beads, do not matter.
+    """
+    if len(scene.pattern) > 1 or scene.dimer != 1.0 or scene.taper != 1.0 or scene.F0 > 0.0:
+        return math.nan
+    bead = scene.pattern[0]
+    return float(constant * hertz_stiffness(bead, bead) ** (1.0 / 3.0) * force ** (1.0 / 6.0) / math.sqrt(bead.mass))
+
+
+@dataclass(frozen=True, eq=False)
+class Pulse:
+    """The first pulse in every contact between two beads, 1 to N − 1.
+
+    Attributes
+    ----------
+    run : Run
+        The motion it was found in.
+    contact : numpy.ndarray, shape (N - 1,)
+        Contact c joins beads c and c + 1.
+    time : numpy.ndarray, shape (N - 1,)
+        When its force is largest [s].
+    force : numpy.ndarray, shape (N - 1,)
+        That force [N].
+    speed : numpy.ndarray, shape (N - 1,)
+        Speed of the maximum between the contact before and the one behind [beads/s]; NaN at both ends.
+    width : numpy.ndarray, shape (N - 1,)
+        Time for which the force is above half of its maximum, times the speed: the width at half height [beads].
+    velocity : numpy.ndarray, shape (N,)
+        Largest velocity of every bead until the pulse has passed it [m/s].
+
+    Examples
+    --------
+    >>> from granchain_core import pulse, run, scene
+    >>> found = pulse(run(scene("impact"), periods=0, record=1, samples=2000))
+    >>> print(f"{found.force[14]:.2f} N, {found.speed[14]:.0f} beads/s, {found.width[14]:.2f} beads")
+    3.00 N, 13686 beads/s, 1.41 beads
+    """
+
+    run: Run
+    contact: np.ndarray
+    time: np.ndarray
+    force: np.ndarray
+    speed: np.ndarray
+    width: np.ndarray
+    velocity: np.ndarray
+
+    @property
+    def speed_in_metres(self) -> np.ndarray:
+        """The speed [m/s], with the distance of the beads on both sides of each contact."""
+        radii = np.array([bead.radius for bead in self.run.scene.beads])
+        return self.speed * (radii[:-1] + radii[1:])
+
+
+def pulse(run: Run) -> Pulse:
+    """The first pulse of a motion: its way from contact to contact.
+
+    Parameters
+    ----------
+    run : Run
+        A motion from its start, in which a contact closes for the pulse and opens behind it; some fifty samples for
+        the time in which the pulse passes a bead.
+
+    Returns
+    -------
+    Pulse
+        Times and heights by a parabola through the largest sample and its neighbours.
+
+    Raises
+    ------
+    BadInput
+        There are fewer than three beads, or no pulse reaches some contact.
+
+    Examples
+    --------
+    >>> from granchain_core import pulse, run, scene
+    >>> found = pulse(run(scene("impact"), periods=0, record=1, samples=2000))
+    >>> found.contact.shape
+    (29,)
+    """
+    scene = run.scene
+    if scene.N < 3:
+        raise BadInput(f"A pulse is followed over at least three beads, and the chain has {scene.N}.")
+    contacts = np.arange(1, scene.N)
+    found = np.array([_first(run, int(c)) for c in contacts])
+    time, force, half = found.T
+    speed = np.full(scene.N - 1, np.nan)
+    speed[1:-1] = 2.0 / (time[2:] - time[:-2])
+    passed = np.searchsorted(run.time, [*time, 2.0 * time[-1] - time[-2]]) + 1  # a bead is fastest before this contact
+    velocity = np.array([run.velocity[: passed[i], i].max() for i in range(scene.N)])
+    return Pulse(run, contacts, time, force, speed, speed * half, velocity)
+
+
+def _first(run: Run, contact: int) -> tuple[float, float, float]:
+    """Time [s] and height [N] of a contact's first maximum, and how long the force is above half of it [s]."""
+    force, time = run.force[:, contact], run.time
+    least = _PART * float(force.max())
+    inner = force[1:-1]
+    peaks = 1 + np.flatnonzero((inner > least) & (inner >= force[:-2]) & (inner > force[2:]))
+    if not len(peaks):
+        raise BadInput(f"No pulse reaches contact {contact} in this record; record longer.")
+    i = int(peaks[0])
+    before, best, after = force[i - 1 : i + 2]
+    curvature = before - 2.0 * best + after
+    shift = 0.5 * (before - after) / curvature
+    height = best - 0.125 * (before - after) ** 2 / curvature
+    return float(time[i] + shift * (time[1] - time[0])), float(height), _above_half(time, force, i, 0.5 * height)
+
+
+def _above_half(time: np.ndarray, force: np.ndarray, i: int, half: float) -> float:
+    """Time around sample i for which the force is above `half`, by straight lines between samples [s]."""
+    below = np.flatnonzero(force < half)
+    first, last = below[below < i], below[below > i]
+    if not len(first) or not len(last):
+        return math.nan
+    a, b = int(first[-1]), int(last[0])
+    rise = time[a] + (half - force[a]) / (force[a + 1] - force[a]) * (time[a + 1] - time[a])
+    fall = time[b] - (half - force[b]) / (force[b - 1] - force[b]) * (time[b] - time[b - 1])
+    return float(fall - rise)

@@ -1,0 +1,168 @@
+"""`drive`: a chain whose driver moves as a signal says, from its start to the signal's end, to the accuracy asked for.
+
+The motion is computed with steps that are halved until two computations agree, as in `observe`; the signal itself is
+exact (signal.py), so that there is no error of interpolation.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from ..integrate import State
+from ..integrate.caution import EVEN, RUN_FORCES, RUN_FORCES_THAT_JUMP
+from ..integrate.methods import LIVE
+from ..result import Cost, ForceErrors, elastic_output, relative_changes, residual
+from ..scene import Scene
+from ..state import rest
+from ..stop import Stop
+from .pushed_chain import MovedChain
+from .signal import Signal
+
+#: Most values recorded of one kind: knots times beads.
+MOST_VALUES = 50_000_000
+#: Most halvings of the steps.
+_MOST_HALVINGS = 7
+
+
+@dataclass(frozen=True, eq=False)
+class Driven:
+    """The motion of a chain at the T knots of its signal, in SI.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain; its own drive is left out.
+    signal : Signal
+        How the driver moves.
+    displacement, velocity : numpy.ndarray, shape (T, N)
+        [m] and [m/s].
+    force : numpy.ndarray, shape (T, N + 1)
+        Forces of the contacts [N].
+    max_input_force, max_output_force, max_output_force_elastic : float
+        Largest forces from the start to the end [N], between the knots too.
+    force_errors : ForceErrors
+        Relative errors of these.
+    error_estimate : float
+        Largest error of any displacement over the largest displacement.
+    energy_residual : float
+        (work − lost − stored) over the largest of the three.
+    status : str
+        "done" or "accuracy-not-reached".
+    cost : Cost
+        What it took.
+
+    Examples
+    --------
+    >>> from granchain_core import Signal, drive, scene
+    >>> chain = scene("sec2").evolve(N=2)
+    >>> found = drive(chain, Signal.burst(chain.A0, 2000.0, 4, 0.004))
+    >>> found.status, found.energy_residual < 1e-5
+    ('done', True)
+    """
+
+    scene: Scene
+    signal: Signal
+    displacement: np.ndarray
+    velocity: np.ndarray
+    force: np.ndarray
+    max_input_force: float
+    max_output_force: float
+    max_output_force_elastic: float
+    force_errors: ForceErrors
+    error_estimate: float
+    energy_residual: float
+    status: str
+    cost: Cost
+
+    @property
+    def time(self) -> np.ndarray:
+        """The knots (T,) [s]."""
+        return self.signal.time
+
+    @property
+    def input_force(self) -> np.ndarray:
+        """Force of the driver on bead 1 (T,) [N]."""
+        return self.force[:, 0]
+
+    @property
+    def output_force(self) -> np.ndarray:
+        """Total force on the wall (T,) [N]."""
+        return self.force[:, -1]
+
+    @property
+    def output_force_elastic(self) -> np.ndarray:
+        """Its elastic part, the paper's F_out (T,) [N]."""
+        return elastic_output(self.scene, self.displacement[:, -1])
+
+
+def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop | None = None,
+          progress: Callable[[float], None] | None = None) -> Driven:
+    """The motion of a chain whose driver moves as a signal says.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain; its own drive is left out. `scene.accuracy` is the relative error of displacements asked for.
+    signal : Signal
+        How the driver moves.
+    start : State, optional
+        Where the chain begins; at rest, or with the initial velocities of the scene, if not given.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+    progress : callable, optional
+        Called with the fraction that is done, 0 to 1.
+
+    Returns
+    -------
+    Driven
+        The motion at every knot. Its `status` is "done", or "accuracy-not-reached".
+
+    Raises
+    ------
+    BadInput
+        The signal has too many knots for the chain, or needs too many steps.
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import Signal, drive, scene
+    >>> chain = scene("sec2").evolve(N=3)
+    >>> found = drive(chain, Signal.chirp(chain.A0, 500.0, 1500.0, 0.01))
+    >>> found.displacement.shape[1], found.error_estimate <= chain.accuracy
+    (3, True)
+    """
+    if len(signal.time) * scene.N > MOST_VALUES:
+        raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_VALUES:.0e} values; give a "
+                       "shorter signal or fewer beads.")
+    began, begin = clock.perf_counter(), rest(scene) if start is None else start
+    chain = MovedChain(scene, signal, Stop() if stop is None else stop)
+    before, first = chain.run(begin, 0), chain.maxima
+    for halvings in range(1, _MOST_HALVINGS + 1):
+        now, maxima = chain.run(begin, halvings), chain.maxima
+        largest = float(np.abs(now.displacement).max())
+        change = float(np.abs(now.displacement - before.displacement).max())
+        error = EVEN * change / largest if largest > 0.0 else 0.0
+        factor = RUN_FORCES_THAT_JUMP if scene.forces_jump else RUN_FORCES
+        errors = factor * relative_changes(maxima, first)
+        if progress is not None:
+            progress(halvings / _MOST_HALVINGS)
+        if error <= scene.accuracy:
+            break
+        before, first = now, maxima
+    scales = chain.lowered.scales
+    balance = residual(now.energy)
+    assert balance is not None, "the chain has an account"
+    inward, outward, elastic = (float(one) for one in maxima * scales.force)
+    return Driven(scene, signal, now.displacement * scales.length, now.velocity * scales.velocity,
+                  now.force * scales.force, inward, outward, elastic,
+                  force_errors=ForceErrors.of(errors), error_estimate=error,
+                  energy_residual=balance, status="done" if error <= scene.accuracy else "accuracy-not-reached",
+                  cost=Cost.of(clock.perf_counter() - began, chain.counts, LIVE))

@@ -1,0 +1,188 @@
+"""Motions of the driver beside the harmonic one: chirp, burst, two tones, noise, a measured series.
+
+A signal is given at knots. Between them the velocity is a straight line and the displacement a quadratic, which is the
+motion that is computed, exactly. A formula u(t) is given at KNOTS places in a period of its highest frequency. The
+velocities there are lowered by h² v''/12, so that the displacement, on which the elastic forces depend, follows the
+formula with an error of order h⁴ at the knots and 4e-8 of the amplitude between them; the velocity differs by 2e-5.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput, unknown_name
+from ..text import number_in
+
+#: Knots in a period of the highest frequency of a formula.
+KNOTS = 400
+#: Most knots of a signal.
+MOST_KNOTS = 2_000_000
+#: Sines of which noise is made.
+_SINES = 200
+#: Pieces into which the interval between two samples of a measured displacement is divided.
+_PIECES = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Signal:
+    """A motion of the driver.
+
+    Attributes
+    ----------
+    time : numpy.ndarray, shape (T,)
+        Knots [s], ascending.
+    displacement : numpy.ndarray, shape (T,)
+        Of the driver [m].
+    velocity : numpy.ndarray, shape (T,)
+        Of the driver [m/s]; a straight line between two knots, of which the displacement is the integral.
+    words : str
+        What it is.
+
+    Examples
+    --------
+    >>> from granchain_core import Signal
+    >>> sweep = Signal.chirp(5e-7, 300.0, 600.0, 0.02)
+    >>> sweep.words, bool(abs(sweep.displacement).max() < 5.001e-7)
+    ('chirp from 300 to 600 Hz in 0.02 s', True)
+    """
+
+    time: np.ndarray
+    displacement: np.ndarray
+    velocity: np.ndarray
+    words: str
+
+    @classmethod
+    def from_velocity(cls, time: object, velocity: object, words: str = "given velocity",
+                      start: float = 0.0) -> Signal:
+        """A motion from its velocity [m/s] at ascending times [s], at the displacement `start` [m] at the first."""
+        t, v = (np.asarray(one, dtype=float) for one in (time, velocity))
+        if t.ndim != 1 or t.shape != v.shape or len(t) < 2:
+            raise BadInput("A motion of the driver needs times and as many velocities, two at least.")
+        if len(t) > MOST_KNOTS:
+            raise BadInput(f"{len(t)} knots are more than {MOST_KNOTS}; give a shorter signal or a lower frequency.")
+        if not (np.isfinite(t).all() and np.isfinite(v).all()) or (np.diff(t) <= 0.0).any():
+            raise BadInput("Times and velocities of the driver must be finite, and times must ascend.")
+        moved = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (v[1:] + v[:-1]))])
+        return cls(t, start + moved, v, words)
+
+    @classmethod
+    def from_displacement(cls, time: object, displacement: object, words: str = "given displacement") -> Signal:
+        """A motion from its displacement [m] at ascending times [s], by a cubic spline with eight knots a sample.
+
+        It begins at 0, wherever the first sample is: a driver that stands in bead 1 at time 0 would be another start.
+        """
+        from scipy.interpolate import CubicSpline
+
+        t, u = (np.asarray(one, dtype=float) for one in (time, displacement))
+        if t.ndim != 1 or t.shape != u.shape or len(t) < 4 or not (np.isfinite(t).all() and np.isfinite(u).all()) \
+                or (np.diff(t) <= 0.0).any():
+            raise BadInput("A motion of the driver needs at least four finite displacements at ascending times.")
+        knots = np.interp(np.arange(_PIECES * (len(t) - 1) + 1) / _PIECES, np.arange(len(t)), t)
+        return cls.from_velocity(knots, CubicSpline(t, u).derivative()(knots), words)
+
+    @classmethod
+    def of(cls, formula: Callable[[np.ndarray], np.ndarray], duration: float, highest: float, words: str) -> Signal:
+        """A motion whose velocity [m/s] is a formula of the time [s], with frequencies up to `highest` [Hz]."""
+        count = math.ceil(KNOTS * duration * highest)
+        if count > MOST_KNOTS:
+            raise BadInput(f"{duration:g} s at up to {highest:g} Hz are {count:.1e} knots; the nearest valid duration "
+                           f"is {MOST_KNOTS / KNOTS / highest:.4g} s.")
+        time = np.linspace(0.0, duration, max(count, 8) + 1)
+        step = time[1]
+        beside = formula(np.concatenate([[-step], time, [duration + step]]))
+        return cls.from_velocity(time, beside[1:-1] - (beside[2:] - 2.0 * beside[1:-1] + beside[:-2]) / 12.0, words)
+
+    @classmethod
+    def chirp(cls, amplitude: float, low: float, high: float, duration: float) -> Signal:
+        """A sin 2π(f₀ t + (f₁ − f₀) t²/2T): the frequency goes evenly from f₀ to f₁ [Hz] in T [s]."""
+        def velocity(t: np.ndarray) -> np.ndarray:
+            rate = low + (high - low) * t / duration
+            phase = low * t + 0.5 * (high - low) * t * t / duration
+            return np.asarray(2.0 * np.pi * amplitude * rate * np.cos(2.0 * np.pi * phase))
+
+        return cls.of(velocity, duration, max(low, high), f"chirp from {low:g} to {high:g} Hz in {duration:g} s")
+
+    @classmethod
+    def burst(cls, amplitude: float, frequency: float, periods: float, duration: float) -> Signal:
+        """A sin 2πft · sin² πft/n for n periods of f [Hz], then at rest until `duration` [s]."""
+        end, omega = periods / frequency, 2.0 * np.pi * frequency
+
+        def velocity(t: np.ndarray) -> np.ndarray:
+            window, slope = np.sin(np.pi * t / end) ** 2, np.pi / end * np.sin(2.0 * np.pi * t / end)
+            moving = omega * np.cos(omega * t) * window + np.sin(omega * t) * slope
+            return np.where((t >= 0.0) & (t <= end), amplitude * moving, 0.0)
+
+        words = f"burst of {periods:g} periods of {frequency:g} Hz"
+        return cls.of(velocity, max(duration, end), 2.0 * frequency, words)
+
+    @classmethod
+    def tones(cls, amplitude: float, one: float, other: float, duration: float, ratio: float = 1.0) -> Signal:
+        """A (sin 2πf₁t + r sin 2πf₂t)/(1 + r), so that no displacement is above A."""
+        def velocity(t: np.ndarray) -> np.ndarray:
+            moving = one * np.cos(2.0 * np.pi * one * t) + ratio * other * np.cos(2.0 * np.pi * other * t)
+            return np.asarray(2.0 * np.pi * amplitude / (1.0 + ratio) * moving)
+
+        return cls.of(velocity, duration, max(one, other), f"tones of {one:g} and {other:g} Hz for {duration:g} s")
+
+    @classmethod
+    def noise(cls, amplitude: float, low: float, high: float, duration: float, seed: int = 0) -> Signal:
+        """Noise of even power from f₀ to f₁ [Hz] with the root mean square A/√2 of a sine of amplitude A.
+
+        Two hundred sines of random frequencies and phases, the same for the same seed; it grows from nothing over the
+        first two periods of f₀.
+        """
+        rng = np.random.default_rng(seed)
+        omega = 2.0 * np.pi * rng.uniform(low, high, _SINES)
+        phase, size, rise = rng.uniform(0.0, 2.0 * np.pi, _SINES), amplitude / math.sqrt(_SINES), 2.0 / low
+
+        def velocity(t: np.ndarray) -> np.ndarray:
+            place = np.clip(t / rise, 0.0, 1.0)
+            window, slope = np.sin(0.5 * np.pi * place) ** 2, 0.5 * np.pi / rise * np.sin(np.pi * place)
+            found = np.zeros_like(t)
+            for w, p in zip(omega, phase, strict=True):
+                found += w * np.cos(w * t + p) * window + np.sin(w * t + p) * slope
+            return size * found
+
+        return cls.of(velocity, duration, high, f"noise from {low:g} to {high:g} Hz for {duration:g} s, seed {seed}")
+
+    def quadratics(self) -> np.ndarray:
+        """Coefficients (T − 1, 3) of the displacement in every interval, constant term first, in m and s."""
+        step = np.diff(self.time)
+        return np.stack([self.displacement[:-1], self.velocity[:-1], 0.5 * np.diff(self.velocity) / step], axis=1)
+
+
+#: Formulas by name: what their numbers are, and how many may be left out at the end.
+FORMULAS: dict[str, tuple[tuple[str, ...], int]] = {
+    "chirp": (("f0", "f1", "duration"), 0), "burst": (("f", "periods", "duration"), 0),
+    "tones": (("f1", "f2", "duration", "ratio"), 1), "noise": (("f0", "f1", "duration", "seed"), 1)}
+
+
+def formula_signal(text: str, amplitude: float) -> Signal | None:
+    """The signal that NAME=a:b:c describes, with the drive amplitude [m]; None for what is no formula, as a file is.
+
+    Raises `BadInput` where the numbers cannot be used.
+    """
+    name, equals, values = text.partition("=")
+    if not equals:
+        return None
+    if name not in FORMULAS:
+        raise unknown_name("drive", name, FORMULAS)
+    known, optional = FORMULAS[name]
+    numbers = [number_in(part) for part in values.split(":")]
+    if not len(known) - optional <= len(numbers) <= len(known) or any(
+            one is None or not math.isfinite(one) or one <= 0.0 for one in numbers[:3]) or None in numbers:
+        raise BadInput(f"--drive {text[:60]!r} must have the form {name}={':'.join(known)}, in Hz and s, with numbers "
+                       "above 0.")
+    given = [float(one) for one in numbers if one is not None]
+    if name == "noise" and (given[0] >= given[1] or given[3:] != [float(int(abs(one))) for one in given[3:]]):
+        raise BadInput(f"--drive {text[:60]!r}: noise goes from a lower to a higher frequency, and its seed is a whole "
+                       "number from 0.")
+    if name == "noise":
+        return Signal.noise(amplitude, given[0], given[1], given[2], int(given[3]) if len(given) > 3 else 0)
+    if name == "tones" and len(given) > 3 and given[3] < 0.0:
+        raise BadInput(f"--drive {text[:60]!r}: the ratio of two tones is a number from 0.")
+    return {"chirp": Signal.chirp, "burst": Signal.burst, "tones": Signal.tones}[name](amplitude, *given)

@@ -1,0 +1,139 @@
+"""Impact without a drive: solitary wave, train, impurity, dimer and taper against computations that share no code."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import BadInput, Run, pulse, resonance_curve, run, scene, settle
+from granchain_core.analysis.pulse import DISCRETE, solitary_speed
+
+#: Samples in the time 1/f; the pulse takes some 70 of them to pass a bead.
+SAMPLES = 4000
+_RUNS: dict[str, Run] = {}
+
+
+def recorded(name: str) -> Run:
+    """The motion of a scene from its start over the time 1/f, computed once."""
+    if name not in _RUNS:
+        _RUNS[name] = run(scene(name), periods=0, record=1, samples=SAMPLES)
+    return _RUNS[name]
+
+
+def traveling_wave() -> tuple[np.ndarray, np.ndarray]:
+    """ξ and the force F(ξ) of the solitary wave with V = K = m = 1, by Petviashvili's iteration.
+
+    Newton's equations of the overlaps, δ'' = F(ξ + 1) − 2F(ξ) + F(ξ − 1), are δ = Λ * δ^{3/2} with the tent Λ, whose
+    Fourier transform is sinc²; nothing of granchain is used.
+    """
+    points, length = 2048, 16.0
+    xi = (np.arange(points) - points // 2) * length / points
+    tent = np.sinc(np.fft.rfftfreq(points, length / points)) ** 2
+    overlap = np.exp(-(xi**2))
+    for _ in range(300):
+        image = np.fft.irfft(tent * np.fft.rfft(np.maximum(overlap, 0.0) ** 1.5), points)
+        overlap = (overlap @ overlap / (overlap @ image)) ** 3 * image
+    image = np.fft.irfft(tent * np.fft.rfft(np.maximum(overlap, 0.0) ** 1.5), points)
+    assert np.abs(image - overlap).max() < 1e-12
+    return xi, np.maximum(overlap, 0.0) ** 1.5
+
+
+def test_the_discrete_constant_is_that_of_the_traveling_wave() -> None:
+    """V = 1 = c F^{1/6}."""
+    _, force = traveling_wave()
+    assert force.max() ** (-1 / 6) == pytest.approx(DISCRETE, abs=1e-7)  # the constant has seven digits
+
+
+def test_the_pulse_of_an_impact_is_the_solitary_wave() -> None:
+    """Its speed, its width and its shape, twelve beads behind the impact."""
+    found = pulse(recorded("impact"))
+    middle = slice(14, 20)
+    law = [solitary_speed(found.run.scene, float(force)) for force in found.force]
+    # behind fifteen beads the wave is the solitary one to 1e-4 in force; parabolas through the samples add 1e-6
+    np.testing.assert_allclose(found.speed[middle], law[middle], rtol=1e-4)
+    xi, force = traveling_wave()
+    above = xi[force > 0.5 * force.max()]
+    # 2048 points over 16 beads: the width is known to one point
+    np.testing.assert_allclose(found.width[middle], above[-1] - above[0], atol=0.01)
+    contact = recorded("impact").force[:, 17]
+    place = (recorded("impact").time - found.time[16]) * found.speed[16]
+    near = np.abs(place) < 2.0
+    np.testing.assert_allclose(contact[near] / found.force[16], np.interp(place[near], xi, force / force.max()),
+                               atol=1e-3)  # straight lines between points 1/128 bead apart: h²/8 F'' = 1e-5; speed 1e-4
+
+
+def test_its_speed_grows_as_the_fifth_root_of_the_strike_and_its_force_as_the_power_six_fifths() -> None:
+    """32 times the velocity: twice the speed, 64 times the force; A0, only the unit of length, does not matter."""
+    fast = scene("impact").evolve(strike=0.32, f=500.0, A0=3e-6)
+    one, other = pulse(recorded("impact")), pulse(run(fast, periods=0, record=1, samples=SAMPLES))
+    # the equations scale exactly; both runs are within 1e-6 of the truth
+    np.testing.assert_allclose(other.speed[1:-1], 2.0 * one.speed[1:-1], rtol=1e-5)
+    np.testing.assert_allclose(other.force, 64.0 * one.force, rtol=1e-5)
+
+
+def own_motion(mass: np.ndarray, stiffness: np.ndarray, strike: float, time: float, every: int = 4) -> np.ndarray:
+    """Forces (SAMPLES + 1, N + 1) of an undamped chain between fixed ends, by classical RK4 with equal steps in SI."""
+    n, h = len(mass), time / (SAMPLES * every)
+    y = np.zeros((2, n))
+    y[1, 0] = strike
+
+    def forces(u: np.ndarray) -> np.ndarray:
+        ends = np.concatenate([[0.0], u, [0.0]])
+        return np.asarray(stiffness * np.maximum(ends[:-1] - ends[1:], 0.0) ** 1.5)
+
+    def slope(y: np.ndarray) -> np.ndarray:
+        f = forces(y[0])
+        return np.array([y[1], (f[:-1] - f[1:]) / mass])
+
+    kept = [forces(y[0])]
+    for step in range(SAMPLES * every):
+        a = slope(y)
+        b = slope(y + 0.5 * h * a)
+        c = slope(y + 0.5 * h * b)
+        y = y + h / 6.0 * (a + 2.0 * b + 2.0 * c + slope(y + h * c))
+        if (step + 1) % every == 0:
+            kept.append(forces(y[0]))
+    return np.array(kept)
+
+
+def steel(radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Masses of section 2's spheres with these radii, and the stiffness (4/3) E* √R* of all contacts, ends included."""
+    mass = 28.84e-3 * (radius / 9.525e-3) ** 3
+    bodies = np.concatenate([radius[:1], radius, radius[-1:]])
+    return mass, 4 / 3 * 193e9 / (2 * (1 - 0.3**2)) * np.sqrt(1.0 / (1.0 / bodies[:-1] + 1.0 / bodies[1:]))
+
+
+def radii(name: str) -> np.ndarray:
+    """The radii that a scene's description promises, written down once more."""
+    radius, number = np.full(30, 9.525e-3), np.arange(1, 31)
+    return {
+        "impact-train": np.where(number == 1, 6.0, 1.0) ** (1 / 3) * radius,
+        "impact-impurity": np.where(number == 15, 0.2, 1.0) ** (1 / 3) * radius,
+        "impact-dimer": np.where(number % 2 == 0, 0.3428, 1.0) ** (1 / 3) * radius,
+        "impact-taper": radius * 0.3 ** ((number - 1) / 29),
+    }[name]
+
+
+@pytest.mark.parametrize("name", ["impact-train", "impact-impurity", "impact-dimer", "impact-taper"])
+def test_chains_of_unequal_beads_move_as_an_independent_computation_says(name: str) -> None:
+    """Every force at every sample."""
+    found = recorded(name)
+    mass, stiffness = steel(radii(name))
+    own = own_motion(mass, stiffness, 0.01, 1.0 / found.scene.f)
+    # RK4 through the kinks of δ^{3/2}: h^{5/2} with h about 1/50 of a contact time; measured below 2e-5
+    np.testing.assert_allclose(found.force, own, atol=1e-4 * own.max())
+    assert found.error_estimate < 1e-5 and found.energy_residual < 1e-8
+
+
+def test_a_scene_without_a_drive_has_a_picture_and_no_steady_state() -> None:
+    """Its picture is the motion from the start; what needs an orbit is refused with a sentence."""
+    chain = scene("impact").evolve(N=5)
+    shown = settle(chain, samples=96)
+    assert shown.regime.sentence == "not driven: the motion from its start" and shown.run.velocity[0, 0] == pytest.approx(0.01)
+    assert not shown.run.drive_displacement.any() and shown.run.error_estimate < chain.accuracy
+    exact = run(chain, periods=0, record=1, samples=96)
+    np.testing.assert_allclose(shown.run.displacement, exact.displacement, atol=2e-6 * np.abs(exact.displacement).max())
+    with pytest.raises(BadInput, match="drive = rest"):
+        resonance_curve(chain, [300.0])
+    with pytest.raises(BadInput, match="at least three beads"):
+        pulse(run(chain.evolve(N=2), periods=0, record=1, samples=96))

@@ -1,0 +1,106 @@
+"""Other drives than the harmonic one: the kernel against the harmonic run and closed forms, signals against formulas."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from app.cli import main
+from granchain_core import BadInput, Signal, drive, run, scene
+
+CHAIN = scene("sec2").evolve(N=3)
+
+
+def sine(amplitude: float, frequency: float, periods: float) -> Signal:
+    """The harmonic drive as a signal."""
+    omega = 2.0 * np.pi * frequency
+    return Signal.of(lambda t: amplitude * omega * np.cos(omega * t), periods / frequency, frequency, "sine")
+
+
+def test_a_sine_moves_the_chain_as_the_harmonic_drive_does() -> None:
+    """Displacements, forces, largest forces, and the work of the driver, by another slot and another loop."""
+    found = drive(CHAIN, sine(CHAIN.A0, CHAIN.f, 6))
+    exact = run(CHAIN, periods=0, record=6, samples=400)
+    assert found.status == "done" and found.energy_residual < 1e-5
+    # the signal's velocity is off by (2π/400)²/12 = 2e-5, its displacement by 4e-8; either motion by 1e-6
+    np.testing.assert_allclose(found.displacement, exact.displacement, atol=5e-6 * np.abs(exact.displacement).max())
+    assert found.max_output_force_elastic == pytest.approx(exact.max_output_force_elastic, rel=2e-5)
+    assert found.max_input_force == pytest.approx(exact.max_input_force, rel=1e-4)  # the dashpot feels the velocity
+
+
+def test_errors_and_energy_are_those_of_finer_computations() -> None:
+    """A chirp through the first resonance: what is stated holds for a hundred times the accuracy."""
+    signal = Signal.chirp(CHAIN.A0, 800.0, 1600.0, 0.01)
+    rough, fine = drive(CHAIN.evolve(accuracy=1e-5), signal), drive(CHAIN.evolve(accuracy=1e-8), signal)
+    difference = np.abs(rough.displacement - fine.displacement).max() / np.abs(fine.displacement).max()
+    assert difference <= rough.error_estimate <= 1e-5
+    assert fine.energy_residual < 1e-7 and fine.energy_residual < rough.energy_residual
+    assert abs(rough.max_output_force - fine.max_output_force) <= rough.force_errors.output * fine.max_output_force
+
+
+def test_a_driver_at_constant_velocity_gives_a_free_bead_the_speed_of_a_collision() -> None:
+    """Without damping a heavy body at speed v throws a bead on at 2v (one bead, the wall too soft to matter)."""
+    chain = scene("sec2").evolve(N=1, dissipation="none", wall=1e-6)
+    time = np.linspace(0.0, 2e-3, 2001)
+    found = drive(chain, Signal.from_velocity(time, np.full(2001, 1e-3)))
+    # the wall, a millionth as stiff, slows it by less than √(K_wall δ^{5/2}/m v²) with δ = 4 µm: 1e-4
+    assert found.velocity[300:600].max() == pytest.approx(2e-3, rel=1e-3)
+
+
+@pytest.mark.parametrize(("signal", "formula"), [
+    (Signal.chirp(1.0, 100.0, 300.0, 0.05), lambda t: np.sin(2 * np.pi * (100 * t + 2000 * t**2))),
+    (Signal.burst(1.0, 100.0, 5, 0.08),
+     lambda t: np.where(t < 0.05, np.sin(200 * np.pi * t) * np.sin(20 * np.pi * t) ** 2, 0.0)),
+    (Signal.tones(1.0, 100.0, 130.0, 0.05, 0.5),
+     lambda t: (np.sin(200 * np.pi * t) + 0.5 * np.sin(260 * np.pi * t)) / 1.5)])
+def test_signals_follow_their_formulas(signal: Signal, formula) -> None:  # type: ignore[no-untyped-def]
+    """At the knots and, by the quadratics, between them."""
+    pieces, half = signal.quadratics(), 0.5 * np.diff(signal.time)
+    between = pieces[:, 0] + half * (pieces[:, 1] + half * pieces[:, 2])
+    # fourth order at the knots, where 400 in a period make 1e-9 of a swing; third order between: 4e-8
+    np.testing.assert_allclose(signal.displacement, formula(signal.time), atol=2e-7)
+    np.testing.assert_allclose(between, formula(signal.time[:-1] + half), atol=2e-7)
+
+
+def test_noise_has_its_band_and_its_strength() -> None:
+    signal = Signal.noise(1.0, 200.0, 400.0, 1.0, seed=3)
+    assert np.array_equal(signal.velocity, Signal.noise(1.0, 200.0, 400.0, 1.0, seed=3).velocity)
+    power = np.abs(np.fft.rfft(signal.displacement * np.hanning(len(signal.time)))) ** 2
+    frequency = np.fft.rfftfreq(len(signal.time), signal.time[1])
+    assert power[(frequency > 195) & (frequency < 405)].sum() > 0.999 * power.sum()
+    # mean of 200 squares of sines over 200 periods: a tenth
+    assert signal.displacement[len(signal.time) // 50:].std() == pytest.approx(np.sqrt(0.5), rel=0.1)
+
+
+def test_a_measured_velocity_or_displacement_drives_the_chain(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Both files give the motion of the formula they were written from; the result is kept with units."""
+    omega, time = 2.0 * np.pi * 900.0, np.linspace(0.0, 0.004, 801)
+    rows = {"velocity": (CHAIN.A0 * omega * np.cos(omega * time), "m/s"), "displacement": (CHAIN.A0 * np.sin(omega * time), "m")}
+    exact = drive(CHAIN, sine(CHAIN.A0, 900.0, 3.6)).max_output_force_elastic
+    for name, (values, unit) in rows.items():
+        path = tmp_path / f"{name}.csv"
+        path.write_text(f"time (s),{name} ({unit})\n" + "".join(f"{t:.12e},{x:.12e}\n" for t, x in zip(time, values, strict=True)), "utf-8")
+        out = tmp_path / f"{name}.h5"
+        assert main(["run", "sec2", "--set", "N=3", "--drive", str(path), "--json", "--out", str(out)]) == 0
+        told = json.loads(capsys.readouterr().out)
+        # 222 samples a period: the trapezoid of the velocity is (2π/222)²/12 = 7e-5 too small
+        assert told["max_output_force_elastic"] == pytest.approx(exact, rel=5e-4) and name in told["drive"]
+        with h5py.File(out) as file:
+            assert file["driven/drive_displacement"].attrs["units"] == "m" and len(file["driven/time"]) >= 801
+
+
+@pytest.mark.parametrize(("words", "sentence"), [
+    (["run", "sec2", "--drive", "chirp=300:600"], "chirp=f0:f1:duration"), (["run", "sec2", "--drive", "crisp=1:2:3"], "crisp"),
+    (["run", "sec2", "--drive", "noise=600:300:1"], "from a lower to a higher"), (["run", "impact", "--drive", "burst=300:3:0.1"], "drive = rest"),
+    (["run", "sec2", "--drive", "burst=300:3:0.1", "--periods", "5"], "--periods is for a harmonic drive"),
+    (["run", "sec2", "--drive", "chirp=300:600:1e5"], "nearest valid duration"),
+    (["curve", "sec2", "--from", "1", "--to", "2", "--points", "2", "--drive", "burst=300:3:0.1"], "--drive")])
+def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 2
+    assert sentence in capsys.readouterr().err
+    with pytest.raises(BadInput):
+        Signal.from_velocity([0.0, 0.0], [1.0, 1.0])
