@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .analysis.lyapunov_spectrum import LyapunovSpectrum, lyapunov_spectrum
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
-    from .diagram import Attractor, Diagram, attractors, diagram
+    from .diagram import Attractor, Attractors, Diagram, attractors, diagram
     from .fit import Fit, fit
     from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .regime import Regime
     from .result import Cost, Run
     from .run.live import LiveChain
+    from .run.many import Runs, run_many
     from .run.run import run
     from .state import State
     from .steady.curve.resonance_curve import Curve, CurvePoint, iter_curve, resonance_curve
@@ -44,12 +45,13 @@ if TYPE_CHECKING:
 
 #: Public names by module. They are imported at first use, so that `import granchain_core` is quick.
 _MODULES = {
-    "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
-    "stop": ("Stop",),
+    "run.run": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",), "result": ("Cost", "Run"),
+    "state": ("State",), "stop": ("Stop",),
     "steady.settling.recorded": ("Settled", "settled", "settling"), "regime": ("Regime",),
     "steady.curve.resonance_curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
-    "diagram": ("Attractor", "Diagram", "attractors", "diagram"), "observe": ("Observation", "observe"),
+    "observe": ("Observation", "observe"),
+    "diagram": ("Attractor", "Attractors", "Diagram", "attractors", "diagram"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
@@ -60,12 +62,13 @@ _MODULE_OF = {name: module for module, names in _MODULES.items() for name in nam
 _SHORT = {"settle": "settled", "orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
-    "Amplitude", "Attractor", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve", "CurvePoint",
-    "Diagram", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit", "OverBudget",
-    "Regime", "Run", "Scene", "Settled", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision",
-    "__version__", "attractors", "basins", "branch", "continue_branch", "diagram", "fit", "iter_curve", "load",
-    "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "resonance_curve", "run", "save", "scene",
-    "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
+    "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve",
+    "CurvePoint", "Diagram", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit",
+    "OverBudget", "Regime", "Run", "Runs", "Scene", "Settled", "Spectrum", "State", "Stop", "StrobeDiagram",
+    "Transfer", "WorkPrecision", "__version__", "attractors", "basins", "branch", "continue_branch", "diagram", "fit",
+    "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "resonance_curve", "run",
+    "run_many", "save", "scene", "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram",
+    "transfer", "work_precision",
 ]
 
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import itertools
+import json
+import math
 import os
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -13,10 +16,23 @@ import numpy as np
 from ...errors import BadInput, Cancelled
 from ...integrate import State
 from ...integrate.batch import can_share_batch
+from ...integrate.methods import CERTIFIED, LIVE
 from ...regime import Regime
-from ...result import ForceErrors
+from ...result import ForceErrors, said_forces
 from ...scene import Amplitude, Scene
 from ...stop import Stop
+from ...tables import (
+    MAXIMA,
+    Column,
+    Labelled,
+    Table,
+    axis,
+    error_columns,
+    force_columns,
+    provenance,
+    regime_columns,
+)
+from ...tables.provenance import Attribute
 from ..batch.settle import batch_results
 from ..batch.threads import on_all_cores
 from ..settling.alone import safe_state, settled_alone
@@ -80,7 +96,7 @@ class CurvePoint:
 
 
 @dataclass(eq=False)
-class Curve:
+class Curve(Labelled):
     """A resonance curve in ascending frequency.
 
     Attributes
@@ -119,6 +135,40 @@ class Curve:
     def column(self, name: str) -> np.ndarray:
         """One attribute of all points as an array."""
         return np.array([getattr(p, name) for p in self.points])
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `curve`: largest forces with errors, regime, period and status over the frequency."""
+        along = ("frequency",)
+        forces = np.array([[getattr(p, name) for name in MAXIMA] for p in self.points]).reshape(-1, 3)
+        errors = np.array([p.force_errors.row for p in self.points]).reshape(-1, 3)
+        drive = {} if self.amplitude is None else {
+            "drive_amplitude": Column(self.drive_amplitude, along, "m", "drive amplitude A0")}
+        outcomes = np.array([p.status for p in self.points], dtype=object)
+        return (Table("curve", axis("frequency", self.column("frequency"), "Hz", "drive frequency"), {
+            **drive, **force_columns(forces, along), **error_columns(errors, along),
+            **regime_columns([p.regime for p in self.points], "frequency"),
+            "status": Column(outcomes, along, "", "done, or how the numbers failed")}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Start and cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""
+        single = f"{LIVE} or {CERTIFIED} point by point"
+        method = f"rk4 in batches, {single}" if can_share_batch(self.scene) else single
+        reached = [p.error_estimate for p in self.points if p.error_estimate is not None]
+        drive: dict[str, Attribute] = {} if self.amplitude is None else {
+            "amplitude": json.dumps(self.amplitude.to_json())}
+        return {**provenance(self.scene, method, max(reached) if reached else None), "start": self.start,
+                "wall_s": self.wall_s, **drive}
+
+    def summary(self) -> list[str]:
+        """The highest point, and what kinds of motion there are."""
+        known = [p for p in self.points if math.isfinite(p.max_output_force)]
+        if not known:
+            return [f"{len(self.points)} points, none with a force"]
+        top = max(known, key=lambda p: p.max_output_force)
+        counts = Counter(f"period {p.regime.period}" if p.regime.period else p.regime.name for p in self.points)
+        return [f"{len(self.points)} points, {self.points[0].frequency:g} to {self.points[-1].frequency:g} Hz, "
+                f"start: {self.start}", f"highest at {top.frequency:g} Hz ({top.regime.sentence})", *said_forces(top),
+                ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))]
 
 
 def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray,
