@@ -9,7 +9,7 @@ from ..quantities import QUANTITIES
 from ..scene import Scene
 from .table import Table
 
-_CELL = "text-align:left;padding:1px 12px 1px 0;border:0"
+_ROW = "text-align:left;background:none"
 
 
 def as_text(heading: str, sentences: Sequence[str]) -> str:
@@ -47,4 +47,4 @@ def _held(table: Table) -> str:
 
 
 def _row(*cells: str) -> str:
-    return f"<tr>{''.join(f'<td style={_CELL!r}>{cell}</td>' for cell in cells)}</tr>"
+    return f"<tr style={_ROW!r}>{''.join(f'<td align=left>{cell}</td>' for cell in cells)}</tr>"
