@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from bokeh.models import ColumnDataSource, DataRange1d, HoverTool, Range1d
+from bokeh.models import ColumnDataSource, HoverTool, Range1d
 from bokeh.plotting import figure
 
 from granchain_core import Attractor
@@ -18,7 +18,7 @@ def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
     """A mark for each, by its regime; the bar is the standard error of its share."""
     scale = force_scale("largest output force", max(one.max_output_force for one in found))
     plot = frame(name="attractors", min_border=4, x_range=Range1d(-4, 104),
-                 y_range=DataRange1d(start=0, range_padding=0.1))
+                 y_range=Range1d(0.0, 1.15 * max(one.max_output_force for one in found) / scale.factor))
     for one in found:
         key = regime_key(one.regime.name, one.regime.period)
         marker, colour, size = REGIMES[key]

@@ -43,7 +43,7 @@ def _held(table: Table) -> str:
         _row(f"<code>{html.escape(name)}</code>", ", ".join(column.axes), "" if column.unit == "1" else column.unit,
              html.escape(column.meaning)) for name, column in {**table.axes, **table.columns}.items())
     sizes = ", ".join(f"{name} {len(column.values)}" for name, column in table.axes.items())
-    return f"<div><b>{html.escape(table.name)}</b> ({html.escape(sizes)})</div><table>{rows}</table>"
+    return f"<div><b>{html.escape(table.name)}</b> ({html.escape(sizes)})</div><table cellpadding='4'>{rows}</table>"
 
 
 def _row(*cells: str) -> str:
