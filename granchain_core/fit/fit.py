@@ -141,7 +141,7 @@ class Fit(Labelled):
 
 
 def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, intervals: bool = True,
-        stop: Stop | None = None, progress: Callable[[int], None] | None = None) -> Fit:
+        stop: Stop | None = None, progress: Callable[[int], None] | None = None, scheduler: Any = None) -> Fit:
     """Fit parameters of a scene to a measurement.
 
     Parameters
@@ -160,6 +160,8 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
         Ends the fit when another thread sets it.
     progress : callable, optional
         Told how many sets of parameters have been evaluated.
+    scheduler : distributed.Client, optional
+        Its workers evaluate the design and the derivatives, a set of parameters at a time.
 
     Returns
     -------
@@ -189,7 +191,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
         raise BadInput(f"A fit has 1 to {MOST_FREE} different parameters, of k and kappa only one; not "
                        f"{', '.join(names) or 'none'}.")
     problem = Problem(scene, target, tuple(free), Stop() if stop is None else stop,
-                      progress or (lambda _: None))
+                      progress or (lambda _: None), scheduler=scheduler)
     middle = np.full(len(free), 0.5)
     data = len(problem.evaluate(middle).residuals) + sum(one.prior is not None for one in free)
     freedom = data - len(free)

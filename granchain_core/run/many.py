@@ -12,6 +12,7 @@ from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..result import Run
 from ..scene import Scene
+from ..scheduler import results
 from ..steady.batch.threads import on_all_cores
 from ..steady.settling.recorded import Settled
 from ..stop import Stop
@@ -23,7 +24,11 @@ from .run import run
 MOST_SCENES = 100_000
 
 
-class Runs(list["Run | Settled | None"], Labelled):
+Outcome = tuple[Any, str]
+"""A result, or None and why there is none."""
+
+
+class Runs(list[Any], Labelled):
     """The results of many scenes in their order; None where the numbers failed.
 
     Attributes
@@ -44,16 +49,13 @@ class Runs(list["Run | Settled | None"], Labelled):
     scenes: list[Scene]
     failures: list[str]
 
-    def __init__(self, scenes: Sequence[Scene], found: Iterable[Run | Settled | None], failures: Sequence[str]) -> None:
+    def __init__(self, scenes: Sequence[Scene], found: Iterable[Any], failures: Sequence[str]) -> None:
         super().__init__(found)
         self.scenes, self.failures = list(scenes), list(failures)
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `runs`: for each scene its knobs, regime, largest forces with errors, and what failed."""
-        along, runs = ("run",), [one.run if isinstance(one, Settled) else one for one in self]
-        regimes = [Regime.unsettled(0) if one is None else one.regime for one in self]
-        forces = [[np.nan] * 3 if one is None else [getattr(one, name) for name in MAXIMA] for one in runs]
-        errors = [[np.nan] * 3 if one is None else one.force_errors.row for one in runs]
+        """One table, `runs`: each scene's knobs and what failed; of motions regime and largest forces with errors."""
+        along = ("run",)
         columns = {"scene": _words([one.name for one in self.scenes], "name of the scene")}
         for name, quantity in QUANTITIES.items():
             values = [getattr(one, name) for one in self.scenes]
@@ -61,11 +63,20 @@ class Runs(list["Run | Settled | None"], Labelled):
                 columns[name] = _words([str(value) for value in values], quantity.label)
             else:
                 columns[name] = Column(np.array(values), along, quantity.unit, quantity.label)
-        when = "over the recorded time"
         return (Table("runs", axis("run", np.arange(len(self.scenes)), "1", "number of the scene"), {
-            **columns, **force_columns(np.array(forces).reshape(-1, 3), along, when),
-            **error_columns(np.array(errors).reshape(-1, 3), along), **regime_columns(regimes, "run"),
+            **columns, **self._of_motions(),
             "failure": _words(self.failures, "why there is no result; empty where there is one")}),)
+
+    def _of_motions(self) -> dict[str, Column]:
+        """Forces, errors and regimes where all results are motions."""
+        along, runs = ("run",), [one.run if isinstance(one, Settled) else one for one in self]
+        if not all(one is None or isinstance(one, Run) for one in runs):
+            return {}
+        regimes = [Regime.unsettled(0) if one is None else one.regime for one in self]
+        forces = np.array([[np.nan] * 3 if one is None else [getattr(one, name) for name in MAXIMA] for one in runs])
+        errors = np.array([[np.nan] * 3 if one is None else one.force_errors.row for one in runs])
+        return {**force_columns(forces.reshape(-1, 3), along, "over the recorded time"),
+                **error_columns(errors.reshape(-1, 3), along), **regime_columns(regimes, "run")}
 
     def attributes(self) -> dict[str, Attribute]:
         """With what they were made; each result has its own attributes."""
@@ -79,7 +90,9 @@ class Runs(list["Run | Settled | None"], Labelled):
         """How many of which regime, and what failed."""
         kinds: dict[str, int] = {}
         for one in self:
-            name = "failed" if one is None else f"period {one.regime.period}" if one.regime.period else one.regime.name
+            regime = getattr(one, "regime", None)
+            name = ("failed" if one is None else "done" if regime is None else
+                    f"period {regime.period}" if regime.period else regime.name)
             kinds[name] = kinds.get(name, 0) + 1
         return [", ".join(f"{count} {name}" for name, count in sorted(kinds.items())),
                 *sorted({one for one in self.failures if one})]
@@ -92,23 +105,26 @@ def _words(values: list[str], meaning: str) -> Column:
     return Column(np.array(values, dtype=object), ("run",), "", meaning)
 
 
-def run_many(scenes: Iterable[Scene], work: Callable[..., Run | Settled] = run,
+def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
              progress: Callable[[float], None] | None = None, stop: Stop | None = None, workers: int | None = None,
-             **options: Any) -> Runs:
-    """Run many scenes, on all cores.
+             scheduler: Any = None, **options: Any) -> Runs:
+    """Run many scenes, on all cores or by the workers of a Dask scheduler.
 
     Parameters
     ----------
     scenes : iterable of Scene
         The chains, at most 100,000.
     work : callable
-        `run`, or `settle` for the steady states.
+        `run`, `settle` for the steady states, or another function of a scene, such as `orbit`, whose results are the
+        starts of branches.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1, after each scene.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     workers : int, optional
         Threads; one for each core if not given.
+    scheduler : distributed.Client, optional
+        Its workers do the work, a scene at a time.
     **options
         What `work` takes for every scene: `periods`, `record`, `samples`, `method`, …
 
@@ -137,20 +153,27 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Run | Settled] = run,
     if not 1 <= len(chains) <= MOST_SCENES:
         raise BadInput(f"A batch has 1 to {MOST_SCENES} scenes, not {len(chains)}.")
     stop, ended = Stop() if stop is None else stop, Stop()
-    results: list[Run | Settled | None] = [None] * len(chains)
+    found: list[Any] = [None] * len(chains)
     failures, done = [""] * len(chains), 0
 
-    def some(shared: Iterator[tuple[int, Scene]]) -> Iterator[tuple[int, Run | Settled | None, str]]:
+    def some(shared: Iterator[tuple[int, Scene]]) -> Iterator[tuple[int, Outcome]]:
         for number, chain in shared:
-            try:
-                yield number, work(chain, stop=ended, **options), ""
-            except (NumbersFailed, OverBudget) as problem:
-                yield number, None, str(problem)
+            yield number, attempted(work, chain, {**options, "stop": ended})
 
-    for number, result, failure in on_all_cores(some, enumerate(chains), ended, stop, workers):
-        results[number], failures[number], done = result, failure, done + 1
+    outcomes = on_all_cores(some, enumerate(chains), ended, stop, workers) if scheduler is None else \
+        results(scheduler, attempted, [(work, chain, options) for chain in chains], stop)
+    for number, (result, failure) in outcomes:
+        found[number], failures[number], done = result, failure, done + 1
         if progress is not None:
             progress(done / len(chains))
     if done < len(chains):
         raise Cancelled
-    return Runs(chains, results, failures)
+    return Runs(chains, found, failures)
+
+
+def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -> Outcome:
+    """What `work` makes of a chain, or the sentence with which its numbers failed."""
+    try:
+        return work(chain, **options), ""
+    except (NumbersFailed, OverBudget) as problem:
+        return None, str(problem)

@@ -10,6 +10,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from ...integrate.methods import CERTIFIED, LIVE
 from ...regime import Regime
 from ...result import ForceErrors, said_forces
 from ...scene import Amplitude, Scene
+from ...scheduler import dealt, results
 from ...stop import Stop
 from ...tables import (
     MAXIMA,
@@ -41,6 +43,8 @@ from .order import used_and_missing
 
 #: Most points of one curve.
 MOST_POINTS = 100_000
+#: Points of one task of a scheduler's worker.
+POINTS_IN_TASK = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -271,6 +275,20 @@ def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
         yield CurvePoint.of(safe_state(one, None, ended))
 
 
+def _scheduled(scheduler: Any, scenes: list[Scene], stop: Stop | None) -> Iterator[CurvePoint]:
+    """Independent points by the workers of a scheduler."""
+    try:
+        for _, points in results(scheduler, block_points, [(block,) for block in dealt(scenes, POINTS_IN_TASK)], stop):
+            yield from points
+    except Cancelled:
+        return
+
+
+def block_points(scenes: list[Scene]) -> list[CurvePoint]:
+    """The points of scenes of one structure, computed in this thread: the work of one worker."""
+    return list(_points(iter(scenes), Stop()))
+
+
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
     """A draft of the curve from rest, on one core, to be drawn while a knob still moves.
 
@@ -286,7 +304,7 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: S
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
                     stop: Stop | None = None, on_point: Callable[[CurvePoint], None] | None = None,
                     workers: int | None = None, known: Sequence[CurvePoint] = (),
-                    amplitude: Amplitude | None = None) -> Curve:
+                    amplitude: Amplitude | None = None, scheduler: Any = None) -> Curve:
     """The resonance curve: largest forces of the steady state over the drive frequency.
 
     Parameters
@@ -308,6 +326,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
         Points of this curve that are there already, as `on_point` gave them.
     amplitude : Amplitude, optional
         The drive amplitude over the frequency; the scene's A0 if not given. The spring k stays as it is.
+    scheduler : distributed.Client, optional
+        Points from rest are computed by its workers.
 
     Returns
     -------
@@ -330,8 +350,12 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     """
     began = time.perf_counter()
     used, left = _parted(scene, frequencies, start, known, amplitude)
+    if scheduler is not None and start != "rest":
+        raise BadInput("A sweep carries its state from point to point and cannot be divided among the workers of a "
+                       'scheduler; use start="rest".')
     curve = Curve(scene, start, used, amplitude=amplitude)
-    for point in _computed(left, used[-1] if used else None, start, stop, workers):
+    for point in (_computed(left, used[-1] if used else None, start, stop, workers) if scheduler is None else
+                  _scheduled(scheduler, left, stop)):
         curve.points.append(point)
         if on_point is not None:
             on_point(point)
