@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .analysis.pulse import Pulse, pulse
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
-    from .diagram import Attractor, Diagram, attractors, diagram
+    from .diagram import Attractor, Attractors, Diagram, attractors, diagram
     from .fit import Fit, fit
     from .observe import Driven, Observation, Signal, drive, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from .regime import Regime
     from .result import Cost, Run
     from .run.live import LiveChain
+    from .run.many import Runs, run_many
     from .run.run import run
     from .state import State
     from .steady.curve.resonance_curve import Curve, CurvePoint, iter_curve, resonance_curve
@@ -46,12 +47,12 @@ if TYPE_CHECKING:
 
 #: Public names by module. They are imported at first use, so that `import granchain_core` is quick.
 _MODULES = {
-    "run.run": ("run",), "run.live": ("LiveChain",), "result": ("Cost", "Run"), "state": ("State",),
-    "stop": ("Stop",),
+    "run.run": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",), "result": ("Cost", "Run"),
+    "state": ("State",), "stop": ("Stop",),
     "steady.settling.recorded": ("Settled", "settled", "settling"), "regime": ("Regime",),
     "steady.curve.resonance_curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
-    "diagram": ("Attractor", "Diagram", "attractors", "diagram"),
+    "diagram": ("Attractor", "Attractors", "Diagram", "attractors", "diagram"),
     "observe": ("Driven", "Observation", "Signal", "drive", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
@@ -64,13 +65,13 @@ _MODULE_OF = {name: module for module, names in _MODULES.items() for name in nam
 _SHORT = {"settle": "settled", "orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
-    "Amplitude", "Attractor", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve", "CurvePoint",
-    "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit", "OverBudget",
-    "Pulse", "Regime", "Run", "Scene", "Settled", "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer",
-    "WorkPrecision", "__version__", "attractors", "bands", "basins", "branch", "continue_branch", "diagram", "drive",
-    "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "pulse", "resonance_curve",
-    "run", "save", "scene", "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer",
-    "work_precision",
+    "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve",
+    "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit",
+    "OverBudget", "Pulse", "Regime", "Run", "Runs", "Scene", "Settled", "Signal", "Spectrum", "State", "Stop",
+    "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors", "bands", "basins", "branch",
+    "continue_branch", "diagram", "drive", "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit",
+    "periodic_orbit", "pulse", "resonance_curve", "run", "run_many", "save", "scene", "scene_names", "settle",
+    "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
 ]
 
 

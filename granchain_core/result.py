@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import json
+from dataclasses import asdict, dataclass, field
+from typing import Protocol
 
 import numpy as np
 
@@ -11,6 +13,20 @@ from .integrate.engine import Engine
 from .kernels.samples import Samples
 from .regime import Regime
 from .scene import Scene
+from .scene.validity import overlap_warnings
+from .tables import MAXIMA, Column, Labelled, Table, axis, bead_axis, contact_axis, or_nan, provenance
+from .tables.provenance import Attribute
+
+_COLUMNS = {  # of a run and of an observation by name: (axes, unit, meaning)
+    "displacement": (("time", "bead"), "m", "bead displacement from its rest position"),
+    "velocity": (("time", "bead"), "m/s", "bead velocity"),
+    "kinetic_energy": (("time", "bead"), "J", "kinetic energy of each bead"),
+    "force": (("time", "contact"), "N", "contact force, elastic and damping; contact 0 is the driver's, N the wall's"),
+    "drive_displacement": (("time",), "m", "displacement of the driver"),
+    "input_force": (("time",), "N", "force on bead 1"),
+    "output_force": (("time",), "N", "force on the wall, elastic and damping"),
+    "output_force_elastic": (("time",), "N", "elastic part of the force on the wall, the paper's F_out"),
+}
 
 
 @dataclass(frozen=True)
@@ -71,6 +87,17 @@ class Jumps:
         mine = self.contact == contact
         return self.time[mine], self.force[mine]
 
+    def axis(self) -> dict[str, Column]:
+        """Their numbers."""
+        return axis("jump", np.arange(len(self.time)), "1", "number of the closing at which a contact force jumps")
+
+    def columns(self) -> dict[str, Column]:
+        """Their times, contacts and forces as columns of a table."""
+        more = {"missing": self.missing, "unresolved": self.unresolved}
+        return {"jump_time": Column(self.time, ("jump",), "s", "time at which a contact closes in motion", more),
+                "jump_contact": Column(self.contact, ("jump",), "1", "contact that closes"),
+                "jump_force": Column(self.force, ("jump",), "N", "its force just after, where it was 0 before")}
+
 
 @dataclass(frozen=True)
 class ForceErrors:
@@ -101,8 +128,21 @@ def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
     return np.divide(change, now, out=np.where(change > 0.0, np.inf, 0.0), where=now > 0.0)
 
 
+class HasForces(Protocol):
+    """What has largest forces [N] with relative errors: a run, a point of a curve, an attractor."""
+
+    @property
+    def max_input_force(self) -> float: ...
+    @property
+    def max_output_force(self) -> float: ...
+    @property
+    def max_output_force_elastic(self) -> float: ...
+    @property
+    def force_errors(self) -> ForceErrors: ...
+
+
 @dataclass(frozen=True, eq=False)
-class Run:
+class Run(Labelled):
     """A recorded motion: T samples of N beads and N + 1 contacts, in SI.
 
     Attributes
@@ -201,6 +241,46 @@ class Run:
     def output_force_elastic(self) -> np.ndarray:
         """Elastic part of the force on the wall, the paper's F_out (T,) [N]."""
         return elastic_output(self.scene, self.displacement[:, -1])
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `run`: the motion over time, bead and contact, and the jumps of forces."""
+        axes = axis("time", self.time, "s", "time since the start, at drive phase 0")
+        return (Table("run", {**axes, **bead_axis(self.scene.N), **contact_axis(self.scene.N), **self.jumps.axis()},
+                      {**motion_columns(self), **self.jumps.columns()}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Largest forces with their errors, regime, status, start, warnings and cost, and where they come from."""
+        return {**provenance(self.scene, self.cost.method, self.error_estimate),
+                "status": self.status, "start": self.start,
+                "warnings": json.dumps(overlap_warnings(self.scene, self.overlap.max(axis=0))),
+                "energy_residual": or_nan(self.energy_residual), "samples_per_period": self.samples,
+                "cost": json.dumps(asdict(self.cost)), "regime": json.dumps(asdict(self.regime)),
+                **{name: getattr(self, name) for name in MAXIMA},
+                **dict(zip(ERRORS, self.force_errors.row, strict=True))}
+
+    def summary(self) -> list[str]:
+        """Regime, largest forces and errors."""
+        reached = "no error claimed" if self.error_estimate is None else f"relative error {self.error_estimate:.1e}"
+        return [self.regime.sentence, *said_forces(self),
+                f"{len(self.time)} samples; displacements: {reached}; {self.status.replace('-', ' ')}"]
+
+
+#: Attributes with the relative errors of a run's largest forces.
+ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
+
+
+def motion_columns(motion: object) -> dict[str, Column]:
+    """The columns over time that a motion has: a run all of them, an observation those without a driver."""
+    return {name: Column(values, axes, unit, meaning) for name, (axes, unit, meaning) in _COLUMNS.items()
+            if (values := getattr(motion, name, None)) is not None}
+
+
+def said_forces(found: HasForces) -> list[str]:
+    """The largest forces in words, with their errors."""
+    errors = (found.force_errors.output, found.force_errors.elastic, found.force_errors.input)
+    forces = (found.max_output_force, found.max_output_force_elastic, found.max_input_force)
+    return [f"largest {name} force {force:.6g} N" + (", no error claimed" if e is None else f", relative error {e:.1e}")
+            for name, force, e in zip(("output", "elastic output", "input"), forces, errors, strict=True)]
 
 
 def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:

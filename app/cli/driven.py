@@ -37,10 +37,10 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
         say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
             f"{found.error_estimate:.1e} of the largest displacement.")
     if arguments.out:
-        from granchain_core.store.driven import save_driven
+        from granchain_core.store import save
 
         with unbroken():
-            save_driven(found, arguments.out)
+            save(found, arguments.out)
     if arguments.json:
         show_json(_json(found))
     else:

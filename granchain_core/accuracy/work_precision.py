@@ -17,6 +17,8 @@ from ..errors import BadInput, Cancelled, NumbersFailed
 from ..integrate import METHODS, Engine, Setting, certified
 from ..scene import Scene
 from ..stop import Stop
+from ..tables import Column, Labelled, Table, axis, provenance
+from ..tables.provenance import Attribute
 from .limit import Limited
 from .naive import Lesson, lesson
 from .scipy_methods import solve
@@ -73,7 +75,7 @@ class Row:
 
 
 @dataclass(eq=False)
-class WorkPrecision:
+class WorkPrecision(Labelled):
     """Error against time for every method on one scene.
 
     Attributes
@@ -109,6 +111,31 @@ class WorkPrecision:
     def cheapest(self, error: float) -> Row | None:
         """The fastest of granchain's and SciPy's settings that is at least this accurate."""
         return cheapest(self.rows, error)
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `accuracy`: error and time of each method at each setting."""
+        def column(name: str, unit: str, meaning: str, kind: type = float) -> dict[str, Column]:
+            values: np.ndarray = np.array([getattr(row, name) for row in self.rows], dtype=kind)
+            return {name: Column(values, ("row",), unit, meaning)}
+
+        return (Table("accuracy", axis("row", np.arange(len(self.rows)), "1", "number of the measurement"), {
+            **column("method", "", "name of the method", object), **column("setting", "", "its setting", object),
+            **column("value", "1", "its setting as a number"),
+            **column("error", "1", "largest error of a displacement over the largest displacement"),
+            **column("wall_s", "s", "time of ten drive periods"),
+            **column("rhs", "1", "evaluations of the equations of motion", np.int64),
+            **column("failure", "", "why there is neither error nor time; empty where there are", object)}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Both references and how well they agree, and where it comes from."""
+        return {**provenance(self.scene, self.reference, self.agreement), "reference": self.reference,
+                "second": self.second, "agreement": self.agreement, "disagreement": self.disagreement}
+
+    def summary(self) -> list[str]:
+        """The references, and the cheapest ways to three accuracies."""
+        ways = [f"cheapest to {error:g}: {best.method}, {best.setting}, {1e3 * best.wall_s:.3g} ms"
+                for error in (1e-3, 1e-6, 1e-9) if (best := self.cheapest(error)) is not None]
+        return [f"{len(self.rows)} settings; {self.reference} and {self.second} agree to {self.agreement:.1e}", *ways]
 
 
 def cheapest(rows: list[Row], error: float) -> Row | None:

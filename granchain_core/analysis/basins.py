@@ -12,18 +12,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..diagram.attractors import Attractor, Origin, attractors_from
+from ..diagram.attractors import Attractor, Origin, attractors_from, attractors_table
 from ..errors import BadInput
 from ..integrate import State
 from ..scene import Scene
 from ..stop import Stop
+from ..tables import Column, Labelled, Table, axis, provenance
+from ..tables.provenance import Attribute
 
 #: Most starts of one picture.
 MOST_CELLS = 250_000
 
 
 @dataclass(frozen=True, eq=False)
-class Basins:
+class Basins(Labelled):
     """Where the starts of a plane lead.
 
     Attributes
@@ -56,6 +58,26 @@ class Basins:
     def shares(self) -> np.ndarray:
         """Part of the plane's starts that leads to each attractor."""
         return np.array([(self.number == i).mean() for i in range(len(self.attractors))])
+
+    def tables(self) -> tuple[Table, ...]:
+        """`basins`: the attractor of each start; `attractors`: what they are."""
+        axes: dict[str, Column] = {}
+        for name, values in (self.y, self.x):
+            kind, unit = ("displacement", "m") if name[0] == "u" else ("velocity", "m/s")
+            axes |= axis(name, values, unit, f"{kind} of bead {name[1:]} at the start")
+        both = (self.y[0], self.x[0])
+        number = Column(self.number + 1, both, "1", "number of the attractor, 0 where there is none")
+        return (Table("basins", axes, {"attractor": number}, both), attractors_table(self.scene, self.attractors))
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Where they come from."""
+        return dict(provenance(self.scene, "rk4 in lanes, orbits by dop853", None))
+
+    def summary(self) -> list[str]:
+        """The plane, and what part of it leads to each attractor."""
+        return [f"{len(self.x[1])} × {len(self.y[1])} starts over {self.x[0]} and {self.y[0]}",
+                *(f"{i}: {100.0 * share:.0f} %, {one.regime.sentence}, output force up to {one.max_output_force:.4g} N"
+                  for i, (one, share) in enumerate(zip(self.attractors, self.shares, strict=True), 1))]
 
 
 def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]], stop: Stop | None = None,

@@ -18,11 +18,14 @@ import numpy as np
 
 from ..errors import check_range
 from ..integrate import State
+from ..integrate.methods import CERTIFIED
 from ..orbits.flow import StroboscopicMap
 from ..orbits.orbit import MOST_BEADS_DENSE
 from ..scene import Scene
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
+from ..tables import Column, Labelled, Table, axis, or_nan, provenance
+from ..tables.provenance import Attribute
 
 #: Directions that shrink in one period by more than this part of the one that grows most are rounding.
 _ROUNDING = 1e-12
@@ -35,7 +38,7 @@ _BLOCKS = 20
 
 
 @dataclass(frozen=True, eq=False)
-class LyapunovSpectrum:
+class LyapunovSpectrum(Labelled):
     """The Lyapunov exponents of a motion.
 
     Attributes
@@ -86,6 +89,28 @@ class LyapunovSpectrum:
         if self.resolved < len(self.exponents):
             return None
         return float(abs(self.exponents.sum() - self.mean_trace) / max(1.0, abs(self.mean_trace)))
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `lyapunov`: exponents with their errors."""
+        along, ranks = ("rank",), np.arange(len(self.exponents))
+        return (Table("lyapunov", axis("rank", ranks, "1", "place by size, 0 is the largest"), {
+            "exponent": Column(self.exponents, along, "1", "Lyapunov exponent per drive period"),
+            "error": Column(self.errors, along, "1", "its standard error"),
+            "resolved": Column((ranks < self.resolved).astype(np.int8), along, "1",
+                               "1 if it is known, 0 if it is at most what is given")}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Dimension and sums, and where they come from."""
+        return {**provenance(self.scene, CERTIFIED, None), "periods": self.periods, "mean_trace": self.mean_trace,
+                "dimension": or_nan(self.dimension), "liouville": or_nan(self.liouville)}
+
+    def summary(self) -> list[str]:
+        """The leading exponents and the dimension."""
+        shown = [f"{e:+.4f} ± {s:.4f}" for e, s in zip(self.exponents[:4], self.errors, strict=False)]
+        size = "not known" if self.dimension is None else f"{self.dimension:.3f}"
+        return [f"leading exponents per drive period: {', '.join(shown)}",
+                f"Kaplan–Yorke dimension of the section: {size}",
+                f"{self.resolved} of {len(self.exponents)} resolved, over {self.periods} periods"]
 
 
 def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = None, stop: Stop | None = None,

@@ -18,6 +18,8 @@ from ..errors import BadInput
 from ..result import Run
 from ..scene import Scene
 from ..scene.description import hertz_stiffness
+from ..tables import Column, Labelled, Table, axis, bead_axis, provenance
+from ..tables.provenance import Attribute
 
 #: Speed of the solitary wave [beads per time] over F^{1/6}, K = m = 1: of the discrete chain, and of the continuum.
 DISCRETE, CONTINUUM = 0.9055158, 2.0 / math.sqrt(5.0)
@@ -38,7 +40,7 @@ def solitary_speed(scene: Scene, force: float, constant: float = DISCRETE) -> fl
 
 
 @dataclass(frozen=True, eq=False)
-class Pulse:
+class Pulse(Labelled):
     """The first pulse in every contact between two beads, 1 to N − 1.
 
     Attributes
@@ -79,6 +81,34 @@ class Pulse:
         """The speed [m/s], with the distance of the beads on both sides of each contact."""
         radii = np.array([bead.radius for bead in self.run.scene.beads])
         return self.speed * (radii[:-1] + radii[1:])
+
+    @property
+    def scene(self) -> Scene:
+        """The chain it runs along."""
+        return self.run.scene
+
+    def tables(self) -> tuple[Table, ...]:
+        """`pulse`, a row for each contact between two beads; `beads`, with the largest velocity of each."""
+        along = axis("contact", self.contact, "1", "contact number; c joins beads c and c + 1")
+        at = ("contact",)
+        columns = {
+            "time": Column(self.time, at, "s", "when the contact's force is largest"),
+            "force": Column(self.force, at, "N", "largest force of the pulse"),
+            "speed": Column(self.speed, at, "1/s", "speed of the maximum in beads per second, NaN at both ends"),
+            "speed_in_metres": Column(self.speed_in_metres, at, "m/s", "speed of the maximum, NaN at both ends"),
+            "width": Column(self.width, at, "1", "width at half height in beads, NaN at both ends")}
+        fastest = {"velocity": Column(self.velocity, ("bead",), "m/s", "largest velocity until the pulse has passed")}
+        return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Where it comes from."""
+        return dict(provenance(self.scene, self.run.cost.method, self.run.error_estimate))
+
+    def summary(self) -> list[str]:
+        """Force, speed and width in the middle of the chain."""
+        i = len(self.contact) // 2
+        return [f"contact {self.contact[i]}: {self.force[i]:.4g} N, {self.speed[i]:.5g} beads/s, "
+                f"{self.width[i]:.3g} beads wide at half height"]
 
 
 def pulse(run: Run) -> Pulse:

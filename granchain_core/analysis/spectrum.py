@@ -16,6 +16,9 @@ import numpy as np
 
 from ..errors import BadInput, unknown_name
 from ..result import Run
+from ..scene import Scene
+from ..tables import Column, Labelled, Table, axis
+from ..tables.provenance import Attribute
 
 #: Forces that have a spectrum, as attributes of a run, and their names.
 FORCES = {"input": "input_force", "output": "output_force", "elastic": "output_force_elastic"}
@@ -24,7 +27,7 @@ _COUNTS = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Spectrum:
+class Spectrum(Labelled):
     """Amplitudes of a force over frequency.
 
     Attributes
@@ -65,9 +68,34 @@ class Spectrum:
         """Distance of two frequencies that can be told apart [Hz]."""
         return float(self.frequency[1]) * (1.0 if self.period else 2.0)
 
+    @property
+    def scene(self) -> Scene:
+        """The chain."""
+        return self.run.scene
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `spectrum`: amplitude and phase over the frequency."""
+        along = ("frequency",)
+        return (Table("spectrum", axis("frequency", self.frequency, "Hz", "frequency"), {
+            "amplitude": Column(self.amplitude, along, "N", f"amplitude of the {self.force} force, the mean at 0"),
+            "phase": Column(self.phase, along, "rad", "phase of the cosine, counted from drive phase 0")}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Force, period and aliasing, and those of its run."""
+        return {**self.run.attributes(), "force": self.force, "period": self.period or 0, "aliasing": self.aliasing,
+                "resolution": self.resolution}
+
+    def summary(self) -> list[str]:
+        """Of what it is, and its largest lines."""
+        top = [i for i in np.argsort(-self.amplitude) if self.frequency[i] > 0.0][:3]
+        kind = f"lines of a motion of period {self.period}" if self.period else "windowed record, no period"
+        return [f"{self.force} force, {kind}; {self.resolution:.4g} Hz apart",
+                *(f"{self.amplitude[i]:.4g} N at {self.frequency[i]:.6g} Hz" for i in top),
+                f"folded back from above half the sampling frequency: at most about {self.aliasing:.1e} N"]
+
 
 @dataclass(frozen=True, eq=False)
-class Transfer:
+class Transfer(Labelled):
     """The output force's lines over those of the input force.
 
     Attributes
@@ -76,6 +104,8 @@ class Transfer:
         Lines at which the input force has at least 1e-6 of its largest part [Hz].
     gain, phase : numpy.ndarray, shape (M,)
         |H|, and its argument [rad]: negative where the output is late.
+    run : Run
+        The motion.
 
     Examples
     --------
@@ -88,6 +118,29 @@ class Transfer:
     frequency: np.ndarray
     gain: np.ndarray
     phase: np.ndarray
+    run: Run
+
+    @property
+    def scene(self) -> Scene:
+        """The chain."""
+        return self.run.scene
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `transfer`: gain and phase over the frequency."""
+        along = ("frequency",)
+        return (Table("transfer", axis("frequency", self.frequency, "Hz", "frequency"), {
+            "gain": Column(self.gain, along, "1", "line of the output force over that of the input force"),
+            "phase": Column(self.phase, along, "rad", "phase of the output less that of the input")}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Those of its run."""
+        return self.run.attributes()
+
+    def summary(self) -> list[str]:
+        """How many lines, and what passes at the drive frequency."""
+        at = int(np.argmin(np.abs(self.frequency - self.scene.f)))
+        return [f"{len(self.frequency)} lines at which the input force has a part that counts",
+                f"at {self.frequency[at]:.6g} Hz: gain {self.gain[at]:.4g}, phase {self.phase[at]:+.3f} rad"]
 
 
 def spectrum(run: Run, force: str = "output") -> Spectrum:
@@ -157,7 +210,7 @@ def transfer(run: Run) -> Transfer:
     strong = into.amplitude > max(_COUNTS * into.amplitude.max(), 2.0 * into.aliasing)
     turned = out.phase[strong] - into.phase[strong]
     return Transfer(into.frequency[strong], out.amplitude[strong] / into.amplitude[strong],
-                    np.angle(np.exp(1j * turned)))
+                    np.angle(np.exp(1j * turned)), run)
 
 
 def _record(run: Run, values: np.ndarray) -> tuple[np.ndarray, int | None]:

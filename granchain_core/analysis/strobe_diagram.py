@@ -7,6 +7,7 @@ more than one attractor exists.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -14,6 +15,7 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed, check_range, unknown_name
 from ..integrate import State
+from ..integrate.methods import LIVE
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..scene import Scene
@@ -21,6 +23,9 @@ from ..steady.batch.threads import on_all_cores
 from ..steady.curve.order import STARTS, coarse_first
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
+from ..tables import Column, Labelled, Table, axis, bead_axis, provenance, regime_columns
+from ..tables.provenance import Attribute
+from ..tables.words import evidence_columns, state_columns
 
 #: Strobes closer than this part of the largest are one.
 _APART = 1e-3
@@ -50,7 +55,7 @@ class StrobePoint:
 
 
 @dataclass(eq=False)
-class StrobeDiagram:
+class StrobeDiagram(Labelled):
     """Strobes over a knob.
 
     Attributes
@@ -84,6 +89,35 @@ class StrobeDiagram:
         values = np.concatenate([np.full(len(point.strobes), point.value) for point in kept] or [np.zeros(0)])
         states = np.concatenate([point.strobes[:, int(velocity), bead - 1] for point in kept] or [np.zeros(0)])
         return values, states
+
+    def tables(self) -> tuple[Table, ...]:
+        """`strobes`: states over knob, strobe and bead, NaN where the numbers failed; `values`: the regime of each."""
+        quantity, most = QUANTITIES[self.knob], max((len(point.strobes) for point in self.points), default=0)
+        states = np.full((len(self.points), most, 2, self.scene.N), np.nan)
+        for row, point in zip(states, self.points, strict=True):
+            row[: len(point.strobes)] = point.strobes
+        knob = axis(self.knob, [point.value for point in self.points], quantity.unit, quantity.label)
+        strobes = axis("strobe", np.arange(most), "1", "number of the strobe, one a drive period")
+        failures = np.array([point.failure for point in self.points], dtype=object)
+        regimes = [point.regime for point in self.points]
+        return (Table("strobes", {**knob, **strobes, **bead_axis(self.scene.N)}, {
+            **state_columns(states[:, :, 0], states[:, :, 1], (self.knob, "strobe", "bead")),
+            **regime_columns(regimes, self.knob)}, (self.knob, "strobe")),
+            Table("values", knob, {**regime_columns(regimes, self.knob), **evidence_columns(regimes, self.knob),
+                                   "failure": Column(failures, (self.knob,), "", "why there are no strobes")}))
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Knob and start, and where it comes from."""
+        return {**provenance(self.scene, LIVE, None), "knob": self.knob, "start": self.start}
+
+    def summary(self) -> list[str]:
+        """The range of the knob, and what kinds of motion there are."""
+        if not self.points:
+            return ["no values"]
+        unit, low, high = QUANTITIES[self.knob].unit, self.points[0].value, self.points[-1].value
+        counts = Counter(f"period {p.regime.period}" if p.regime.period else p.regime.name for p in self.points)
+        return [f"{len(self.points)} values of {self.knob}, {low:g} to {high:g} {unit}, start: {self.start}",
+                ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))]
 
 
 def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray, start: str = "up", keep: int = 60,

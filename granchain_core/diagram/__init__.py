@@ -1,6 +1,6 @@
 """Two knobs at once: regime and largest forces over a grid, its boundaries, and all attractors of one setting."""
 
-from .attractors import Attractor, attractors, listing
+from .attractors import Attractor, Attractors, attractors, listing
 from .boundaries import BoundaryCurve, boundaries
 from .boundary import BoundaryPoint, boundary_curves, boundary_point
 from .cells import Diagram
@@ -8,6 +8,6 @@ from .compute import diagram, iter_diagram
 from .grid import Axis, Grid
 
 __all__ = [
-    "Attractor", "Axis", "BoundaryCurve", "BoundaryPoint", "Diagram", "Grid", "attractors", "boundaries",
+    "Attractor", "Attractors", "Axis", "BoundaryCurve", "BoundaryPoint", "Diagram", "Grid", "attractors", "boundaries",
     "boundary_curves", "boundary_point", "diagram", "iter_diagram", "listing",
 ]

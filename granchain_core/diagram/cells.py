@@ -2,13 +2,29 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..quantities import QUANTITIES
 from ..regime import NAMES, Regime
 from ..result import ForceErrors
+from ..scene import Scene
 from ..steady.steady_state import SteadyState
+from ..tables import (
+    MAXIMA,
+    Column,
+    Labelled,
+    Table,
+    amplitude_attribute,
+    axis,
+    error_columns,
+    force_columns,
+    provenance,
+)
+from ..tables.provenance import Attribute
+from ..tables.words import ERRORS, EVIDENCE
 from .grid import Grid
 
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
@@ -24,17 +40,12 @@ CELL = np.dtype([
 ])
 
 
-#: Columns of the relative errors of input, output and elastic output force.
-ERRORS = ("error_estimate_input", "error_estimate", "error_estimate_elastic")
-
-
 def empty_cells(grid: Grid) -> np.ndarray:
     """A table (cells,) of which nothing is computed."""
     cells = np.zeros(grid.size, dtype=CELL)
     cells["number"] = np.arange(grid.size)
     cells["regime"] = -1
-    for name in ("max_input_force", "max_output_force", "max_output_force_elastic", *ERRORS, "decay", "multiplier",
-                 "lyapunov", "lyapunov_error"):
+    for name in (*MAXIMA, *ERRORS, *EVIDENCE):
         cells[name] = np.nan
     return cells
 
@@ -54,7 +65,7 @@ def _or_nan(value: float | None) -> float:
 
 
 @dataclass(eq=False)
-class Diagram:
+class Diagram(Labelled):
     """A two-parameter diagram.
 
     Attributes
@@ -78,9 +89,49 @@ class Diagram:
     cells: np.ndarray
     wall_s: float = 0.0
 
+    @property
+    def scene(self) -> Scene:
+        """The chain."""
+        return self.grid.scene
+
     def column(self, name: str) -> np.ndarray:
         """One entry of all cells as an array (y, x)."""
         return self.cells[name].reshape(self.grid.shape)
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `map`, over both knobs; regimes are numbers with CF's flag_values and flag_meanings."""
+        both = (self.grid.y.knob, self.grid.x.knob)
+        axes: dict[str, Column] = {}
+        for one in (self.grid.y, self.grid.x):
+            axes |= axis(one.knob, one.array, QUANTITIES[one.knob].unit, QUANTITIES[one.knob].label)
+        flags = {"flag_values": np.array([-1, *range(len(REGIMES))], dtype=np.int8),
+                 "flag_meanings": " ".join(["not_computed", *REGIMES])}
+        forces, errors = (np.stack([self.column(name) for name in names], axis=-1) for names in (MAXIMA, ERRORS))
+        columns = {
+            **force_columns(forces, both), **error_columns(errors, both),
+            "regime": Column(self.column("regime"), both, "", "what the motion is", flags),
+            "period": Column(self.column("period"), both, "1", "period in drive periods, 0 where not periodic"),
+            "periods_run": Column(self.column("periods_run"), both, "1", "drive periods run until that was decided"),
+            **{name: Column(self.column(name), both, "1", meaning) for name, meaning in EVIDENCE.items()}}
+        return (Table("map", axes, columns, both),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Both knobs, cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""
+        errors = self.cells["error_estimate"]
+        known = errors[np.isfinite(errors)]
+        return {**provenance(self.scene, "rk4 in lanes", float(known.max()) if len(known) else None),
+                **amplitude_attribute(self.grid.amplitude), "map_digest": self.grid.digest, "wall_s": self.wall_s,
+                "map_axes": json.dumps([self.grid.y.knob, self.grid.x.knob])}
+
+    def summary(self) -> list[str]:
+        """The ranges of both knobs, and how many cells are of each regime."""
+        sides = (f"{one.knob} {one.values[0]:g} to {one.values[-1]:g} {QUANTITIES[one.knob].unit}"
+                 for one in (self.grid.x, self.grid.y))
+        counts = {name: int((self.cells["regime"] == code).sum()) for code, name in enumerate(REGIMES)}
+        missing = int((self.cells["regime"] < 0).sum())
+        return [f"{self.grid.shape[1]} × {self.grid.shape[0]} cells: {', '.join(sides)}",
+                ", ".join(f"{count} {name}" for name, count in counts.items() if count)
+                + (f"; {missing} not computed" if missing else "")]
 
     @property
     def complete(self) -> bool:

@@ -7,18 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed
 from ..scene import Amplitude, Scene
+from ..scheduler import connect, dealt, results
 from ..stop import Stop
 from .compute import block_cells
 from .grid import Axis, Grid
 
+__all__ = ["CELLS_IN_TASK", "blocks_of", "connect", "describe", "iter_blocks", "work_on"]
+
 #: Cells of one block: some seconds of work, so that sending it costs nothing.
 CELLS_IN_TASK = 256
-#: Time in which a scheduler must answer [s].
-_ANSWERS = 4.0
-#: Time between two checks whether the map is still wanted [s].
-_LOOK = 0.2
 
 
 def work_on(described: dict[str, Any], numbers: Sequence[int]) -> np.ndarray:
@@ -36,56 +34,13 @@ def describe(grid: Grid) -> dict[str, Any]:
 
 
 def blocks_of(numbers: Sequence[int], size: int = CELLS_IN_TASK) -> list[list[int]]:
-    """Cell numbers in blocks; each takes cells from all over, so that all blocks cost about the same."""
-    count = max(1, -(-len(numbers) // size))
-    return [list(numbers[first::count]) for first in range(count) if len(numbers)]
-
-
-def connect(address: str) -> Any:
-    """A client of the scheduler at `address`; `BadInput` where there is none or `distributed` is not installed."""
-    try:
-        from distributed import Client
-    except ImportError:
-        raise BadInput("--scheduler needs the package distributed; install it with "
-                       "`pip install 'granchain[scheduler]'` here and on every worker.") from None
-    try:
-        return Client(address, timeout=_ANSWERS)
-    except (OSError, ValueError, TimeoutError) as problem:
-        raise BadInput(f"No Dask scheduler answers at {address[:80]} ({str(problem)[:80]}); start one with "
-                       "`dask scheduler` and workers with `dask worker`.") from None
+    """Cell numbers in blocks."""
+    return dealt(numbers, size)
 
 
 def iter_blocks(client: Any, grid: Grid, numbers: Sequence[int],
                 stop: Stop | None = None) -> Iterator[np.ndarray]:
     """Finished blocks (cells,) in the order in which workers return them; blocks no longer wanted are cancelled."""
     described = describe(grid)
-    waiting = {client.submit(work_on, described, block, pure=False) for block in blocks_of(numbers)}
-    try:
-        while waiting:
-            if stop:
-                raise Cancelled
-            done, waiting = _some(waiting)
-            for future in done:
-                yield _result(future)
-    finally:
-        client.cancel(list(waiting))
-
-
-def _some(waiting: set[Any]) -> tuple[set[Any], set[Any]]:
-    from distributed import wait
-
-    try:
-        found = wait(waiting, timeout=_LOOK, return_when="FIRST_COMPLETED")
-    except TimeoutError:
-        return set(), waiting
-    return set(found.done), set(found.not_done)
-
-
-def _result(future: Any) -> np.ndarray:
-    try:
-        return np.asarray(future.result())
-    except (BadInput, NumbersFailed):
-        raise
-    except Exception as problem:
-        raise NumbersFailed(f"A worker could not compute its block: {type(problem).__name__}: {str(problem)[:200]}; "
-                            "look at its log, and go on with --resume.", "worker-failed") from None
+    for _, rows in results(client, work_on, [(described, block) for block in blocks_of(numbers)], stop):
+        yield np.asarray(rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,9 +14,12 @@ from scipy.stats import chi2
 from ..errors import BadInput
 from ..scene import Amplitude, Scene
 from ..stop import Stop
+from ..tables import Labelled, Table, or_nan, provenance
+from ..tables.provenance import Attribute
 from .intervals import LEVEL, Lower, Profile, profile
 from .parameters import Free, with_values
 from .search import Problem, Target, descended, searched
+from .tables import data_table, landscape_table, parameter_table, profile_table
 from .targets import CurveTarget, Evaluation, FeatureTarget
 
 #: Probability of a misfit as large, if the model were true, below which the verdict is that it cannot.
@@ -25,7 +29,7 @@ MOST_FREE, _AGAIN = 30, 4
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(Labelled):
     """What a fit found.
 
     Attributes
@@ -92,6 +96,30 @@ class Fit:
     scale: float = 1.0
     wall_s: float = 0.0
 
+    def tables(self) -> tuple[Table, ...]:
+        """`parameters` with their intervals, `data` beside the model, `profiles`, and the `landscape` of the misfit."""
+        profiles = (profile_table(self.free, self.profiles),) if self.profiles else ()
+        return (parameter_table(self.free, self.best, self.profiles), data_table(self.target, self.evaluation),
+                *profiles, landscape_table(self.free, self.landscape))
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Misfit and verdict, and where they come from."""
+        drive: dict[str, Attribute] = {} if self.amplitude is None else {
+            "amplitude": json.dumps(self.amplitude.to_json())}
+        return {**provenance(self.scene, "profile likelihood", None), "misfit": self.misfit, "data": self.data,
+                "freedom": self.freedom, "probability": or_nan(self.probability), "verdict": self.verdict,
+                "sentence": self.sentence, "scale": self.scale, "level": LEVEL, "wall_s": self.wall_s, **drive}
+
+    def summary(self) -> list[str]:
+        """Each parameter with its interval, and the verdict."""
+        said = []
+        for i, one in enumerate(self.free):
+            unit = "" if one.unit == "1" else f" {one.unit}"
+            ends = (f", 95 %: {self.profiles[i].low:.5g} to {self.profiles[i].high:.5g}{unit}" if self.profiles else
+                    ", no interval computed")
+            said.append(f"{one.name} = {self.best[i]:.5g}{unit}{ends}")
+        return [*said, self.sentence]
+
     def to_json(self) -> dict[str, Any]:
         """The result as plain data."""
         parameters = []
@@ -113,7 +141,7 @@ class Fit:
 
 
 def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, intervals: bool = True,
-        stop: Stop | None = None, progress: Callable[[int], None] | None = None) -> Fit:
+        stop: Stop | None = None, progress: Callable[[int], None] | None = None, scheduler: Any = None) -> Fit:
     """Fit parameters of a scene to a measurement.
 
     Parameters
@@ -132,6 +160,8 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
         Ends the fit when another thread sets it.
     progress : callable, optional
         Told how many sets of parameters have been evaluated.
+    scheduler : distributed.Client, optional
+        Its workers evaluate the design and the derivatives, a set of parameters at a time.
 
     Returns
     -------
@@ -161,7 +191,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
         raise BadInput(f"A fit has 1 to {MOST_FREE} different parameters, of k and kappa only one; not "
                        f"{', '.join(names) or 'none'}.")
     problem = Problem(scene, target, tuple(free), Stop() if stop is None else stop,
-                      progress or (lambda _: None))
+                      progress or (lambda _: None), scheduler=scheduler)
     middle = np.full(len(free), 0.5)
     data = len(problem.evaluate(middle).residuals) + sum(one.prior is not None for one in free)
     freedom = data - len(free)

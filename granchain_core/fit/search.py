@@ -12,12 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares, minimize
 from scipy.stats import qmc
 
-from ..scene import Scene
+from ..scene import Amplitude, Scene
+from ..scheduler import results
 from ..stop import Stop
 from .parameters import Free, with_values
 from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
@@ -42,21 +44,34 @@ class Problem:
     tell: Callable[[int], None]
     places: list[np.ndarray] = field(default_factory=list)
     misfits: list[float] = field(default_factory=list)
+    scheduler: Any = None
     _known: dict[bytes, Evaluation] = field(default_factory=dict)
+
+    def ahead(self, places: Sequence[np.ndarray]) -> None:
+        """Evaluate places that will be asked for, all at once by the workers of the scheduler; without one, nothing."""
+        new = {key: place for place in map(_inside, places) if (key := place.tobytes()) not in self._known}
+        if self.scheduler is None or len(new) < 2:
+            return
+        tasks = [(self.target, *with_values(self.scene, self.free, self.values(place))) for place in new.values()]
+        found = dict(results(self.scheduler, evaluated, tasks, self.stop))
+        for number, place in enumerate(new.values()):  # in the order asked, whoever was first
+            self._keep(place, found[number])
 
     def evaluate(self, place: np.ndarray) -> Evaluation:
         """Residuals at a place, those of the priors behind those of the data."""
-        place = np.clip(place, 0.0, 1.0)
+        place = _inside(place)
         key = place.tobytes()
         if key not in self._known:
             self.stop.check()
             scene, amplitude = with_values(self.scene, self.free, self.values(place))
-            found = self.target.evaluate(scene, amplitude, self.stop)
-            self._known[key] = found
-            self.places.append(place)
-            self.misfits.append(self._misfit(found, place))
-            self.tell(len(self.misfits))
+            self._keep(place, self.target.evaluate(scene, amplitude, self.stop))
         return self._known[key]
+
+    def _keep(self, place: np.ndarray, found: Evaluation) -> None:
+        self._known[place.tobytes()] = found
+        self.places.append(place)
+        self.misfits.append(self._misfit(found, place))
+        self.tell(len(self.misfits))
 
     def values(self, place: np.ndarray) -> np.ndarray:
         """Parameters at a place."""
@@ -81,24 +96,32 @@ class Problem:
 
     def jacobian(self, place: np.ndarray, moving: Sequence[int]) -> np.ndarray:
         """Derivatives of the residuals by differences to the side that stays within the bounds."""
+        beside = [_beside(place, j) for j in moving]
+        self.ahead([place, *beside])
         base = self.residuals(place)
-        columns = []
-        for j in moving:
-            step = STEP if place[j] + STEP <= 1.0 else -STEP
-            other = np.array(place, dtype=float)
-            other[j] += step
-            columns.append((self.residuals(other) - base) / step)
-        return np.stack(columns, axis=1)
+        return np.stack([(self.residuals(other) - base) / (STEP if place[j] + STEP <= 1.0 else -STEP)
+                         for j, other in zip(moving, beside, strict=True)], axis=1)
 
     def jumps_beside(self, place: np.ndarray) -> bool:
         """Whether a regime changes within a step of derivatives."""
         here = self.evaluate(place).regimes
-        for j in range(len(place)):
-            other = np.array(place, dtype=float)
-            other[j] += STEP if place[j] + STEP <= 1.0 else -STEP
-            if self.evaluate(other).regimes != here:
-                return True
-        return False
+        return any(self.evaluate(_beside(place, j)).regimes != here for j in range(len(place)))
+
+
+def evaluated(target: Target, scene: Scene, amplitude: Amplitude | None) -> Evaluation:
+    """The residuals of one set of parameters: the work of a scheduler's worker."""
+    return target.evaluate(scene, amplitude, None)
+
+
+def _inside(place: np.ndarray) -> np.ndarray:
+    return np.clip(place, 0.0, 1.0)
+
+
+def _beside(place: np.ndarray, j: int) -> np.ndarray:
+    """A step of derivatives away in parameter j, to the side that stays within the bounds."""
+    other = np.array(place, dtype=float)
+    other[j] += STEP if place[j] + STEP <= 1.0 else -STEP
+    return other
 
 
 def descended(problem: Problem, place: np.ndarray, moving: Sequence[int], most: int = _DESCENT) -> np.ndarray:
@@ -157,6 +180,7 @@ def searched(problem: Problem, design: int, enough: Callable[[float], bool]) -> 
 def _apart(problem: Problem, tried: list[np.ndarray], starts: list[np.ndarray]) -> list[np.ndarray]:
     """The next `_STARTS` places with the least misfits that are far from all `starts`, to which they are added."""
     new: list[np.ndarray] = []
+    problem.ahead(tried)
     for place in sorted(tried, key=problem.misfit):
         if all(np.abs(place - other).max() > _APART for other in starts):
             starts.append(place)

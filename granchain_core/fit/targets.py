@@ -145,6 +145,11 @@ class SeriesTarget:
         return {name: values[self._kept] for name, values in both.items() if values is not None}
 
     @property
+    def time(self) -> np.ndarray:
+        """The times of their samples [s]."""
+        return self.series.time[self._kept]
+
+    @property
     def _kept(self) -> slice:
         return slice(None, None, max(1, math.ceil(len(self.series.time) / _COMPARED)))
 
@@ -165,7 +170,7 @@ class SeriesTarget:
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
         """Residuals of every sample of every channel."""
-        time, measured = self.series.time[self._kept], self.channels
+        time, measured = self.time, self.channels
         largest = max(float(np.abs(values).max()) for values in measured.values())
         sigma = self.error or ASSUMED * largest
         try:

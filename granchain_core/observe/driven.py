@@ -6,9 +6,10 @@ exact (signal.py), so that there is no error of interpolation.
 
 from __future__ import annotations
 
+import json
 import time as clock
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -16,10 +17,12 @@ from ..errors import BadInput
 from ..integrate import State
 from ..integrate.caution import EVEN, RUN_FORCES, RUN_FORCES_THAT_JUMP
 from ..integrate.methods import LIVE
-from ..result import Cost, ForceErrors, elastic_output, relative_changes, residual
+from ..result import ERRORS, Cost, ForceErrors, elastic_output, motion_columns, relative_changes, residual, said_forces
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
+from ..tables import MAXIMA, Column, Labelled, Table, axis, bead_axis, contact_axis, provenance
+from ..tables.provenance import Attribute
 from .pushed_chain import MovedChain
 from .signal import Signal
 
@@ -30,7 +33,7 @@ _MOST_HALVINGS = 7
 
 
 @dataclass(frozen=True, eq=False)
-class Driven:
+class Driven(Labelled):
     """The motion of a chain at the T knots of its signal, in SI.
 
     Attributes
@@ -98,6 +101,31 @@ class Driven:
     def output_force_elastic(self) -> np.ndarray:
         """Its elastic part, the paper's F_out (T,) [N]."""
         return elastic_output(self.scene, self.displacement[:, -1])
+
+    @property
+    def drive_displacement(self) -> np.ndarray:
+        """Displacement of the driver (T,) [m]."""
+        return self.signal.displacement
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `driven`, laid out as a run's is."""
+        axes = {**axis("time", self.time, "s", "time since the signal's own zero"), **bead_axis(self.scene.N),
+                **contact_axis(self.scene.N)}
+        velocity = Column(self.signal.velocity, ("time",), "m/s", "driver velocity")
+        return (Table("driven", axes, {**motion_columns(self), "drive_velocity": velocity}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """The signal, largest forces with their errors, status, energy and cost, and where it comes from."""
+        return {**provenance(self.scene, self.cost.method, self.error_estimate), "status": self.status,
+                "drive": self.signal.words, "energy_residual": self.energy_residual,
+                "cost": json.dumps(asdict(self.cost)), **{name: getattr(self, name) for name in MAXIMA},
+                **dict(zip(ERRORS, self.force_errors.row, strict=True))}
+
+    def summary(self) -> list[str]:
+        """The signal, largest forces and errors."""
+        return [f"driver: {self.signal.words}", *said_forces(self),
+                f"{len(self.time)} knots; displacements: relative error {self.error_estimate:.1e}; "
+                f"{self.status.replace('-', ' ')}"]
 
 
 def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop | None = None,

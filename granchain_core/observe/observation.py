@@ -10,9 +10,10 @@ place of the jump in it, so that one halving may gain little.
 
 from __future__ import annotations
 
+import json
 import time as clock
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -20,10 +21,12 @@ from ..errors import BadInput
 from ..integrate import State
 from ..integrate.caution import EVEN, UNEVEN
 from ..integrate.methods import LIVE
-from ..result import Cost, elastic_output
+from ..result import Cost, elastic_output, motion_columns
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
+from ..tables import Column, Labelled, Table, axis, bead_axis, contact_axis, provenance
+from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
 
@@ -43,7 +46,7 @@ class Residual:
 
 
 @dataclass(frozen=True, eq=False)
-class Observation:
+class Observation(Labelled):
     """The motion of an observer at the T samples of its input, in SI.
 
     Attributes
@@ -117,6 +120,37 @@ class Observation:
     def error_estimate(self) -> float:
         """Both errors together."""
         return self.integration_error + self.interpolation_error
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `observation`, laid out as a run's is, so that one reader reads both."""
+        axes = {**axis("time", self.time, "s", "time as in the measured force"), **bead_axis(self.scene.N),
+                **contact_axis(self.scene.N)}
+        columns = motion_columns(self)
+        columns["force"] = Column(self.force, ("time", "contact"), "N",
+                                  "contact force, elastic and damping; contact 0 is the given force")
+        if self.record.output is not None:
+            columns["measured_output_force"] = Column(self.record.output, ("time",), "N", "the measured output force")
+        return (Table("observation", axes, columns),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Status, errors, how the input was read, residuals, cost, and where it comes from."""
+        residuals: dict[str, Attribute] = {
+            name: json.dumps(asdict(found)) for name in ("residual", "residual_elastic")
+            if (found := getattr(self, name)) is not None}
+        return {**provenance(self.scene, self.cost.method, self.error_estimate), "status": self.status,
+                "integration_error": self.integration_error, "interpolation_error": self.interpolation_error,
+                "input": "; ".join((self.record.understood, *self.record.notes)),
+                "cost": json.dumps(asdict(self.cost)), **residuals}
+
+    def summary(self) -> list[str]:
+        """Largest forces, errors, and the difference from what was measured."""
+        found = [f"{len(self.time)} samples over {self.time[-1] - self.time[0]:.4g} s; {self.status.replace('-', ' ')}",
+                 f"largest output force {self.max_output_force:.5g} N, elastic {self.max_output_force_elastic:.5g} N",
+                 f"relative error of displacements {self.integration_error:.1e} by steps, "
+                 f"{self.interpolation_error:.1e} between samples"]
+        if self.residual is not None:
+            found.append(f"measured less computed: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
+        return found
 
 
 def observe(scene: Scene, time: object, force: object = None, output: object = None, start: State | None = None,

@@ -14,11 +14,16 @@ import numpy as np
 
 from ..errors import NumbersFailed, check_range
 from ..integrate import State
+from ..integrate.methods import CERTIFIED
 from ..lower import scales_of
+from ..regime import modulus_words
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
+from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
+from ..tables.provenance import Attribute
+from ..tables.words import multiplier_columns, state_columns
 from .flow import Flow, StroboscopicMap, refuse_cut, relative_change
 
 #: Residual at which an orbit is found, relative to the largest displacement and w.
@@ -34,7 +39,7 @@ _MOST_HALVINGS = 6
 
 
 @dataclass(frozen=True, eq=False)
-class Orbit:
+class Orbit(Labelled):
     """A periodic orbit with its Floquet multipliers.
 
     Attributes
@@ -88,6 +93,35 @@ class Orbit:
         if self.observer_multipliers is None:
             return None
         return bool(np.abs(self.observer_multipliers).max() < 1.0)
+
+    def tables(self) -> tuple[Table, ...]:
+        """`multipliers`, the observer's too where they are known; `state`; `newton`, the residuals of the search."""
+        columns = multiplier_columns(self.multipliers, ("rank",))
+        if self.observer_multipliers is not None:
+            columns |= multiplier_columns(self.observer_multipliers, ("rank",), "observer_")
+        ranks = axis("rank", np.arange(len(self.multipliers)), "1", "place by modulus, 0 is the largest")
+        residuals = Column(np.array(self.newton_residuals), ("iteration",), "1",
+                           "change of the state by the map, over the state's largest entry")
+        return (Table("multipliers", ranks, columns),
+                Table("state", bead_axis(self.scene.N),
+                      state_columns(self.state.displacement, self.state.velocity, ("bead",))),
+                Table("newton", axis("iteration", np.arange(len(self.newton_residuals)), "1",
+                                     "evaluation of Newton's method"), {"residual": residuals}))
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Period, residual, stability, and where it comes from."""
+        found: dict[str, Attribute] = {
+            **provenance(self.scene, CERTIFIED, self.residual), "period": self.period, "residual": self.residual,
+            "stable": int(self.stable), "liouville": or_nan(self.liouville)}
+        return found if self.observer_stable is None else {**found, "observer_stable": int(self.observer_stable)}
+
+    def summary(self) -> list[str]:
+        """Period, stability, the leading multiplier and how well the orbit closes."""
+        lead = self.multipliers[0]
+        observer = "" if self.observer_stable is None else f"; observer {'' if self.observer_stable else 'un'}stable"
+        return [f"period {self.period}, {'stable' if self.stable else 'unstable'}{observer}",
+                f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}",
+                f"closes to {self.residual:.1e} of its largest entry"]
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,

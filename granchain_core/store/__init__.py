@@ -3,7 +3,8 @@
 from .branches import load_branch, save_branch
 from .curves import load_curve, save_curve
 from .observations import save_observation
-from .runs import load, save
+from .runs import load
+from .saving import save
 from .writing import check_writable
 
 __all__ = [

@@ -8,10 +8,8 @@ The root's attribute `amplitude` describes A0 over f where it is not the scene's
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from ..diagram import Axis, Diagram, Grid
@@ -22,48 +20,13 @@ from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
 from ..quantities import QUANTITIES
 from ..scene import Amplitude
-from .writing import write_axis, write_file, write_root, write_values
-
-_COLUMNS = {  # name: (unit, meaning)
-    "max_input_force": ("N", "largest force of the driver on bead 1 in the steady state"),
-    "max_output_force": ("N", "largest force on the wall in the steady state"),
-    "max_output_force_elastic": ("N", "largest elastic force on the wall in the steady state, the paper's F_out"),
-    "error_estimate_input": ("1", "relative error of the largest input force, NaN where none is claimed"),
-    "error_estimate": ("1", "relative error of the largest output force, NaN where none is claimed"),
-    "error_estimate_elastic": ("1", "relative error of the largest elastic output force, NaN where none is claimed"),
-    "regime": ("", "what the motion is"),
-    "period": ("1", "period in drive periods, 0 where not periodic"),
-    "periods_run": ("1", "drive periods run until that was decided"),
-    "decay": ("1", "factor by which changes shrank per orbit, NaN where not seen"),
-    "multiplier": ("1", "modulus of the leading multiplier, NaN where not computed"),
-    "lyapunov": ("1", "largest Lyapunov exponent per drive period, NaN where not measured"),
-    "lyapunov_error": ("1", "standard error of the Lyapunov exponent"),
-}
+from ..tables import MAXIMA
+from .writing import write_file, write_result
 
 
 def save_diagram(diagram: Diagram, path: str | Path) -> Path:
     """Write a diagram to `path`; returns the path. Raises `BadInput` where it cannot be written."""
-    grid = diagram.grid
-
-    def write(file: h5py.File) -> None:
-        errors = diagram.cells["error_estimate"]
-        known = errors[np.isfinite(errors)]
-        write_root(file, grid.scene, "rk4 in lanes", float(known.max()) if len(known) else None)
-        file.attrs["map_digest"], file.attrs["wall_s"] = grid.digest, diagram.wall_s
-        file.attrs["map_axes"] = json.dumps([grid.y.knob, grid.x.knob])
-        if grid.amplitude is not None:
-            file.attrs["amplitude"] = json.dumps(grid.amplitude.to_json())
-        group = file.create_group("map")
-        for axis in (grid.y, grid.x):
-            quantity = QUANTITIES[axis.knob]
-            write_axis(group, axis.knob, axis.array, quantity.unit, quantity.label)
-        for name, (unit, meaning) in _COLUMNS.items():
-            write_values(group, name, diagram.column(name), (grid.y.knob, grid.x.knob), unit, meaning)
-        codes = np.array([-1, *range(len(REGIMES))], dtype=np.int8)
-        group["regime"].attrs["flag_values"] = codes
-        group["regime"].attrs["flag_meanings"] = " ".join(["not_computed", *REGIMES])
-
-    return write_file(path, write)
+    return write_file(path, lambda file: write_result(file, diagram))
 
 
 def load_diagram(path: str | Path) -> Diagram:
@@ -98,6 +61,6 @@ def _column(file: File, name: str, shape: tuple[int, ...]) -> np.ndarray:
     """One column of all cells; a number that does not fit into its place in the table is refused."""
     kind, path = CELL[name], f"map/{name}"
     if kind.kind == "f":
-        return file.numbers(path, shape, unit=_COLUMNS[name][0]).reshape(-1)
+        return file.numbers(path, shape, unit="N" if name in MAXIMA else "1").reshape(-1)
     low, high = (-1, len(REGIMES) - 1) if name == "regime" else (0, np.iinfo(kind).max)
     return within(f"/{path}", file.numbers(path, shape, "i"), low, high).reshape(-1)

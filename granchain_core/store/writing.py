@@ -1,41 +1,26 @@
-"""How every file is written: its root, its axes, its name.
+"""How every file is written: from a result's tables and attributes, and under which name.
 
-The root carries schema version, scene, method, accuracy asked and reached, versions, machine and time of writing. A
-file is written under a temporary name, sealed with its checksum (hdf5/seal.py), synced and renamed: there is never half
-a file under its own name.
+The root carries schema version, scene, method, accuracy asked and reached, versions, machine and time of writing
+(tables/provenance.py). A file is written under a temporary name, sealed with its checksum (hdf5/seal.py), synced and
+renamed: there is never half a file under its own name.
 """
 
 from __future__ import annotations
 
-import json
 import os
-import platform
 from collections.abc import Callable
-from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
 import h5py
-import numba
 import numpy as np
 
 from ..errors import BadInput
 from ..hdf5 import VERSIONS, seal
 from ..hdf5.border import SCHEMA
-from ..kernels.width import machine
-from ..quantities import QUANTITIES
-from ..scene import Scene
-from ..version import __version__
+from ..tables import Column, Labelled
 
 #: File systems take 255 bytes; the temporary name needs some of them.
 _LONGEST_NAME = 230
-#: Columns of a run and of a curve with the largest forces.
-MAXIMA = ("max_input_force", "max_output_force", "max_output_force_elastic")
-
-
-def or_nan(value: float | None) -> float:
-    """A number for a file, in which None is NaN."""
-    return np.nan if value is None else value
 
 
 def or_none(value: float) -> float | None:
@@ -43,36 +28,25 @@ def or_none(value: float) -> float | None:
     return None if np.isnan(value) else float(value)
 
 
-def write_root(file: h5py.File, scene: Scene, method: str, reached: float | None) -> None:
-    """Write what every file's root carries; `reached` is the accuracy, None where there is none to state."""
-    file.attrs.update({
-        "Conventions": "CF-1.10", "granchain_schema": SCHEMA, "granchain_version": __version__,
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
-        "versions": json.dumps({"numpy": np.__version__, "numba": numba.__version__, "h5py": h5py.__version__,
-                                "python": platform.python_version()}),
-        "machine": machine(),
-        "scene_name": scene.name, "scene": json.dumps(scene.to_json()), "scene_digest": scene.digest,
-        "method": method, "accuracy_asked": scene.accuracy, "accuracy_reached": or_nan(reached),
-    })
-    for name, value in scene.knobs.items():
-        file.attrs[f"knob_{name}"] = value
-        file.attrs[f"knob_{name}_unit"] = QUANTITIES[name].unit
+def write_result(file: h5py.File, result: Labelled) -> None:
+    """Write a result's attributes into the root, and each of its tables as a group with dimension scales."""
+    file.attrs["granchain_schema"] = SCHEMA
+    file.attrs.update(result.attributes())
+    for table in result.tables():
+        group = file.create_group(table.name)
+        for name, axis in table.axes.items():
+            _dataset(group, name, axis).make_scale(name)
+        for name, column in table.columns.items():
+            data = _dataset(group, name, column)
+            for place, along in enumerate(column.axes):
+                data.dims[place].attach_scale(group[along])
 
 
-def write_axis(group: h5py.Group, name: str, values: np.ndarray, unit: str, meaning: str) -> None:
-    """Write an axis."""
-    data = group.create_dataset(name, data=values)
-    data.make_scale(name)
-    data.attrs["units"], data.attrs["long_name"] = unit, meaning
-
-
-def write_values(group: h5py.Group, name: str, values: Any, dimensions: tuple[str, ...], unit: str,
-                 meaning: str) -> None:
-    """Write values over axes that are there."""
-    data = group.create_dataset(name, data=values)
-    for axis, dimension in enumerate(dimensions):
-        data.dims[axis].attach_scale(group[dimension])
-    data.attrs["units"], data.attrs["long_name"] = unit, meaning
+def _dataset(group: h5py.Group, name: str, column: Column) -> h5py.Dataset:
+    kind = h5py.string_dtype() if column.holds_words else column.values.dtype
+    data = group.create_dataset(name, data=column.values, dtype=kind)
+    data.attrs.update(column.attributes)
+    return data
 
 
 def check_writable(path: str | Path) -> None:

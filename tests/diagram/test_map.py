@@ -20,7 +20,7 @@ from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.diagram import Axis, Diagram, Grid, diagram
 from granchain_core.diagram.blocks import Blocks
 from granchain_core.diagram.cells import REGIMES, empty_cells
-from granchain_core.diagram.scheduled import blocks_of, describe, iter_blocks, work_on
+from granchain_core.diagram.scheduled import blocks_of, describe, work_on
 from granchain_core.kept import folder_of
 from granchain_core.stop import Stop
 from granchain_core.store.diagrams import load_diagram, save_diagram
@@ -230,12 +230,3 @@ def test_blocks_hold_every_cell_once() -> None:
     blocks = blocks_of(list(range(1000)), 256)
     assert sorted(n for block in blocks for n in block) == list(range(1000)) and max(map(len, blocks)) <= 256
     assert blocks_of([]) == []
-
-
-def test_a_real_scheduler_computes_the_same_map(found: Diagram) -> None:
-    distributed = pytest.importorskip("distributed", reason="the optional scheduler is not installed")
-    with (distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster,
-          distributed.Client(cluster) as client):
-        rows = np.concatenate(list(iter_blocks(client, found.grid, range(found.grid.size))))
-    assert sorted(rows["number"]) == list(range(found.grid.size))
-    assert (found.cells["regime"][rows["number"]] == rows["regime"]).all()

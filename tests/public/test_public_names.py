@@ -16,12 +16,15 @@ import granchain_core
 #: Names that are another name's second one.
 SECOND = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch"}
 NAMES = [name for name in granchain_core.__all__ if name not in SECOND and name != "__version__"]
-FUNCTIONS = [name for name in NAMES if not isinstance(getattr(granchain_core, name), type)]
+#: Those of pictures and the dashboard, which the core does not have.
+OWN = ["Dashboard", "dashboard", "figure"]
+NAMES += OWN
+FUNCTIONS = [name for name in NAMES if not isinstance(getattr(granchain, name), type)]
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_examples_of_a_public_name_run(name: str) -> None:
-    subject = getattr(granchain_core, name)
+    subject = getattr(granchain, name)
     found = doctest.DocTestParser().get_doctest(inspect.cleandoc(subject.__doc__), {}, name, None, None)
     assert found.examples, f"{name} has no example"
     output: list[str] = []
@@ -31,29 +34,30 @@ def test_the_examples_of_a_public_name_run(name: str) -> None:
 
 def section(name: str, title: str) -> str:
     """The text under a heading of a docstring; empty where there is none."""
-    text = inspect.cleandoc(getattr(granchain_core, name).__doc__)
+    text = inspect.cleandoc(getattr(granchain, name).__doc__)
     found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w+\n-+$|\Z)", text, re.MULTILINE | re.DOTALL)
     return found[1] if found else ""
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_public_function_documents_every_parameter_and_what_it_returns(name: str) -> None:
-    documented = {one.strip() for line in re.findall(r"^(\w[\w, ]*) :", section(name, "Parameters"), re.MULTILINE)
-                  for one in line.split(",")}
-    assert documented == set(inspect.signature(getattr(granchain_core, name)).parameters)
+    written = section(name, "Parameters")
+    documented = {one.strip() for line in re.findall(r"^(\w[\w, ]*) :", written, re.MULTILINE) for one in line.split(",")}
+    documented |= set(re.findall(r"^\*\*(\w+)$", written, re.MULTILINE))
+    assert documented == set(inspect.signature(getattr(granchain, name)).parameters)
     assert section(name, "Returns") or section(name, "Yields")
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in FUNCTIONS])
 def test_a_public_class_documents_its_fields(name: str) -> None:
-    subject = getattr(granchain_core, name)
+    subject = getattr(granchain, name)
     written = section(name, "Attributes") + section(name, "Parameters")
     for field in getattr(subject, "__dataclass_fields__", {}):
         assert re.search(rf"^[\w, ]*\b{field}\b[\w, ]* :", written, re.MULTILINE), f"{name}.{field}"
 
 
-def test_both_packages_have_the_same_names() -> None:
-    assert granchain.__all__ == granchain_core.__all__ and granchain.__version__ == granchain_core.__version__
+def test_both_packages_have_the_same_names_but_for_pictures_and_dashboard() -> None:
+    assert granchain.__all__ == [*granchain_core.__all__, *OWN] and granchain.__version__ == granchain_core.__version__
     assert all(getattr(granchain, name) is getattr(granchain_core, name) for name in granchain_core.__all__)
     assert set(granchain.__all__) <= set(dir(granchain))
     with pytest.raises(AttributeError, match="no attribute 'sceen'"):
@@ -71,8 +75,10 @@ def alone(program: str) -> str:
 
 
 def test_importing_loads_no_compiler_and_no_file_library() -> None:
-    """They take most of a second, and a page or `granchain scenes` needs neither at once."""
-    assert alone("import sys, granchain; print([m for m in ('numba', 'scipy', 'h5py', 'panel') if m in sys.modules])") == "[]\n"
+    """They take most of a second, and a page or `granchain scenes` needs neither at once. Pictures load no dashboard."""
+    modules = "('numba', 'scipy', 'h5py', 'panel', 'bokeh')"
+    assert alone(f"import sys, granchain; print([m for m in {modules} if m in sys.modules])") == "[]\n"
+    assert alone("import sys, granchain; granchain.figure; from app.pictures import door; print('panel' in sys.modules)") == "False\n"
 
 
 def test_a_function_keeps_its_name_beside_a_folder_of_the_same_name() -> None:

@@ -8,6 +8,7 @@ by one from a `Continuation`, which can be left at any time, saved, and taken up
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -16,13 +17,17 @@ import numpy as np
 
 from ...errors import BadInput, check_range
 from ...integrate import State
+from ...integrate.methods import CERTIFIED
 from ...scene import Amplitude, Scene
 from ...stop import Stop
+from ...tables import Labelled, Table, amplitude_attribute, provenance
+from ...tables.provenance import Attribute
 from ..orbit import periodic_orbit
 from .axis import KnobAxis
 from .equations import BranchEquations
 from .point import BranchPoint, branch_point, state_at
 from .special import SpecialPoint
+from .tables import branch_tables
 from .walk import Arm, Walk
 
 #: Points of one arm at most: a branch that folds without end has to stop somewhere.
@@ -30,7 +35,7 @@ MOST_POINTS = 20_000
 
 
 @dataclass(frozen=True, eq=False)
-class Branch:
+class Branch(Labelled):
     """A branch of periodic orbits over one knob.
 
     Attributes
@@ -59,6 +64,11 @@ class Branch:
     arms: tuple[Arm, ...]
 
     @property
+    def scene(self) -> Scene:
+        """The chain."""
+        return self.axis.scene
+
+    @property
     def points(self) -> list[BranchPoint]:
         """All orbits in their order along the branch, from the end of the second arm to that of the first."""
         first = self.arms[0].points
@@ -77,6 +87,28 @@ class Branch:
     def state(self, point: BranchPoint) -> State:
         """The state of one of its orbits at drive phase 0 in SI."""
         return state_at(self.axis.scene_at(point.knob), point.x)
+
+    def tables(self) -> tuple[Table, ...]:
+        """`branch`, a row for each orbit; `special` points; `special_before` and `special_after`, the orbits beside."""
+        return branch_tables(self.axis, self.arms)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Knob, ends and period as JSON, and where it comes from."""
+        told = {"knob": self.axis.knob, "start": self.axis.start, "end": self.axis.end, "period": self.period,
+                "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
+                         for arm in self.arms]}
+        return {**provenance(self.scene, CERTIFIED, None), "branch": json.dumps(told),
+                **amplitude_attribute(self.axis.amplitude)}
+
+    def summary(self) -> list[str]:
+        """How many orbits, where it ended, and the special points."""
+        ends = [f"{arm.ended}: {arm.reason}" if arm.reason else arm.ended for arm in self.arms if arm.ended]
+        kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.said(one.knob)}" for one in self.special
+                 if one.kind != "grazing"]
+        grazings = sum(one.kind == "grazing" for one in self.special)
+        return [f"{len(self.points)} orbits of period {self.period}, {sum(p.stable for p in self.points)} stable, from "
+                f"{self.axis.said(self.axis.start)} towards {self.axis.said(self.axis.end)}", *ends, *kinds,
+                *([f"{grazings} grazings"] if grazings else [])]
 
 
 class Continuation(Iterator[BranchPoint]):

@@ -3,21 +3,39 @@
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ...errors import BadInput, Cancelled
 from ...integrate import State
 from ...integrate.batch import can_share_batch
+from ...integrate.methods import CERTIFIED, LIVE
 from ...regime import Regime
-from ...result import ForceErrors
+from ...result import ForceErrors, said_forces
 from ...scene import Amplitude, Scene
 from ...scene.driven import refuse_undriven
+from ...scheduler import dealt, results
 from ...stop import Stop
+from ...tables import (
+    MAXIMA,
+    Column,
+    Labelled,
+    Table,
+    amplitude_attribute,
+    axis,
+    error_columns,
+    force_columns,
+    provenance,
+    regime_columns,
+)
+from ...tables.provenance import Attribute
 from ..batch.settle import batch_results
 from ..batch.threads import on_all_cores
 from ..settling.alone import safe_state, settled_alone
@@ -26,6 +44,8 @@ from .order import used_and_missing
 
 #: Most points of one curve.
 MOST_POINTS = 100_000
+#: Points of one task of a scheduler's worker.
+POINTS_IN_TASK = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +101,7 @@ class CurvePoint:
 
 
 @dataclass(eq=False)
-class Curve:
+class Curve(Labelled):
     """A resonance curve in ascending frequency.
 
     Attributes
@@ -120,6 +140,38 @@ class Curve:
     def column(self, name: str) -> np.ndarray:
         """One attribute of all points as an array."""
         return np.array([getattr(p, name) for p in self.points])
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `curve`: largest forces with errors, regime, period and status over the frequency."""
+        along = ("frequency",)
+        forces = np.array([[getattr(p, name) for name in MAXIMA] for p in self.points]).reshape(-1, 3)
+        errors = np.array([p.force_errors.row for p in self.points]).reshape(-1, 3)
+        drive = {} if self.amplitude is None else {
+            "drive_amplitude": Column(self.drive_amplitude, along, "m", "drive amplitude A0")}
+        outcomes = np.array([p.status for p in self.points], dtype=object)
+        return (Table("curve", axis("frequency", self.column("frequency"), "Hz", "drive frequency"), {
+            **drive, **force_columns(forces, along), **error_columns(errors, along),
+            **regime_columns([p.regime for p in self.points], "frequency"),
+            "status": Column(outcomes, along, "", "done, or how the numbers failed")}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Start and cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""
+        single = f"{LIVE} or {CERTIFIED} point by point"
+        method = f"rk4 in batches, {single}" if can_share_batch(self.scene) else single
+        reached = [p.error_estimate for p in self.points if p.error_estimate is not None]
+        return {**provenance(self.scene, method, max(reached) if reached else None), "start": self.start,
+                "wall_s": self.wall_s, **amplitude_attribute(self.amplitude)}
+
+    def summary(self) -> list[str]:
+        """The highest point, and what kinds of motion there are."""
+        known = [p for p in self.points if math.isfinite(p.max_output_force)]
+        if not known:
+            return [f"{len(self.points)} points, none with a force"]
+        top = max(known, key=lambda p: p.max_output_force)
+        counts = Counter(f"period {p.regime.period}" if p.regime.period else p.regime.name for p in self.points)
+        return [f"{len(self.points)} points, {self.points[0].frequency:g} to {self.points[-1].frequency:g} Hz, "
+                f"start: {self.start}", f"highest at {top.frequency:g} Hz ({top.regime.sentence})", *said_forces(top),
+                ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))]
 
 
 def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray,
@@ -223,6 +275,20 @@ def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
         yield CurvePoint.of(safe_state(one, None, ended))
 
 
+def _scheduled(scheduler: Any, scenes: list[Scene], stop: Stop | None) -> Iterator[CurvePoint]:
+    """Independent points by the workers of a scheduler."""
+    try:
+        for _, points in results(scheduler, block_points, [(block,) for block in dealt(scenes, POINTS_IN_TASK)], stop):
+            yield from points
+    except Cancelled:
+        return
+
+
+def block_points(scenes: list[Scene]) -> list[CurvePoint]:
+    """The points of scenes of one structure, computed in this thread: the work of one worker."""
+    return list(_points(iter(scenes), Stop()))
+
+
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
     """A draft of the curve from rest, on one core, to be drawn while a knob still moves.
 
@@ -238,7 +304,7 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: S
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
                     stop: Stop | None = None, on_point: Callable[[CurvePoint], None] | None = None,
                     workers: int | None = None, known: Sequence[CurvePoint] = (),
-                    amplitude: Amplitude | None = None) -> Curve:
+                    amplitude: Amplitude | None = None, scheduler: Any = None) -> Curve:
     """The resonance curve: largest forces of the steady state over the drive frequency.
 
     Parameters
@@ -260,6 +326,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
         Points of this curve that are there already, as `on_point` gave them.
     amplitude : Amplitude, optional
         The drive amplitude over the frequency; the scene's A0 if not given. The spring k stays as it is.
+    scheduler : distributed.Client, optional
+        Points from rest are computed by its workers.
 
     Returns
     -------
@@ -282,8 +350,12 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     """
     began = time.perf_counter()
     used, left = _parted(scene, frequencies, start, known, amplitude)
+    if scheduler is not None and start != "rest":
+        raise BadInput("A sweep carries its state from point to point and cannot be divided among the workers of a "
+                       'scheduler; use start="rest".')
     curve = Curve(scene, start, used, amplitude=amplitude)
-    for point in _computed(left, used[-1] if used else None, start, stop, workers):
+    for point in (_computed(left, used[-1] if used else None, start, stop, workers) if scheduler is None else
+                  _scheduled(scheduler, left, stop)):
         curve.points.append(point)
         if on_point is not None:
             on_point(point)

@@ -5,9 +5,10 @@ Motions that are not periodic are recorded by the live method, without a claim o
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from ...result import Cost, Run, run_from
 from ...scene import Scene
 from ...state import rest
 from ...stop import Stop
+from ...tables import Labelled, Table, bead_axis
+from ...tables.provenance import Attribute
+from ...tables.words import state_columns
 from ..orbit_errors import errors_between
 from .relax import relax
 from .settling import Settling, run_until_settled
@@ -34,7 +38,7 @@ _PREVIEW_AFTER = 0.012
 
 
 @dataclass(frozen=True, eq=False)
-class Settled:
+class Settled(Labelled):
     """A steady state, or the motion when settling ended.
 
     Attributes
@@ -66,6 +70,25 @@ class Settled:
     start: str
     preview: bool
     final: bool
+
+    @property
+    def scene(self) -> Scene:
+        """The chain."""
+        return self.run.scene
+
+    def tables(self) -> tuple[Table, ...]:
+        """The tables of its run, and `state`, where the chain is at drive phase 0."""
+        state = Table("state", bead_axis(self.scene.N),
+                      state_columns(self.state.displacement, self.state.velocity, ("bead",)))
+        return (*self.run.tables(), state)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Those of its run; `regime` and `start` are its own."""
+        return {**self.run.attributes(), "regime": json.dumps(asdict(self.regime)), "start": self.start}
+
+    def summary(self) -> list[str]:
+        """Regime, largest forces and errors."""
+        return [self.regime.sentence, *self.run.summary()[1:]]
 
 
 def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,

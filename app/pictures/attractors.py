@@ -1,0 +1,41 @@
+"""The steady states of one setting: largest output force over the share of random states that lead to each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bokeh.models import ColumnDataSource, HoverTool, Range1d
+from bokeh.plotting import figure
+
+from granchain_core import Attractor
+
+from .axes import force_scale, in_words
+from .regimes import REGIMES, regime_key
+from .theme import Theme, dress, frame, in_theme
+
+
+def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
+    """A mark for each, by its regime; the bar is the standard error of its share."""
+    scale = force_scale("largest output force", max(one.max_output_force for one in found))
+    plot = frame(name="attractors", min_border=4, x_range=Range1d(-4, 104),
+                 y_range=Range1d(0.0, 1.15 * max(one.max_output_force for one in found) / scale.factor))
+    for one in found:
+        key = regime_key(one.regime.name, one.regime.period)
+        marker, colour, size = REGIMES[key]
+        share, error = 100.0 * one.share, 100.0 * one.share_error
+        source = ColumnDataSource({
+            "share": [share], "low": [share - error], "high": [share + error],
+            "force": [one.max_output_force / scale.factor], "motion": [one.regime.sentence],
+            "value": [in_words(one.max_output_force, "N")],
+            "starts": [", ".join(origin.name for origin in one.origins[:4])]}, name=key)
+        in_theme(plot.segment("low", "force", "high", "force", source=source), line_color="soft", line_width=1.2)
+        marks = plot.scatter("share", "force", source=source, marker=marker, size=size + 5, fill_color=colour,
+                             line_color=colour, line_width=1.5, legend_label=key)
+        plot.add_tools(HoverTool(renderers=[marks], tooltips=[
+            ("motion", "@motion"), ("largest output force", "@value"),
+            ("random states", f"@share{{0}} ± {error:.0f} %"), ("starts", "@starts")]))
+    plot.xaxis.axis_label, plot.yaxis.axis_label = "random states that lead there (%)", scale.label
+    for legend in plot.legend:
+        legend.update(orientation="horizontal", padding=0, margin=2)
+    plot.add_layout(plot.legend[0], "below")
+    return dress(plot, theme)

@@ -1,0 +1,30 @@
+"""Lyapunov exponents by size with their standard errors; those that are not resolved are hollow."""
+
+from __future__ import annotations
+
+import numpy as np
+from bokeh.models import ColumnDataSource, HoverTool, Span
+from bokeh.plotting import figure
+
+from granchain_core import LyapunovSpectrum
+
+from .theme import Theme, dress, frame, in_theme
+
+
+def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
+    """The exponents per drive period; above the line neighbours separate."""
+    rank = np.arange(len(found.exponents))
+    source = ColumnDataSource({"rank": rank, "exponent": found.exponents, "error": found.errors,
+                               "low": found.exponents - found.errors, "high": found.exponents + found.errors,
+                               "fill": np.where(rank < found.resolved, 1.0, 0.0)}, name="exponents")
+    plot = frame(name="lyapunov", min_border=4)
+    plot.add_layout(in_theme(Span(location=0.0, dimension="width"), line_color="soft", line_width=1.0))
+    in_theme(plot.segment("rank", "low", "rank", "high", source=source), line_color="accent", line_width=1.4)
+    dots = plot.scatter("rank", "exponent", source=source, size=8, fill_alpha="fill")
+    in_theme(dots, fill_color="accent", line_color="accent")
+    plot.add_tools(HoverTool(renderers=[dots], tooltips=[
+        ("place", "@rank"), ("exponent per drive period", "@exponent{0.0000} ± @error{0.0000}")]))
+    plot.xaxis.axis_label, plot.yaxis.axis_label = "place by size", "Lyapunov exponent per drive period"
+    dimension = "not known" if found.dimension is None else f"{found.dimension:.3f}"
+    plot.title.text = f"Kaplan–Yorke dimension {dimension}; hollow: not more than this"
+    return dress(plot, theme)

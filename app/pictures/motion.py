@@ -1,0 +1,146 @@
+"""A motion over time, which runs downwards: drive and input force, kinetic energy over the beads, output force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from bokeh.layouts import row
+from bokeh.models import (
+    BasicTicker,
+    ColorBar,
+    ColumnDataSource,
+    HoverTool,
+    LayoutDOM,
+    LinearAxis,
+    LinearColorMapper,
+    Range1d,
+    SingleIntervalTicker,
+)
+from bokeh.palettes import Inferno256
+from bokeh.plotting import figure
+
+from granchain_core import Run
+
+from ..format import prefixed
+from ..frames import with_jumps
+from .theme import Theme, dress, frame, in_theme
+
+#: Most rows of the picture of energies, and most points of a line.
+_ROWS = 2000
+#: Width of the panels beside the energies [px].
+_BESIDE = 190
+
+Scaled = tuple[float, str]
+"""A factor in SI and the unit that it makes."""
+
+
+@dataclass(frozen=True)
+class Units:
+    """The units of the axes: time, length, force, energy."""
+
+    time: Scaled
+    length: Scaled
+    force: Scaled
+    energy: Scaled
+
+    @classmethod
+    def of(cls, run: Run) -> Units:
+        """Units in which the numbers of a run read well."""
+        def unit(values: np.ndarray, name: str) -> Scaled:
+            factor, letter = prefixed(float(np.abs(values).max()))
+            return factor, letter + name
+
+        return cls(unit(run.time, "s"), unit(run.drive_displacement, "m"), unit(run.force[:, [0, -1]], "N"),
+                   unit(run.kinetic_energy, "J"))
+
+
+def motion(run: Run, theme: Theme) -> LayoutDOM:
+    """A recorded run as the dashboard shows it; a long one is thinned out evenly."""
+    units, index = Units.of(run), np.arange(0, len(run.time), max(1, -(-len(run.time) // _ROWS)))
+    seconds = run.time[index]
+    time = Range1d(float(seconds[-1]) / units.time[0], float(seconds[0]) / units.time[0])
+    panels = [drive_panel(run, index, seconds, time, units, theme, jumps=True),
+              energy_panel(run, index, time, units, theme), _output_panel(run, index, time, units, theme)]
+    return row(panels, sizing_mode="stretch_both")
+
+
+def drive_panel(run: Run, index: np.ndarray, seconds: np.ndarray, time: Range1d, units: Units, theme: Theme,
+                jumps: bool = False) -> figure:
+    """The driver's displacement over the lower axis, its force on bead 1 over the upper one.
+
+    `index` are the rows that are drawn, at `seconds`. `jumps` adds the points at which the force jumps.
+    """
+    (second, second_unit), (length, length_unit), (force, force_unit) = units.time, units.length, units.force
+    amplitude, largest = run.scene.A0 / length, run.max_input_force / force or 1.0
+    lowest = min(0.0, float(run.input_force.min()) / force)
+    plot = frame(name="drive", y_range=time, min_border=4, sizing_mode="stretch_height", width=_BESIDE,
+                 x_range=Range1d(-1.1 * amplitude, 1.1 * amplitude), toolbar_location=None)
+    plot.extra_x_ranges = {"force": Range1d(1.05 * lowest - 0.05 * largest, 1.05 * largest)}
+    plot.add_layout(LinearAxis(x_range_name="force", axis_label=f"input force ({force_unit})", axis_line_color=None,
+                               major_tick_line_color=None, minor_tick_line_color=None,
+                               axis_label_text_font_style="normal"), "above")
+    source = ColumnDataSource({"time": seconds / second, "displacement": run.drive_displacement[index] / length,
+                               "force": run.input_force[index] / force}, name="drive and force")
+    in_theme(plot.line("displacement", "time", source=source), line_color="drive", line_width=1.8)
+    pushed = _jumping(run, 0, index, units, "input force") if jumps else source
+    in_theme(plot.line("force", "time", source=pushed, x_range_name="force"), line_color="input", line_width=1.8)
+    plot.xaxis[1].axis_label = f"displacement ({length_unit})"
+    plot.yaxis.axis_label = f"time ({second_unit})"
+    for axis in plot.xaxis:
+        axis.ticker = BasicTicker(desired_num_ticks=3)
+    return dress(plot, theme)
+
+
+def energy_panel(run: Run, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
+    """Kinetic energy over bead and time, between the ends of the range `time`."""
+    factor, unit = units.energy
+    values = np.asarray(run.kinetic_energy[index] / factor, dtype=np.float32)
+    beads = values.shape[1]
+    plot = frame(name="energy", y_range=time, x_range=Range1d(0.5, beads + 0.5), min_border=4)
+    plot.grid.visible = False
+    plot.yaxis.visible = False
+    plot.xaxis.axis_label = "bead"
+    plot.xaxis[0].ticker = SingleIntervalTicker(interval=max(1, round(beads / 6)) if beads > 8 else 1,
+                                                num_minor_ticks=0)
+    colours = LinearColorMapper(palette=list(Inferno256), low=0.0, high=float(values.max()) or 1.0)
+    image = plot.image([values], x=0.5, y=time.end, dw=beads, dh=time.start - time.end, color_mapper=colours)
+    plot.add_tools(HoverTool(renderers=[image], tooltips=[
+        ("bead", "$x{0}"), ("time", f"$y{{0.000}} {units.time[1]}"), ("kinetic energy", f"@image{{0.0000}} {unit}")]))
+    bar = ColorBar(color_mapper=colours, width=12, padding=6, ticker=BasicTicker(desired_num_ticks=5),
+                   background_fill_color=theme.card, major_label_text_color=theme.ink,
+                   major_label_text_font_size=f"{theme.small - 2}px", bar_line_color=None)
+    plot.add_layout(bar, "right")
+    period = run.regime.period
+    plot.title.text = (f"{run.scene.f:g} Hz, {f'period {period}' if period else run.regime.name}: "
+                       f"kinetic energy ({unit})")
+    return dress(plot, theme)
+
+
+def _output_panel(run: Run, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
+    """The force on the wall, and dashed its elastic part."""
+    force, unit = units.force
+    low = min(0.0, float(run.output_force.min()) / force)
+    high = run.max_output_force / force or 1.0
+    plot = frame(name="output", y_range=time, min_border=4, sizing_mode="stretch_height", width=_BESIDE,
+                 x_range=Range1d(1.05 * low - 0.05 * high, 1.05 * high), toolbar_location=None)
+    plot.yaxis.visible = False
+    elastic = ColumnDataSource({"time": run.time[index] / units.time[0],
+                                "force": run.output_force_elastic[index] / force}, name="elastic output force")
+    in_theme(plot.line("force", "time", source=elastic, line_dash=[5, 4]), line_color="output", line_width=1.6)
+    total = _jumping(run, run.scene.N, index, units, "output force")
+    in_theme(plot.line("force", "time", source=total), line_color="output", line_width=1.8)
+    plot.xaxis.axis_label = f"output force ({unit})"
+    plot.title.text = "dashed: elastic"
+    plot.xaxis[0].ticker = BasicTicker(desired_num_ticks=3)
+    return dress(plot, theme)
+
+
+def _jumping(run: Run, contact: int, index: np.ndarray, units: Units, name: str) -> ColumnDataSource:
+    """A contact's force with the points at which it jumps, between the rows."""
+    jumps = np.stack(run.jumps.of(contact), axis=1)
+    jumps = jumps[(jumps[:, 0] >= run.time[0]) & (jumps[:, 0] <= run.time[-1])]
+    time, force = with_jumps(run.time[index], run.force[index, contact], jumps)
+    data: dict[str, Any] = {"time": time / units.time[0], "force": force / units.force[0]}
+    return ColumnDataSource(data, name=name)

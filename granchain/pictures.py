@@ -1,0 +1,59 @@
+"""Pictures of results, drawn by the code that the dashboard draws with."""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from bokeh.models import LayoutDOM
+
+
+def figure(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
+           **options: Any) -> LayoutDOM:
+    """The picture of a result: a figure of Bokeh, the same as on the dashboard.
+
+    `bokeh.io.show` shows it; in a notebook after `bokeh.io.output_notebook()`. `bokeh.plotting.save` writes it.
+
+    Parameters
+    ----------
+    result : Run, Settled, Curve, Orbit, Branch, Diagram, Observation, WorkPrecision, Fit, Spectrum, Transfer, …
+        What a function of granchain returned, a list of curves or of branches, or a result of
+        `granchain_core.paper.compute`.
+    theme : str
+        "light", "dark" or "projector".
+    width, height : int, optional
+        Its size [px]; what suits a notebook's cell if not given.
+    **options
+        Of some pictures: `elastic` of a curve, `shown` ("force", "regime" or "both") of a diagram, `bead` of a strobe
+        diagram, `asked` (an accuracy) of a work-precision diagram, `now` (a value of the knob) of a branch, `rank` of
+        an orbit.
+
+    Returns
+    -------
+    bokeh.models.LayoutDOM
+        The figure.
+
+    Raises
+    ------
+    BadInput
+        There is no picture of such a result, or no such theme or option.
+
+    Examples
+    --------
+    >>> import granchain
+    >>> curve = granchain.resonance_curve(granchain.scene("sec2").evolve(N=2), [1800.0, 2000.0, 2200.0])
+    >>> granchain.figure(curve).xaxis[0].axis_label
+    'drive frequency f (Hz)'
+    """
+    return part_of_app("pictures.door").figure_of(result, theme, width, height, **options)
+
+
+def part_of_app(name: str) -> Any:
+    """A module of the dashboard's package, which is `app` in the tree and `granchain_app` where it is installed."""
+    try:
+        return importlib.import_module(f"granchain_app.{name}")
+    except ModuleNotFoundError as missing:
+        if missing.name != "granchain_app":
+            raise
+    return importlib.import_module(f"app.{name}")

@@ -1,0 +1,146 @@
+"""The dashboard beside a notebook: `granchain serve` in a process of its own, shown in a cell."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import html
+import http.client
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from types import TracebackType
+
+from granchain_core import BadInput, Scene, scene
+
+from .pictures import part_of_app
+
+#: What the process runs: the command `granchain`, and nothing that depends on the PATH. It ends with this process.
+_PROGRAM = ("import sys; from granchain_core.children import end_with_parent; "
+            "end_with_parent(int(sys.argv.pop(1))); import granchain_start; sys.exit(granchain_start.entry())")
+#: Until the server answers [s]: the first start on a machine compiles. Between two looks [s].
+_PATIENCE, _LOOK = 120.0, 0.05
+#: Whose pages may show it in a frame: notebooks on this machine, at any port.
+_EMBEDDING = ("http://localhost:*", "http://127.0.0.1:*")
+
+
+class Dashboard:
+    """A running dashboard; as the last value of a notebook's cell it is shown there.
+
+    Attributes
+    ----------
+    url : str
+        Its address, with the scene.
+    height : int
+        Of the frame in a cell [px].
+
+    Examples
+    --------
+    >>> from granchain import Dashboard
+    >>> Dashboard("http://localhost:5006/?scene=sec2", 600, None)._repr_html_().count("iframe")
+    2
+    """
+
+    def __init__(self, url: str, height: int, process: subprocess.Popen[bytes] | None) -> None:
+        self.url, self.height, self._process = url, height, process
+        atexit.register(self.stop)
+
+    def stop(self) -> None:
+        """End the server; it also ends with the notebook's kernel."""
+        atexit.unregister(self.stop)
+        if self._process is not None and self._process.poll() is None:
+            self._process.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(timeout=5)
+            self._process.kill()
+
+    def __enter__(self) -> Dashboard:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, problem: BaseException | None,
+                 where: TracebackType | None) -> None:
+        self.stop()
+
+    def _repr_html_(self) -> str:
+        return (f'<iframe src="{html.escape(self.url)}" title="granchain" width="100%" height="{self.height}" '
+                'style="border:0"></iframe>')
+
+    def __repr__(self) -> str:
+        return f"The dashboard is at {self.url}; stop() ends it."
+
+
+def dashboard(shown: Scene | str = "sec2", height: int = 800, port: int = 0) -> Dashboard:
+    """The dashboard with a scene, in a notebook's cell or at its address.
+
+    The server runs in a process of its own, so that it answers while the notebook computes, and is reached from this
+    machine only. Where the notebook's browser is on another machine, the port has to be forwarded to it under the same
+    number: `ssh -L 5006:localhost:5006 …` and `dashboard(port=5006)`.
+
+    Parameters
+    ----------
+    shown : Scene or str
+        A scene or the name of a preset. Of a scene the dashboard is given its preset and the knobs that differ from it.
+    height : int
+        Of the frame in a cell [px].
+    port : int
+        Where it listens; a free one if 0.
+
+    Returns
+    -------
+    Dashboard
+        It has `url` and `stop()`, and ends with this process.
+
+    Raises
+    ------
+    BadInput
+        The scene is unknown, or the server did not start; what it said is in the message.
+
+    Examples
+    --------
+    >>> from granchain import dashboard, scene
+    >>> with dashboard(scene("sec2").evolve(f=1130.0)) as board:              # doctest: +SKIP
+    ...     print(board.url)
+    http://localhost:41563/?v=1&scene=sec2&f=1130.0
+    """
+    chain = scene(shown) if isinstance(shown, str) else shown
+    place = port or _free_port()
+    words = ["serve", "--port", str(place)]
+    for origin in _EMBEDDING:
+        words += ["--allow-embedding", origin]
+    query = part_of_app("session.share").encode(chain, {})
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as said:
+        process = subprocess.Popen([sys.executable, "-c", _PROGRAM, str(os.getpid()), *words],
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said)
+        board = Dashboard(f"http://localhost:{place}/?{query}", height, process)
+        if not _answers(process, place):
+            board.stop()
+            said.seek(0)
+            last = said.read().strip().splitlines()[-1:] or ["it did not answer"]
+            raise BadInput(f"The dashboard did not start: {last[0]}")
+    return board
+
+
+def _free_port() -> int:
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        port: int = one.getsockname()[1]
+        return port
+
+
+def _answers(process: subprocess.Popen[bytes], port: int) -> bool:
+    """Wait until the server answers; False if it ends before."""
+    end = time.monotonic() + _PATIENCE
+    while process.poll() is None and time.monotonic() < end:
+        line = http.client.HTTPConnection("127.0.0.1", port, timeout=1.0)
+        try:
+            line.request("GET", "/liveness")
+            if line.getresponse().status == 200:
+                return True
+        except OSError:
+            time.sleep(_LOOK)
+        finally:
+            line.close()
+    return False

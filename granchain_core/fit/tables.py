@@ -1,0 +1,72 @@
+"""A fit as tables: parameters with their intervals, the data beside the model, profiles, and all that was tried."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..tables import Column, Table, axis
+from .intervals import Profile
+from .parameters import Free
+from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
+
+
+def parameter_table(free: Sequence[Free], best: np.ndarray, profiles: Sequence[Profile]) -> Table:
+    """A row for each parameter; their units differ, so `unit` is a column."""
+    along = ("parameter",)
+    columns = {
+        "best": Column(best, along, "", "value with the least misfit, in `unit`"),
+        "bound_low": Column(np.array([one.low for one in free]), along, "", "lower bound, in `unit`"),
+        "bound_high": Column(np.array([one.high for one in free]), along, "", "upper bound, in `unit`"),
+        "unit": Column(np.array([one.unit for one in free], dtype=object), along, "", "unit of the parameter")}
+    if profiles:
+        for end in ("low", "high"):
+            columns[end] = Column(np.array([getattr(one, end) for one in profiles]), along, "",
+                                  f"{'lower' if end == 'low' else 'upper'} end of the 95 % interval, in `unit`")
+            columns[f"open_{end}"] = Column(
+                np.array([getattr(one, f"open_{end}") for one in profiles], dtype=np.int8), along, "1",
+                "1 where that end is a bound, and the data do not limit the parameter there")
+    return Table("parameters", axis("parameter", np.array([one.name for one in free], dtype=object), "",
+                                    "name of the parameter"), columns)
+
+
+def data_table(target: CurveTarget | SeriesTarget | FeatureTarget, evaluation: Evaluation) -> Table:
+    """A row for each datum: the measured value, the model's beside it, and the residual."""
+    along, count = ("datum",), len(evaluation.residuals)
+    unit = "Hz" if isinstance(target, FeatureTarget) else "N"
+    columns = {"residual": Column(evaluation.residuals, along, "1", "model less measured, in standard deviations"),
+               "model": Column(evaluation.model, along, unit, "the model's value")}
+    if isinstance(target, SeriesTarget):
+        names = np.repeat(np.array(list(target.channels), dtype=object), len(target.time))
+        columns |= {"measured": Column(np.concatenate(list(target.channels.values())), along, "N", "measured force"),
+                    "channel": Column(names, along, "", "which force"),
+                    "time": Column(np.tile(target.time, len(target.channels)), along, "s", "time in the series")}
+    else:
+        columns["frequency"] = Column(target.frequencies, along, "Hz", "measured or stated frequency")
+    if isinstance(target, CurveTarget):
+        columns |= {"measured": Column(target.measured.force, along, "N", "measured largest force"),
+                    "sigma": Column(target.sigma, along, "N", "standard deviation of the measured force"),
+                    "regime": Column(np.array(evaluation.regimes, dtype=object), along, "", "the model's motion")}
+    return Table("data", axis("datum", np.arange(count), "1", "number of the datum"), columns)
+
+
+def profile_table(free: Sequence[Free], profiles: Sequence[Profile]) -> Table:
+    """The profiles of all parameters below each other."""
+    names = [one.name for one, found in zip(free, profiles, strict=True) for _ in found.values]
+    values = [value for found in profiles for value in found.values]
+    rises = [rise for found in profiles for rise in found.rises]
+    along = ("place",)
+    return Table("profiles", axis("place", np.arange(len(names)), "1", "place on a profile"), {
+        "name": Column(np.array(names, dtype=object), along, "", "name of the parameter"),
+        "value": Column(np.array(values), along, "", "its value, in its unit"),
+        "rise": Column(np.array(rises), along, "1", "least χ² there above the least of all")})
+
+
+def landscape_table(free: Sequence[Free], landscape: tuple[np.ndarray, np.ndarray]) -> Table:
+    """All sets of parameters that were evaluated, with their misfit."""
+    values, misfits = landscape
+    along = ("trial",)
+    return Table("landscape", axis("trial", np.arange(len(misfits)), "1", "number of the evaluation"), {
+        **{one.name: Column(values[:, i], along, one.unit, f"value of {one.name}") for i, one in enumerate(free)},
+        "misfit": Column(misfits, along, "1", "χ²")})

@@ -1,0 +1,93 @@
+"""A branch as tables: every orbit, every special point, and the orbits beside each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...quantities import QUANTITIES
+from ...tables import MAXIMA, Column, Table, axis, contact_axis, force_columns
+from ...tables.words import multiplier_columns
+from .axis import KnobAxis
+from .point import BranchPoint
+from .special import SpecialPoint
+from .walk import Arm
+
+_NONE = -1
+"""The contact of a special point that is no grazing."""
+
+
+def branch_tables(over: KnobAxis, arms: Sequence[Arm]) -> tuple[Table, ...]:
+    """All tables of a branch; orbits arm by arm, each from the seed."""
+    points = [(place, point) for place, arm in enumerate(arms) for point in arm.points]
+    special = [(place, one) for place, arm in enumerate(arms) for one in arm.special]
+    return (_orbits("branch", over, [point for _, point in points], [place for place, _ in points]),
+            _special(over, [one for _, one in special], [place for place, _ in special]),
+            _orbits("special_before", over, [one.before for _, one in special]),
+            _orbits("special_after", over, [one.after for _, one in special]))
+
+
+def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequence[int] | None = None) -> Table:
+    """A table with one row for each orbit. Components are the beads' displacements, then their w, scaled."""
+    n, along, knob = over.scene.N, ("point",), QUANTITIES[over.knob]
+
+    def column(attribute: str, unit: str, meaning: str, kind: type = float) -> dict[str, Column]:
+        values: np.ndarray = np.array([getattr(point, attribute) for point in points], dtype=kind)
+        return {attribute: Column(values, along, unit, meaning)}
+
+    def wide(attribute: str, width: int, kind: type = float) -> np.ndarray:
+        return np.array([getattr(point, attribute) for point in points], dtype=kind).reshape(len(points), width)
+
+    longest = max((len(point.residuals) for point in points), default=1)
+    residuals = np.full((len(points), longest), np.nan)
+    for row, point in zip(residuals, points, strict=True):
+        row[: len(point.residuals)] = point.residuals
+    forces = np.array([[getattr(point, one) for one in MAXIMA] for point in points]).reshape(-1, 3)
+    of_state, of_tangent = ("point", "component"), ("point", "coordinate")
+    which = {} if arms is None else {
+        "arm": Column(np.array(arms, dtype=np.int64), along, "1", "which way from the seed")}
+    return Table(name, {
+        **axis("point", np.arange(len(points)), "1", "orbit along the branch"),
+        **axis("component", np.arange(2 * n), "1", "displacements, then w"), **contact_axis(n),
+        **axis("coordinate", np.arange(2 * n + 1), "1", "state over √(2N), then the knob's coordinate"),
+        **axis("iteration", np.arange(longest), "1", "evaluation of Newton's method"),
+    }, {
+        **column("knob", knob.unit, knob.label), **column("arclength", "1", "arclength from the seed"),
+        **force_columns(forces, along, "along the orbit"),
+        **column("stable", "1", "1 if no multiplier is outside", np.int8),
+        **column("unstable", "1", "multipliers outside the unit circle", np.int64),
+        **column("liouville", "1", "ln |det| against the integral of the trace"),
+        "residual": Column(residuals, ("point", "iteration"), "1", "residuals of Newton's method"),
+        "state": Column(wide("x", 2 * n), of_state, "1", "scaled state at phase 0"),
+        "tangent": Column(wide("tangent", 2 * n + 1), of_tangent, "1", "unit tangent"),
+        "slope": Column(wide("slope", 2 * n), of_state, "1", "change of the map with p"),
+        **multiplier_columns(wide("multipliers", 2 * n, complex), of_state),
+        "closings": Column(wide("closings", n + 1, np.int64), ("point", "contact"), "1",
+                           "closings of each contact; 0 always open, -1 always closed"), **which})
+
+
+def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int]) -> Table:
+    along, unit = ("special",), QUANTITIES[over.knob].unit
+    multipliers = np.array([np.nan if s.multiplier is None else s.multiplier for s in special], dtype=complex)
+    contacts = np.array([_NONE if s.contact is None else s.contact for s in special], dtype=np.int64)
+
+    def words(values: list[str]) -> np.ndarray:
+        return np.array(values, dtype=object)
+
+    def number(values: list[float]) -> np.ndarray:
+        return np.array(values, dtype=float)
+
+    return Table("special", axis("special", np.arange(len(special)), "1", "special point along the branch"), {
+        "kind": Column(words([s.kind for s in special]), along, "",
+                       "fold, period_doubling, neimark_sacker or grazing"),
+        "knob": Column(number([s.knob for s in special]), along, unit, "knob at the special point"),
+        "knob_low": Column(number([s.interval[0] for s in special]), along, unit,
+                           "lower end of the interval that holds it"),
+        "knob_high": Column(number([s.interval[1] for s in special]), along, unit, "upper end of that interval"),
+        "multiplier_real": Column(multipliers.real, along, "1",
+                                  "multiplier that passes the unit circle, real part"),
+        "multiplier_imag": Column(multipliers.imag, along, "1", "its imaginary part"),
+        "contact": Column(contacts, along, "1", "contact that grazes, -1 if none"),
+        "event": Column(words([s.event or "" for s in special]), along, "", "touch or separation"),
+        "arm": Column(np.array(arms, dtype=np.int64), along, "1", "which way from the seed")})

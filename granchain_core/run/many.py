@@ -1,0 +1,179 @@
+"""Many scenes at once: each in a thread of its own, as many as there are cores, with one result for each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..errors import BadInput, Cancelled, NumbersFailed, OverBudget
+from ..quantities import QUANTITIES
+from ..regime import Regime
+from ..result import Run
+from ..scene import Scene
+from ..scheduler import results
+from ..steady.batch.threads import on_all_cores
+from ..steady.settling.recorded import Settled
+from ..stop import Stop
+from ..tables import MAXIMA, Column, Labelled, Table, axis, error_columns, force_columns, regime_columns
+from ..tables.provenance import Attribute, made
+from .run import run
+
+#: Most scenes of one batch.
+MOST_SCENES = 100_000
+
+
+Outcome = tuple[Any, str]
+"""A result, or None and why there is none."""
+
+
+class Runs(list[Any], Labelled):
+    """The results of many scenes in their order; None where the numbers failed.
+
+    Attributes
+    ----------
+    scenes : list of Scene
+        The chains.
+    failures : list of str
+        For each a sentence where the numbers failed, else "".
+
+    Examples
+    --------
+    >>> from granchain_core import run_many, scene
+    >>> found = run_many([scene("sec2").evolve(N=2, f=f) for f in (1900.0, 2000.0)], periods=40, record=1)
+    >>> len(found), found.failures
+    (2, ['', ''])
+    """
+
+    scenes: list[Scene]
+    failures: list[str]
+
+    def __init__(self, scenes: Sequence[Scene], found: Iterable[Any], failures: Sequence[str]) -> None:
+        super().__init__(found)
+        self.scenes, self.failures = list(scenes), list(failures)
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `runs`: each scene's knobs and what failed; of motions regime and largest forces with errors."""
+        along = ("run",)
+        columns = {"scene": _words([one.name for one in self.scenes], "name of the scene")}
+        for name, quantity in QUANTITIES.items():
+            values = [getattr(one, name) for one in self.scenes]
+            if any(isinstance(value, str) for value in values):
+                columns[name] = _words([str(value) for value in values], quantity.label)
+            else:
+                columns[name] = Column(np.array(values), along, quantity.unit, quantity.label)
+        return (Table("runs", axis("run", np.arange(len(self.scenes)), "1", "number of the scene"), {
+            **columns, **self._of_motions(),
+            "failure": _words(self.failures, "why there is no result; empty where there is one")}),)
+
+    def _of_motions(self) -> dict[str, Column]:
+        """Forces, errors and regimes where all results are motions."""
+        along, runs = ("run",), [one.run if isinstance(one, Settled) else one for one in self]
+        if not all(one is None or isinstance(one, Run) for one in runs):
+            return {}
+        regimes = [Regime.unsettled(0) if one is None else one.regime for one in self]
+        forces = np.array([[np.nan] * 3 if one is None else [getattr(one, name) for name in MAXIMA] for one in runs])
+        errors = np.array([[np.nan] * 3 if one is None else one.force_errors.row for one in runs])
+        return {**force_columns(forces.reshape(-1, 3), along, "over the recorded time"),
+                **error_columns(errors.reshape(-1, 3), along), **regime_columns(regimes, "run")}
+
+    def attributes(self) -> dict[str, Attribute]:
+        """With what they were made; each result has its own attributes."""
+        return made()
+
+    def heading(self) -> str:
+        """How many of which scenes."""
+        return f"{len(self)} runs of {', '.join(sorted({one.name for one in self.scenes}))}"
+
+    def summary(self) -> list[str]:
+        """How many of which regime, and what failed."""
+        kinds: dict[str, int] = {}
+        for one in self:
+            regime = getattr(one, "regime", None)
+            name = ("failed" if one is None else "done" if regime is None else
+                    f"period {regime.period}" if regime.period else regime.name)
+            kinds[name] = kinds.get(name, 0) + 1
+        return [", ".join(f"{count} {name}" for name, count in sorted(kinds.items())),
+                *sorted({one for one in self.failures if one})]
+
+    def __repr__(self) -> str:
+        return "\n  ".join([self.heading(), *self.summary()])
+
+
+def _words(values: list[str], meaning: str) -> Column:
+    return Column(np.array(values, dtype=object), ("run",), "", meaning)
+
+
+def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
+             progress: Callable[[float], None] | None = None, stop: Stop | None = None, workers: int | None = None,
+             scheduler: Any = None, **options: Any) -> Runs:
+    """Run many scenes, on all cores or by the workers of a Dask scheduler.
+
+    Parameters
+    ----------
+    scenes : iterable of Scene
+        The chains, at most 100,000.
+    work : callable
+        `run`, `settle` for the steady states, or another function of a scene, such as `orbit`, whose results are the
+        starts of branches.
+    progress : callable, optional
+        Called with the fraction that is done, 0 to 1, after each scene.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+    workers : int, optional
+        Threads; one for each core if not given.
+    scheduler : distributed.Client, optional
+        Its workers do the work, a scene at a time.
+    **options
+        What `work` takes for every scene: `periods`, `record`, `samples`, `method`, …
+
+    Returns
+    -------
+    Runs
+        A list of results in the order of the scenes. Where the numbers of one fail, or it would exceed its budget, its
+        result is None and a sentence stands in `failures`; the others go on.
+
+    Raises
+    ------
+    BadInput
+        No scene, too many, or an option that cannot be.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import run_many, scene, settle
+    >>> chains = [scene("sec2").evolve(N=2, f=2000.0, D=D) for D in (80.0, 100.0, 120.0)]
+    >>> found = run_many(chains, settle)
+    >>> [one.regime.period for one in found]
+    [1, 1, 1]
+    """
+    chains = list(scenes)
+    if not 1 <= len(chains) <= MOST_SCENES:
+        raise BadInput(f"A batch has 1 to {MOST_SCENES} scenes, not {len(chains)}.")
+    stop, ended = Stop() if stop is None else stop, Stop()
+    found: list[Any] = [None] * len(chains)
+    failures, done = [""] * len(chains), 0
+
+    def some(shared: Iterator[tuple[int, Scene]]) -> Iterator[tuple[int, Outcome]]:
+        for number, chain in shared:
+            yield number, attempted(work, chain, {**options, "stop": ended})
+
+    outcomes = on_all_cores(some, enumerate(chains), ended, stop, workers) if scheduler is None else \
+        results(scheduler, attempted, [(work, chain, options) for chain in chains], stop)
+    for number, (result, failure) in outcomes:
+        found[number], failures[number], done = result, failure, done + 1
+        if progress is not None:
+            progress(done / len(chains))
+    if done < len(chains):
+        raise Cancelled
+    return Runs(chains, found, failures)
+
+
+def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -> Outcome:
+    """What `work` makes of a chain, or the sentence with which its numbers failed."""
+    try:
+        return work(chain, **options), ""
+    except (NumbersFailed, OverBudget) as problem:
+        return None, str(problem)

@@ -1,0 +1,78 @@
+"""Work handed to the workers of a Dask scheduler: maps, curves, batches and fits that are too large for one machine.
+
+A scheduler is a client of `distributed`, as `connect` gives it. Workers need the same version of granchain. Where one
+ends, the scheduler gives its work to another; what is computed does not depend on who computes it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from .errors import BadInput, Cancelled, NumbersFailed
+from .stop import Stop
+
+#: Time in which a scheduler must answer [s].
+_ANSWERS = 4.0
+#: Time between two checks whether the work is still wanted [s].
+_LOOK = 0.2
+
+
+def connect(address: str) -> Any:
+    """A client of the scheduler at `address`; `BadInput` where there is none or `distributed` is not installed."""
+    try:
+        from distributed import Client
+    except ImportError:
+        raise BadInput("--scheduler needs the package distributed; install it with "
+                       "`pip install 'granchain[scheduler]'` here and on every worker.") from None
+    try:
+        return Client(address, timeout=_ANSWERS)
+    except (OSError, ValueError, TimeoutError) as problem:
+        raise BadInput(f"No Dask scheduler answers at {address[:80]} ({str(problem)[:80]}); start one with "
+                       "`dask scheduler` and workers with `dask worker`.") from None
+
+
+def dealt(items: Sequence[Any], size: int) -> list[list[Any]]:
+    """Items in blocks of at most `size`; each takes some from all over, so that all blocks cost about the same."""
+    count = max(1, -(-len(items) // size))
+    return [list(items[first::count]) for first in range(count) if len(items)]
+
+
+def results(client: Any, work: Callable[..., Any], tasks: Sequence[tuple[Any, ...]],
+            stop: Stop | None = None) -> Iterator[tuple[int, Any]]:
+    """Number and result of each task, `work(*task)`, in the order in which workers return them.
+
+    Tasks that are no longer wanted are cancelled. Raises `Cancelled` when `stop` is set, and `NumbersFailed` where a
+    worker could not do its task.
+    """
+    number = {client.submit(work, *task, pure=False): i for i, task in enumerate(tasks)}
+    waiting = set(number)
+    try:
+        while waiting:
+            if stop:
+                raise Cancelled
+            done, waiting = _some(waiting)
+            for future in done:
+                yield number[future], _result(future)
+    finally:
+        client.cancel(list(waiting))
+
+
+def _some(waiting: set[Any]) -> tuple[set[Any], set[Any]]:
+    from distributed import wait
+
+    try:
+        found = wait(waiting, timeout=_LOOK, return_when="FIRST_COMPLETED")
+    except TimeoutError:
+        return set(), waiting
+    return set(found.done), set(found.not_done)
+
+
+def _result(future: Any) -> Any:
+    try:
+        return future.result()
+    except (BadInput, NumbersFailed):
+        raise
+    except Exception as problem:
+        raise NumbersFailed(f"A worker could not do its part: {type(problem).__name__}: {str(problem)[:200]}; "
+                            "look at its log, and go on with --resume.", "worker-failed") from None

@@ -1,0 +1,81 @@
+"""Tables as datasets of xarray and as data frames of pandas, which are imported when they are asked for."""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import BadInput
+from .table import Column, Table
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+
+def dataset(table: Table, attributes: Mapping[str, Any]) -> xarray.Dataset:
+    """A table as a dataset: every column a variable with `units` and `long_name`, every axis a coordinate."""
+    library = _imported("xarray", "to_xarray")
+
+    def variable(column: Column) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
+        values = column.values.astype(str) if column.holds_words else column.values
+        return column.axes, values, column.attributes
+
+    made: xarray.Dataset = library.Dataset(
+        {name: variable(column) for name, column in table.columns.items()},
+        {name: variable(column) for name, column in table.axes.items()}, dict(attributes))
+    return made
+
+
+def frame(table: Table, rows: tuple[str, ...], attributes: Mapping[str, Any]) -> pandas.DataFrame:
+    """The columns of a table over the axes `rows`; one over other axes too becomes a column for each place on them.
+
+    `attrs` has `units` and `long_names` by column, beside the attributes.
+    """
+    library = _imported("pandas", "to_pandas")
+    columns: dict[str, np.ndarray] = {}
+    units, meanings = {}, {}
+    for name, column in table.columns.items():
+        if not (set(rows) <= set(column.axes) or set(column.axes) <= set(rows)):
+            continue
+        for called, values in _pieces(table, name, column, rows):
+            columns[called], units[called], meanings[called] = values, column.unit, column.meaning
+    index = [table.axes[one].values for one in rows]
+    made: pandas.DataFrame = library.DataFrame(
+        columns, index=library.Index(index[0], name=rows[0]) if len(rows) == 1 else
+        library.MultiIndex.from_product(index, names=rows))
+    for one in rows:
+        units[one], meanings[one] = table.axes[one].unit, table.axes[one].meaning
+    made.attrs.update(attributes, units=units, long_names=meanings)
+    return made
+
+
+def _pieces(table: Table, name: str, column: Column, rows: tuple[str, ...]) -> list[tuple[str, np.ndarray]]:
+    """A column as one row of values for each place on its axes that are not rows: displacement_1, displacement_2, …
+
+    One that does not depend on every axis of the rows is repeated along the others.
+    """
+    others = [one for one in column.axes if one not in rows]
+    there = [one for one in rows if one in column.axes]
+    values = column.words().transpose([column.axes.index(one) for one in (*others, *there)])
+    count = values.shape[:len(others)]
+    sizes = [len(table.axes[one].values) for one in rows]
+    values = np.broadcast_to(values.reshape(*count, *(size if one in there else 1 for one, size in
+                                                      zip(rows, sizes, strict=True))), (*count, *sizes))
+    flat = values.reshape(*count, -1)
+    if not others:
+        return [(name, flat)]
+    return [("_".join([name, *(str(table.axes[one].values[i]) for one, i in zip(others, place, strict=True))]),
+             flat[place]) for place in itertools.product(*map(range, count))]
+
+
+def _imported(library: str, asked: str) -> Any:
+    try:
+        return importlib.import_module(library)
+    except ImportError:
+        raise BadInput(f"{asked} needs the package {library}; install it with "
+                       "`pip install 'granchain[frames]'`.") from None

@@ -1,0 +1,87 @@
+"""What every result can do: be a dataset, a data frame, or a few lines in a notebook's cell."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..errors import BadInput, unknown_name
+from .provenance import Attribute
+from .shown import as_html, as_text, in_words
+from .table import Table
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+    from ..scene import Scene
+
+
+class Labelled:
+    """A result whose numbers have names, units and axes.
+
+    A class of results says in `tables` what its numbers are, in `attributes` what it has one of, and in `summary` what
+    is worth reading first.
+    """
+
+    if TYPE_CHECKING:
+        @property
+        def scene(self) -> Scene:
+            """The chain that was computed."""
+            raise NotImplementedError
+
+    def tables(self) -> tuple[Table, ...]:
+        """Its tables, the main one first; each is a group of its file."""
+        raise NotImplementedError
+
+    def attributes(self) -> dict[str, Attribute]:
+        """What it has one of, with where it comes from: the attributes of its file's root."""
+        raise NotImplementedError
+
+    def summary(self) -> Sequence[str]:
+        """What is worth reading first, in short sentences with units and errors."""
+        raise NotImplementedError
+
+    def heading(self) -> str:
+        """What it is, and of which scene."""
+        return f"{type(self).__name__} of {in_words(self.scene)}"
+
+    def to_xarray(self, table: str = "") -> xarray.Dataset:
+        """A table as a dataset of xarray, the main one if none is named.
+
+        Its variables have `units` and `long_name`, errors and regimes are variables beside the numbers, and its `attrs`
+        say where it comes from. Raises `BadInput` where there is no such table or no xarray.
+        """
+        from .frames import dataset
+
+        return dataset(self._table(table), self.attributes())
+
+    def to_pandas(self, table: str = "", rows: str = "") -> pandas.DataFrame:
+        """A table as a data frame of pandas, the main one if none is named.
+
+        A row for each place on the table's first axis, or on the axis `rows`; what has a value for each bead has a
+        column for each: displacement_1, displacement_2, … `attrs` has `units` and `long_names` by column, and where it
+        comes from. Raises `BadInput` where there is no such table or axis, or no pandas.
+        """
+        from .frames import frame
+
+        found = self._table(table)
+        if rows and rows not in found.axes:
+            raise unknown_name("axis", rows, tuple(found.axes))
+        return frame(found, (rows,) if rows else found.rows, self.attributes())
+
+    def _table(self, name: str) -> Table:
+        tables = {one.name: one for one in self.tables()}
+        if not tables:
+            raise BadInput("There is nothing in this result yet.")
+        if name and name not in tables:
+            raise unknown_name("table", name, tuple(tables))
+        return tables[name or next(iter(tables))]
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        return as_html(self.heading(), self.summary(), self.tables())
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
+        """The same for a notebook and for a terminal; both would print whole arrays."""
+        return {"text/html": self._repr_html_(), "text/plain": as_text(self.heading(), self.summary())}

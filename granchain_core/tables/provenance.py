@@ -1,0 +1,48 @@
+"""Where numbers come from: scene, method, accuracy asked and reached, versions, machine, time."""
+
+from __future__ import annotations
+
+import json
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+import numpy as np
+
+from ..kernels.width import machine
+from ..quantities import QUANTITIES
+from ..scene import Amplitude, Scene
+from ..version import __version__
+
+#: An attribute of a file or of a dataset.
+Attribute = str | int | float
+
+
+def provenance(scene: Scene, method: str, reached: float | None) -> dict[str, Attribute]:
+    """The attributes that every result carries; `reached` is the accuracy, None where there is none to state."""
+    found = {
+        **made(), "scene_name": scene.name, "scene": json.dumps(scene.to_json()), "scene_digest": scene.digest,
+        "method": method, "accuracy_asked": scene.accuracy, "accuracy_reached": or_nan(reached)}
+    for name, value in scene.knobs.items():
+        found[f"knob_{name}"] = value
+        found[f"knob_{name}_unit"] = QUANTITIES[name].unit
+    return found
+
+
+def amplitude_attribute(amplitude: Amplitude | None) -> dict[str, Attribute]:
+    """A drive amplitude that depends on the frequency, as JSON; nothing where it is the scene's own."""
+    return {} if amplitude is None else {"amplitude": json.dumps(amplitude.to_json())}
+
+
+def made() -> dict[str, Attribute]:
+    """With what, where and when."""
+    return {"Conventions": "CF-1.10", "granchain_version": __version__,
+            "created": datetime.now(UTC).isoformat(timespec="seconds"),
+            "versions": json.dumps({**{name: version(name) for name in ("numpy", "numba", "h5py")},
+                                    "python": platform.python_version()}),
+            "machine": machine()}
+
+
+def or_nan(value: float | None) -> float:
+    """A number for a table, in which None is NaN."""
+    return np.nan if value is None else value

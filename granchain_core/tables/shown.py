@@ -1,0 +1,50 @@
+"""A result in a few lines: what it is of, what is worth reading first, and what it holds."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+
+from ..quantities import QUANTITIES
+from ..scene import Scene
+from .table import Table
+
+_ROW = "text-align:left;background:none"
+
+
+def as_text(heading: str, sentences: Sequence[str]) -> str:
+    """For a terminal."""
+    return "\n".join([heading, *(f"  {one}" for one in sentences)])
+
+
+def as_html(heading: str, sentences: Sequence[str], tables: Sequence[Table]) -> str:
+    """For a notebook: no more than fits a cell, in its own colours; what it holds is folded away."""
+    said = "".join(f"<div>{html.escape(one)}</div>" for one in sentences)
+    held = "".join(_held(table) for table in tables)
+    return (f"<div style='line-height:1.5'><b>{html.escape(heading)}</b>{said}"
+            f"<details><summary>names and units</summary>{held}</details></div>")
+
+
+def in_words(scene: Scene) -> str:
+    """A scene, and the knobs that are not those of its preset."""
+    changed = [f"{name} = {value:g}{_unit(name)}" if isinstance(value, float | int) else f"{name} = {value}"
+               for name, value in {"f": scene.f, **scene.differences()}.items()]
+    return f"{scene.name}: {', '.join(changed)}"
+
+
+def _unit(knob: str) -> str:
+    unit = QUANTITIES[knob].unit
+    return "" if unit in ("", "1") else f" {unit}"
+
+
+def _held(table: Table) -> str:
+    """The axes and columns of a table."""
+    rows = "".join(
+        _row(f"<code>{html.escape(name)}</code>", ", ".join(column.axes), "" if column.unit == "1" else column.unit,
+             html.escape(column.meaning)) for name, column in {**table.axes, **table.columns}.items())
+    sizes = ", ".join(f"{name} {len(column.values)}" for name, column in table.axes.items())
+    return f"<div><b>{html.escape(table.name)}</b> ({html.escape(sizes)})</div><table cellpadding='4'>{rows}</table>"
+
+
+def _row(*cells: str) -> str:
+    return f"<tr style={_ROW!r}>{''.join(f'<td align=left>{cell}</td>' for cell in cells)}</tr>"

@@ -1,0 +1,85 @@
+"""Columns that several results have: largest forces, their errors, regimes; and the axes of beads and contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..regime import Regime
+from .table import Column, axis
+
+#: Columns with the largest forces, in this order everywhere.
+MAXIMA = ("max_input_force", "max_output_force", "max_output_force_elastic")
+_MEANT = ("largest force of the driver on bead 1", "largest force on the wall, elastic and damping",
+          "largest elastic force on the wall, the paper's F_out")
+#: Columns with their relative errors in the same order; `error_estimate` is that of the output force.
+ERRORS = ("error_estimate_input", "error_estimate", "error_estimate_elastic")
+_FORCES = ("input", "output", "elastic output")
+
+
+def force_columns(forces: np.ndarray, axes: tuple[str, ...], when: str = "in the steady state") -> dict[str, Column]:
+    """Largest forces (…, 3) [N] in the order of `MAXIMA`; `when` says over which time."""
+    return {name: Column(forces[..., i], axes, "N", f"{_MEANT[i]}, {when}") for i, name in enumerate(MAXIMA)}
+
+
+def error_columns(errors: np.ndarray, axes: tuple[str, ...]) -> dict[str, Column]:
+    """Relative errors (…, 3) in the same order, NaN where none is claimed."""
+    return {name: Column(errors[..., i], axes, "1",
+                         f"relative error of the largest {_FORCES[i]} force, NaN where none is claimed")
+            for i, name in enumerate(ERRORS)}
+
+
+def regime_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
+    """Regime and period along an axis."""
+    return {"regime": Column(np.array([one.name for one in found], dtype=object), (along,), "",
+                             "periodic, quasi-periodic, chaotic or unsettled"),
+            "period": Column(np.array([one.period or 0 for one in found], dtype=np.int64), (along,), "1",
+                             "period in drive periods, 0 where not periodic")}
+
+
+def evidence_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
+    """The evidence for regimes along an axis."""
+    lyapunov = np.array([one.lyapunov or (np.nan, np.nan) for one in found]).reshape(-1, 2)
+
+    def numbers(name: str) -> np.ndarray:
+        return np.array([np.nan if getattr(one, name) is None else getattr(one, name) for one in found], dtype=float)
+
+    return {
+        "periods_run": Column(np.array([one.periods_run for one in found], dtype=np.int64), (along,), "1",
+                              "drive periods run until that was decided"),
+        **{name: Column(values, (along,), "1", EVIDENCE[name]) for name, values in (
+            ("decay", numbers("decay")), ("multiplier", numbers("multiplier")), ("lyapunov", lyapunov[:, 0]),
+            ("lyapunov_error", lyapunov[:, 1]))}}
+
+
+#: What is known of a regime, and what each number means.
+EVIDENCE = {
+    "decay": "factor by which changes shrank per orbit, NaN where not seen",
+    "multiplier": "modulus of the leading multiplier, NaN where not computed",
+    "lyapunov": "largest Lyapunov exponent per drive period, NaN where not measured",
+    "lyapunov_error": "standard error of the Lyapunov exponent",
+}
+
+
+def bead_axis(beads: int) -> dict[str, Column]:
+    """Numbers of the beads."""
+    return axis("bead", np.arange(1, beads + 1), "1", "bead number from the driver")
+
+
+def contact_axis(beads: int) -> dict[str, Column]:
+    """Numbers of the contacts."""
+    return axis("contact", np.arange(beads + 1), "1", "contact number; c joins bodies c and c + 1")
+
+
+def multiplier_columns(found: np.ndarray, axes: tuple[str, ...], prefix: str = "") -> dict[str, Column]:
+    """Real and imaginary parts of multipliers: files of netCDF have no complex numbers."""
+    of = "the observer's multiplier" if prefix else "multiplier"
+    return {f"{prefix}multiplier_real": Column(found.real, axes, "1", f"{of}, real part"),
+            f"{prefix}multiplier_imag": Column(found.imag, axes, "1", f"{of}, imaginary part")}
+
+
+def state_columns(displacement: np.ndarray, velocity: np.ndarray, axes: tuple[str, ...]) -> dict[str, Column]:
+    """Displacements [m] and velocities [m/s] of beads at drive phase 0."""
+    return {"displacement": Column(displacement, axes, "m", "bead displacement from its rest position, at phase 0"),
+            "velocity": Column(velocity, axes, "m/s", "bead velocity, at phase 0")}
