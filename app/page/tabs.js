@@ -10,6 +10,7 @@ import { leaveStories, storiesTab } from "../pages/stories/stories_tab.js";
 import { probeTab } from "../pages/probe/probe_tab.js";
 import { stabilityTab } from "../pages/stability/stability_tab.js";
 import { button, element, openButton, paragraph } from "../parts/dom.js";
+import { compareMessage, compareTab } from "./compare_tab.js";
 import { dataTab, saveSample } from "./data_tab.js";
 import { lookAtTab, regimesTab } from "./scene_tabs.js";
 
@@ -20,6 +21,7 @@ const TABS = {
   "look at": lookAtTab,
   regimes: regimesTab,
   probe: probeTab,
+  compare: compareTab,
   stability: stabilityTab,
   accuracy: accuracyTab,
   map: mapTab,
@@ -28,9 +30,6 @@ const TABS = {
   observer: observerTab,
   data: dataTab,
 };
-
-// The tab that is open when nothing else is said.
-const FIRST = "stories";
 
 // The tab of a page that has no function in TABS: its sentence, or what it is, and a button that opens it.
 function plainTab(_, { name, placeholder }) {
@@ -59,18 +58,10 @@ function largerButton() {
 class Tabs {
   constructor(model) {
     this.model = model;
-    const pages = model.state.pages;
-    const own = (name, group) => ({ name, title: name, group });
-    const [stories, ...others] = pages;
-    const rows = [
-      stories,
-      own("look at", "understand"),
-      own("regimes", "understand"),
-      ...others,
-      { ...own("data", ""), taller: true },
-    ];
+    const rows = model.state.tabs;
     this.rows = new Map(rows.map((row) => [row.name, row]));
-    this.chosen = FIRST;
+    this.first = rows[0].name; // the tab that is open when nothing else is said
+    this.chosen = this.first;
     this.seen = null; // the tab that is on the screen, null while a page lies over the pictures
     this.redraw = () => {};
     const groups = [...model.state.groups, ""].map((group) => this.group(group, rows));
@@ -97,11 +88,11 @@ class Tabs {
 
   choose(name) {
     this.chosen = name;
-    if (name !== FIRST) leaveStories();
+    if (name !== "stories") leaveStories();
     document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
     this.reportVisibility();
     this.show();
-    window.granchain.placed({ tab: name === FIRST ? "" : name });
+    window.granchain.placed({ tab: name === this.first ? "" : name });
     window.granchain.emit("tab", name);
   }
 
@@ -154,7 +145,8 @@ export function render({ model }) {
   model.on("state", () => tabs.stateChanged());
   model.on("msg:custom", mapMessage);
   model.on("msg:custom", saveSample);
-  for (const { name } of model.state.pages)
+  model.on("msg:custom", compareMessage);
+  for (const { name } of model.state.tabs)
     window.granchain.on(name, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
@@ -162,10 +154,22 @@ export function render({ model }) {
     window.granchain.placed({ page: name ?? "" });
     tabs.reportVisibility();
   });
+  window.granchain.on("compare", () => {
+    window.granchain.closePage();
+    tabs.choose("compare");
+  });
+  window.granchain.on("compare-told", () => {
+    if (tabs.chosen === "compare") tabs.redraw();
+  });
+  // A step back or forward.
+  window.granchain.on("place", ({ tab: name, page: over }) => {
+    tabs.choose(tabs.rows.has(name) ? name : tabs.first);
+    window.granchain.openPage(over || null);
+  });
   window.granchain.on("bead", () => {
     if (tabs.chosen !== "probe" && !window.granchain.overlay) tabs.choose("probe");
   });
-  const { tab = FIRST, page } = model.state.place;
+  const { tab = tabs.first, page } = model.state.place;
   tabs.choose(tab);
   if (page) window.granchain.openPage(page);
   return tabs.root;

@@ -56,6 +56,7 @@ class Chain {
   setUpScale() {
     const scale = document.getElementById("scale");
     const shares = Array.from({ length: 17 }, (_, i) => colourOf(this.model.state.palette, (i / 16) ** 2));
+    window.granchain.chain = { canvas: this.canvas, colours: shares, redraw: (on) => this.redraw(on) };
     scale.querySelector("b").style.background = `linear-gradient(to right, ${shares.join(",")})`;
     this.energies = [...scale.querySelectorAll(".colours span")];
     this.scales = SCALES.map(([value, words, title]) =>
@@ -116,6 +117,8 @@ class Chain {
   load(frames) {
     Object.assign(frames, unpack(frames).series);
     this.showScale(frames);
+    window.granchain.shown = { scene: frames.scene, f: frames.f };
+    window.granchain.emit("shown", window.granchain.shown);
     const { beads } = this.drawing;
     this.drawing.load(frames);
     if (this.drawing.beads !== beads) this.placeColumn();
@@ -128,6 +131,18 @@ class Chain {
   painted({ number, live, sent }) {
     this.model.send_msg({ do: "painted", number });
     window.granchain.emit("painted", { number, live, lag: Date.now() - 1000 * sent });
+  }
+
+  // The chain as it is now, on a context that writes a file.
+  redraw(context) {
+    const { frames, row } = this.clock;
+    const own = this.drawing.context;
+    this.drawing.context = context;
+    try {
+      if (frames) this.drawing.draw(frames, row);
+    } finally {
+      this.drawing.context = own;
+    }
   }
 
   nextPeriod() {

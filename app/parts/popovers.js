@@ -1,6 +1,7 @@
 // What opens over the pictures from the bar on top: the help, and the link to the picture.
 
 import { element } from "./dom.js";
+import { takeAlong } from "./take_along.js";
 
 const HELP = [
   ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
@@ -24,16 +25,17 @@ function helpList() {
 
 // At most one of them is open.
 export class Popovers {
-  constructor() {
+  constructor(save) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
     this.help = element("div", { className: "popover", hidden: true }, helpList());
     this.copied = element("p", { role: "status" });
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
+    this.take = element("div", { className: "popover", hidden: true }, takeAlong(save));
     this.menu = element("div", { className: "popover menu", hidden: true });
   }
 
   close() {
-    this.help.hidden = this.link.hidden = this.menu.hidden = true;
+    this.help.hidden = this.link.hidden = this.take.hidden = this.menu.hidden = true;
   }
 
   toggleHelp() {
