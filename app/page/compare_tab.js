@@ -3,7 +3,7 @@
 import { button, element, paragraph } from "../parts/dom.js";
 
 const INVITES =
-  "Pin a picture, then move a knob: its forces stay as dashed grey lines, its place on the curve as a ring with its name, and the differences stand here. A link keeps the pins.";
+  "Pin a picture, then move a knob: its forces stay as dashed grey lines, its place on the curve as a ring with its name, and what the present picture has more or less stands here. A link keeps the pins.";
 const DASHES = ["╌", "┈", "─ ·"]; // of the lines, in the order of the pins
 
 let told = { pins: [], rows: [] };
@@ -34,11 +34,18 @@ function head(model, { name, words, known }, number) {
   return place;
 }
 
-// A pinned value, and below it how much larger the present one is.
-function pinned([value, difference]) {
+// A pinned value, and below it how much larger the present one is: the difference and the ratio.
+function pinned([value, ...differences]) {
   const place = cell(value);
-  if (difference) place.append(element("small", { textContent: `now ${difference}` }));
+  for (const textContent of differences) if (textContent) place.append(element("small", { textContent }));
   return place;
+}
+
+// A quantity: its name over the whole width, below it the present value and those of the pins.
+function lines({ title, now, pins }) {
+  const name = element("th", { textContent: title, scope: "rowgroup", colSpan: 1 + pins.length });
+  const values = element("tr", { className: title === "motion" ? title : "" }, cell(now), ...pins.map(pinned));
+  return element("tbody", {}, element("tr", {}, name), values);
 }
 
 export function compareTab(model) {
@@ -48,11 +55,8 @@ export function compareTab(model) {
     const { pins, rows } = told;
     pin.disabled = pins.length >= DASHES.length;
     if (!pins.length) return body.replaceChildren(paragraph(INVITES, "soft"));
-    const titles = element("tr", {}, cell("", "th"), cell("now", "th"), ...pins.map((one, i) => head(model, one, i)));
-    const lines = rows.map(({ title, now, pins: values }) =>
-      element("tr", {}, element("th", { textContent: title, scope: "row" }), cell(now), ...values.map(pinned)),
-    );
-    return body.replaceChildren(element("table", {}, element("thead", {}, titles), element("tbody", {}, ...lines)));
+    const titles = element("tr", {}, cell("now", "th"), ...pins.map((one, i) => head(model, one, i)));
+    return body.replaceChildren(element("table", {}, element("thead", {}, titles), ...rows.map(lines)));
   };
   show();
   return { content: [element("div", { className: "row" }, pin), body], show };

@@ -73,7 +73,6 @@ TABS: tuple[Row | Tab, ...] = (
     Tab("look at", "understand"),
     Tab("regimes", "understand"),
     Row("probe", "probe", ProbePage, Probe),
-    Tab("compare", "explore", taller=True),
     Row("stability", "stability", StabilityPage, Stability),
     Row("accuracy", "accuracy", AccuracyPage, Accuracy, group="trust"),
     Row("map", "map", MapPage, None, reports_visibility=True),
@@ -86,6 +85,7 @@ TABS: tuple[Row | Tab, ...] = (
     Row("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
         group="understand"),
+    Tab("compare", "", taller=True),
     Tab("data", "", taller=True),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, Row))

@@ -3,7 +3,7 @@
 import { ChainDrawing, unpack } from "./chain_drawing.js";
 import { Clock, Cursor } from "./clock.js";
 import { button, element } from "./dom.js";
-import { colourOf } from "./steel.js";
+import { colourOf, Steel } from "./steel.js";
 
 const SCALES = [
   ["same", "same scale", "One scale for all pictures of this scene: strong looks strong, weak looks weak"],
@@ -16,6 +16,8 @@ function afterFrame(act) {
   channel.port1.onmessage = act;
   channel.port2.postMessage(null);
 }
+
+const FINE = 3; // pixels of a bead in a file for one on the screen
 
 // Room for the driver and for the wall beside the beads, in pixels.
 const DRIVER = 62,
@@ -136,12 +138,12 @@ class Chain {
   // The chain as it is now, on a context that writes a file.
   redraw(context) {
     const { frames, row } = this.clock;
-    const own = this.drawing.context;
-    this.drawing.context = context;
+    const { context: own, ratio, steel } = this.drawing;
+    Object.assign(this.drawing, { context, ratio: FINE * ratio, steel: new Steel(this.model.state.palette) });
     try {
       if (frames) this.drawing.draw(frames, row);
     } finally {
-      this.drawing.context = own;
+      Object.assign(this.drawing, { context: own, ratio, steel });
     }
   }
 

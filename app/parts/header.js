@@ -139,6 +139,7 @@ class Header {
       () => this.putAway(this.undo, this.redo),
       () => this.putAway(this.step),
       () => this.putAway(this.name),
+      () => this.putAway(this.pin),
       () => this.putAway(this.reset),
       () => this.putAway(this.mode),
       () => this.putAway(this.help, this.theme),

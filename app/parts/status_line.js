@@ -37,6 +37,7 @@ export function render({ model }) {
   const show = () => {
     const { state } = model;
     words.textContent = state.sentence ?? "";
+    window.granchain.regime = state.regime;
     sentence.hidden = !state.sentence;
     insist.hidden = !state.insist;
     const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");

@@ -5,7 +5,7 @@ import { button, element } from "./dom.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = 12, // px around a picture
-  SHARP = 2; // pixels of a PNG for one of the screen
+  SHARP = 2; // pixels of a PNG for one of the picture
 // Of the main page: the name in a file, the element, the model of its figure.
 const FIGURES = {
   driver: ["at the driver", "left", "input force"],
@@ -50,15 +50,11 @@ const asSvg = (view) => {
   const drawn = view.export("svg", true);
   return new DOMParser().parseFromString(drawn.ctx.get_serialized_svg(true), "image/svg+xml").documentElement;
 };
-const asCanvas = (view) => view.export("png", true).canvas;
 
-// One piece of a picture: its box on the screen, and how it is drawn on either.
-const figurePiece = (view) => {
-  const box = view.el.getBoundingClientRect();
-  return { box, svg: () => asSvg(view), canvas: () => asCanvas(view) };
-};
+// One piece of a picture: its box on the screen, and its drawing.
+const figurePiece = (view) => ({ box: view.el.getBoundingClientRect(), svg: () => asSvg(view) });
 
-// The chain: drawn on a canvas, and for an SVG once more by the same code on a context that writes SVG.
+// The chain is drawn once more, by the same code, on a context that writes SVG.
 const chainPiece = () => {
   const { canvas, redraw } = window.granchain.chain;
   return {
@@ -70,7 +66,6 @@ const chainPiece = () => {
       redraw(context);
       return new DOMParser().parseFromString(context.get_serialized_svg(true), "image/svg+xml").documentElement;
     },
-    canvas: () => canvas,
   };
 };
 
@@ -82,7 +77,10 @@ const wordsOf = (selector) =>
       const { color, fontSize, fontWeight } = getComputedStyle(one);
       const range = document.createRange();
       range.selectNodeContents(one);
-      return { box: range.getBoundingClientRect(), text: one.textContent.trim(), color, fontSize, fontWeight };
+      const { left, top, right, bottom } = range.getBoundingClientRect();
+      const { mark = "" } = one.dataset; // the piece of line before a word of the key
+      const box = { left: left - (mark ? 22 : 0), top, right, bottom };
+      return { box, text: mark + one.textContent.trim(), color, fontSize, fontWeight };
     });
 
 // The bar with the colours of the energy.
@@ -118,45 +116,31 @@ const bounds = (boxes) => {
   };
 };
 
+// Words in lines of so many letters.
+function broken(words, most) {
+  const lines = [""];
+  for (const word of words.split(" ")) {
+    const longer = `${lines.at(-1)} ${word}`.trim();
+    if (longer.length <= most || !lines.at(-1)) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines;
+}
+
 // The frame of a picture: what it shows in a line on top, then everything where it is on the screen.
 function sheet(title, { parts, words, bars }) {
   const all = bounds([...parts, ...words, ...bars].map(({ box }) => box));
   const line = parseFloat(style("--small")) || 14;
-  const head = line + 2 * MARGIN;
+  const lines = broken(title, all.width / (0.56 * line)); // an average letter is so wide
+  const head = 1.25 * line * lines.length + 2 * MARGIN;
   return {
     line,
-    title,
+    lines,
     width: all.width + 2 * MARGIN,
     height: all.height + head + MARGIN,
     x: ({ box }) => box.left - all.left + MARGIN,
     y: ({ box }) => box.top - all.top + head,
   };
-}
-
-async function png(title, found) {
-  const { line, width, height, x, y } = sheet(title, found);
-  const canvas = Object.assign(document.createElement("canvas"), { width: SHARP * width, height: SHARP * height });
-  const g = canvas.getContext("2d");
-  g.scale(SHARP, SHARP);
-  g.fillStyle = style("--card");
-  g.fillRect(0, 0, width, height);
-  g.fillStyle = style("--ink");
-  g.font = `600 ${line}px ${style("--font")}`;
-  g.textBaseline = "top";
-  g.fillText(title, MARGIN, MARGIN, width - 2 * MARGIN);
-  for (const part of found.parts) g.drawImage(part.canvas(), x(part), y(part), part.box.width, part.box.height);
-  for (const bar of found.bars) {
-    const fill = g.createLinearGradient(x(bar), 0, x(bar) + bar.box.width, 0);
-    for (const [i, colour] of bar.stops.entries()) fill.addColorStop(i / (bar.stops.length - 1), colour);
-    g.fillStyle = fill;
-    g.fillRect(x(bar), y(bar), bar.box.width, bar.box.height);
-  }
-  for (const word of found.words) {
-    g.fillStyle = word.color;
-    g.font = `${word.fontWeight} ${word.fontSize} ${style("--font")}`;
-    g.fillText(word.text, x(word), y(word));
-  }
-  return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
 const made = (tag, attributes, ...children) => {
@@ -193,10 +177,11 @@ function barOf(bar, x, y, id) {
 }
 
 function svg(title, found) {
-  const { line, width, height, x, y } = sheet(title, found);
+  const { line, lines, width, height, x, y } = sheet(title, found);
   const root = made("svg", { xmlns: SVG, width, height, viewBox: `0 0 ${width} ${height}` });
   root.append(made("title", {}, title), made("rect", { width: "100%", height: "100%", fill: style("--card") }));
-  root.append(textOf(MARGIN, MARGIN, title, style("--ink"), `${line}px`, 600));
+  for (const [number, words] of lines.entries())
+    root.append(textOf(MARGIN, MARGIN + 1.25 * line * number, words, style("--ink"), `${line}px`, 600));
   for (const [number, part] of found.parts.entries()) {
     const drawn = renamed(document.importNode(part.svg(), true), `p${number}-`);
     const place = { x: x(part), y: y(part), width: part.box.width, height: part.box.height };
@@ -205,14 +190,22 @@ function svg(title, found) {
   }
   for (const [number, bar] of found.bars.entries()) root.append(...barOf(bar, x(bar), y(bar), `energy-${number}`));
   for (const one of found.words) root.append(textOf(x(one), y(one), one.text, one.color, one.fontSize, one.fontWeight));
-  return new Blob([new XMLSerializer().serializeToString(root)], { type: "image/svg+xml" });
+  return { text: new XMLSerializer().serializeToString(root), width, height };
+}
+
+// A PNG is the SVG in pixels, more of them than a screen has.
+async function png({ text, width, height }) {
+  const image = Object.assign(new Image(), { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}` });
+  await image.decode();
+  const canvas = Object.assign(document.createElement("canvas"), { width: SHARP * width, height: SHARP * height });
+  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+  return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
 // What a picture is of, for its first line and its name.
 function told(what) {
   const { scene, f } = window.granchain.shown ?? {};
-  const regime = document.querySelector("#foot")?.firstElementChild?.shadowRoot?.querySelector("b")?.textContent ?? "";
-  return { name: `${scene}-${f}Hz-${what}`, title: `${scene}, f = ${f} Hz: ${regime}` };
+  return { name: `${scene}-${f}Hz-${what}`, title: `${scene}, f = ${f} Hz: ${window.granchain.regime ?? ""}` };
 }
 
 async function savePicture(what, kind) {
@@ -222,7 +215,8 @@ async function savePicture(what, kind) {
       ? { parts: figuresOf(document.getElementById("overlay")).map(figurePiece), words: [], bars: [] }
       : pieces(what);
   if (!found.parts.length) return;
-  download(`${name}.${kind}`, kind === "svg" ? svg(title, found) : await png(title, found));
+  const drawn = svg(title, found);
+  download(`${name}.${kind}`, kind === "svg" ? new Blob([drawn.text], { type: "image/svg+xml" }) : await png(drawn));
 }
 
 // The list of what can be taken along. `send` asks the server for a file.

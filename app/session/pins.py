@@ -16,6 +16,7 @@ from .starts import read_start, start_text
 
 #: What the pins are called, in their order.
 NAMES = "ABC"
+_NOTHING = ["", "", ""]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,21 +63,21 @@ def _knob(name: str, value: object) -> str:
 
 
 def compared_rows(now: Run, pinned: Sequence[Run | None]) -> list[dict[str, object]]:
-    """The numbers of the present motion and of each pinned one, and by how much the present one is larger.
+    """The numbers of the present motion and of each pinned one, with difference and ratio of the present one to it.
 
     A pin that is still being computed has None, and empty cells.
     """
     rows: list[dict[str, object]] = []
-    for title, attribute, error in (("largest output force", "max_output_force", "output"),
-                                    ("its elastic part", "max_output_force_elastic", "elastic"),
-                                    ("largest input force", "max_input_force", "input")):
+    for title, attribute, error in (("output force", "max_output_force", "output"),
+                                    ("elastic part", "max_output_force_elastic", "elastic"),
+                                    ("input force", "max_input_force", "input")):
         rows.append({"title": title, "now": _stated(now, attribute, error),
                      "pins": [_beside(now, run, attribute, error) for run in pinned]})
-    rows.append({"title": "output over input force", "now": _share(now),
-                 "pins": [["", ""] if run is None else [_share(run), _times(_ratio(now), _ratio(run))]
+    rows.append({"title": "output / input", "now": _share(now),
+                 "pins": [_NOTHING if run is None else [_share(run), "", _times(_ratio(now), _ratio(run))]
                           for run in pinned]})
     rows.append({"title": "motion", "now": now.regime.sentence,
-                 "pins": [["", ""] if run is None else [run.regime.sentence, ""] for run in pinned]})
+                 "pins": [_NOTHING if run is None else [run.regime.sentence, "", ""] for run in pinned]})
     return rows
 
 
@@ -91,12 +92,12 @@ def _stated(run: Run, attribute: str, error: str) -> str:
 
 def _beside(now: Run, run: Run | None, attribute: str, error: str) -> list[str]:
     if run is None:
-        return ["", ""]
+        return _NOTHING
     here, there = float(getattr(now, attribute)), float(getattr(run, attribute))
     gap = here - there
     factor, letter = prefixed(abs(gap)) if gap else (1.0, "")
     sign = "+" if gap >= 0.0 else "−"
-    return [_stated(run, attribute, error), f"{sign}{abs(gap) / factor:.3g} {letter}N, {_times(here, there)}"]
+    return [_stated(run, attribute, error), f"{sign}{abs(gap) / factor:.3g} {letter}N", _times(here, there)]
 
 
 def _times(here: float, there: float) -> str:

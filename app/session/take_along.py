@@ -40,33 +40,30 @@ class Screen:
 
 
 def trains_csv(run: Run) -> str:
-    """The force trains and the drive, one row a sample.
+    """The force trains and the drive, one row a sample; what a force does between samples stands in comments above.
 
-    A force that jumps has two rows more at that instant, before and after, in which the other columns are empty.
+    A force that jumps does so from 0.
     """
-    time = run.time - run.time[0]
-    rows: list[tuple[float, int, list[str]]] = [
-        (float(t), 0, [repr(float(value)) for value in values]) for t, *values in
-        zip(time, run.drive_displacement, run.input_force, run.output_force, run.output_force_elastic, strict=True)]
-    for column, contact in ((1, 0), (2, run.scene.N)):
-        for t, force in zip(*jumps_of(run, contact).T, strict=True):
-            for order, value in enumerate((0.0, float(force)), 1):
-                cells = [""] * 4
-                cells[column] = repr(value)
-                rows.append((float(t), order, cells))
-    titles = ["time_s", "drive_displacement_m", "input_force_N", "output_force_N", "elastic_output_force_N"]
-    return _csv(titles, ([repr(t), *cells] for t, _, cells in sorted(rows, key=lambda row: row[:2])))
+    comments = [f"# {name} force jumps from 0 to {float(force)!r} N at {float(time)!r} s"
+                for name, contact in (("input", 0), ("output", run.scene.N))
+                for time, force in jumps_of(run, contact)]
+    titles = ["time_s", "drive_displacement_m", "input_force_N", "output_force_N", "elastic_part"]
+    rows = zip(run.time - run.time[0], run.drive_displacement, run.input_force, run.output_force,
+               run.output_force_elastic, strict=True)
+    return "".join(f"{line}\n" for line in comments) + _csv(titles, ([repr(float(one)) for one in row] for row in rows))
 
 
 def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
-    """The resonance curves, one row a point; errors are absolute and empty where none is claimed."""
-    titles = ["start", "frequency_Hz", "force_N", "error_N", "elastic_part", "input", "regime", "period"]
+    """The resonance curves, one row a point: largest forces, and the relative error of the output force where one is
+    claimed.
+    """
+    titles = ["start", "frequency_Hz", "force_N", "elastic_part", "at_the_driver", "claim", "regime", "period"]
 
     def row(start: str, point: CurvePoint) -> list[str]:
-        error = point.force_errors.output
-        return [start, repr(point.frequency), repr(point.max_output_force),
-                "" if error is None else repr(error * point.max_output_force), repr(point.max_output_force_elastic),
-                repr(point.max_input_force), point.regime.name, str(point.regime.period or "")]
+        claim = point.force_errors.output
+        return [start, repr(point.frequency), repr(point.max_output_force), repr(point.max_output_force_elastic),
+                repr(point.max_input_force), "" if claim is None else repr(claim), point.regime.name,
+                str(point.regime.period or "")]
 
     return _csv(titles, (row(start, point) for start, points in curves.items() for point in points))
 
@@ -116,7 +113,8 @@ run = settle(chain, start=start, samples={screen.run.samples}).run"""
     told = {title: float(getattr(screen.run, field)) for title, field in _FORCES.items()}
     numbers = f"""# What the page showed, and what was computed now.
 page = {pprint.pformat(told, sort_dicts=False, width=100)}
-here = {{{", ".join(f'"{title}": run.{field}' for title, field in _FORCES.items())}}}
+fields = {pprint.pformat(_FORCES, sort_dicts=False, width=100)}
+here = {{name: float(getattr(run, field)) for name, field in fields.items()}}
 print(run.regime.sentence)
 for name, value in here.items():
     same = abs(value - page[name]) <= {_SAME:g} * abs(page[name])

@@ -79,7 +79,8 @@ class Curve:
 
     def _ghost(self, dash: list[int]) -> ColumnDataSource:
         source = ColumnDataSource({"frequency": [], "force": []})
-        self.figure.line("frequency", "force", source=source, line_dash=dash, line_color=GREY, line_width=1.5)
+        self.figure.line("frequency", "force", source=source, line_dash=dash, line_color=GREY, line_width=1.5,
+                         level="underlay")
         return source
 
     def _marks(self) -> None:
@@ -100,7 +101,7 @@ class Curve:
         self._pin_marks = plot.scatter("frequency", "force", source=self._pins, marker="circle", size=17,
                                        fill_color=None, line_width=1.5, line_dash=[3, 2], level="overlay")
         self._pin_names = plot.text("frequency", "force", "name", source=self._pins, text_align="center",
-                                    text_baseline="bottom", y_offset=-9, text_font_size="13px",
+                                    text_baseline="top", y_offset=10, text_font_size="13px",
                                     text_font_style="bold", level="overlay")
         self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=OUTPUT,
                                  line_width=3, level="overlay")
