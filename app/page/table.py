@@ -14,6 +14,7 @@ from ..pages.effects.page import EffectsPage
 from ..pages.hard_cases.page import HardCasesPage
 from ..pages.hard_cases.view import ABOUT, HardCases
 from ..pages.map.page import MapPage
+from ..pages.numbers.page import NumbersPage
 from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer
 from ..pages.paper.page import PaperPage
@@ -85,6 +86,7 @@ TABS: tuple[Row | Tab, ...] = (
     Row("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
         group="understand"),
+    Row("numbers", "numbers", NumbersPage, None, reports_visibility=True, group=""),
     Tab("compare", "", taller=True),
     Tab("data", "", taller=True),
 )

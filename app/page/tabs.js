@@ -5,6 +5,7 @@ import { branchesTab } from "../pages/branches/branches_tab.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/cells.js";
 import { mapTab } from "../pages/map/map.js";
+import { numbersMessage, numbersTab } from "../pages/numbers/numbers_tab.js";
 import { observerTab } from "../pages/observer/observer_tab.js";
 import { leaveStories, storiesTab } from "../pages/stories/stories_tab.js";
 import { probeTab } from "../pages/probe/probe_tab.js";
@@ -21,6 +22,7 @@ const TABS = {
   "look at": lookAtTab,
   regimes: regimesTab,
   probe: probeTab,
+  numbers: numbersTab,
   compare: compareTab,
   stability: stabilityTab,
   accuracy: accuracyTab,
@@ -66,11 +68,12 @@ class Tabs {
     this.redraw = () => {};
     const groups = [...model.state.groups, ""].map((group) => this.group(group, rows));
     this.tabs = groups.flatMap((group) => [...group.querySelectorAll("[role=tab]")]);
+    this.list = element("div", { role: "tablist", ariaLabel: "what stands below" }, ...groups);
     // The larger button floats, so it comes first: the second line of tabs has the whole width.
-    this.list = element("div", { className: "tabs", role: "tablist" }, largerButton(), ...groups);
+    const top = element("div", { className: "tabs" }, largerButton(), this.list);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
-    this.body = element("div", { className: "body", role: "tabpanel" });
-    this.root = element("div", { className: "part tabbed" }, this.list, this.body);
+    this.body = element("div", { className: "body", role: "tabpanel", tabIndex: 0 });
+    this.root = element("div", { className: "part tabbed" }, top, this.body);
   }
 
   // The tabs of a group, with its name before them.
@@ -126,6 +129,7 @@ class Tabs {
       const selected = tab.dataset.tab === this.chosen;
       tab.ariaSelected = String(selected);
       tab.tabIndex = selected ? 0 : -1;
+      if (selected) this.body.ariaLabel = tab.textContent;
     }
     const make = TABS[this.chosen] ?? plainTab;
     const { content, show = () => {}, updatesItself = false } = make(this.model, this.rows.get(this.chosen));
@@ -146,6 +150,7 @@ export function render({ model }) {
   model.on("msg:custom", mapMessage);
   model.on("msg:custom", saveSample);
   model.on("msg:custom", compareMessage);
+  model.on("msg:custom", numbersMessage);
   for (const { name } of model.state.tabs)
     window.granchain.on(name, () => {
       if (tabs.chosen === name) tabs.redraw();
@@ -158,9 +163,10 @@ export function render({ model }) {
     window.granchain.closePage();
     tabs.choose("compare");
   });
-  window.granchain.on("compare-told", () => {
-    if (tabs.chosen === "compare") tabs.redraw();
-  });
+  for (const name of ["compare", "numbers"])
+    window.granchain.on(`${name}-told`, () => {
+      if (tabs.chosen === name) tabs.redraw();
+    });
   // A step back or forward.
   window.granchain.on("place", ({ tab: name, page: over }) => {
     tabs.choose(tabs.rows.has(name) ? name : tabs.first);

@@ -110,7 +110,7 @@ class Header {
     this.share = iconButton(icon("share", "share"), "Link to this picture", send("share"));
     const take = "Take along: pictures, tables, a program";
     this.save = iconButton(icon("save", "save"), take, () => this.popovers.toggle("take"), "save");
-    this.help = iconButton(icon("help"), "Help", () => this.popovers.toggleHelp(), "icon");
+    this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp(), "icon");
     this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon");
     this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "icon more");
   }
@@ -226,6 +226,7 @@ class Header {
       event.preventDefault();
       this.setPlaying(!this.playing);
     }
+    if (event.key === "?" && !event.composedPath().some((node) => node.type === "text")) this.popovers.toggleHelp();
     if ((event.ctrlKey || event.metaKey) && !event.altKey) this.takeStep(event);
     if (event.key === "Escape") {
       this.popovers.close();

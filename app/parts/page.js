@@ -56,6 +56,8 @@ window.granchain = (() => {
     overlay = name;
     document.getElementById("page").classList.toggle("overlaid", name !== null);
     for (const one of document.querySelectorAll("[data-overlay]")) one.hidden = one.dataset.overlay !== name;
+    // The one main part of the page is what is on the screen.
+    document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
     emit("overlay", name);
   };
   const closePage = () => openPage(null);
