@@ -108,7 +108,7 @@ def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[
             np.insert(force, twice, np.stack([feet, jumps[:, 1]], axis=1).ravel()))
 
 
-def _jumps(run: Run, contact: int) -> np.ndarray:
+def jumps_of(run: Run, contact: int) -> np.ndarray:
     """Times since the run's first row [s] and forces [N] of one contact's jumps (J, 2), in order."""
     time, force = run.jumps.of(contact)
     return np.stack([time - run.time[0], force], axis=1)
@@ -140,7 +140,7 @@ def settled_frames(run: Run) -> Frames:
     samples = run.samples // stride
     time = np.arange(len(index)) / (samples * run.scene.f)
     shifts = [np.array([copy * periods / run.scene.f, 0.0]) for copy in range(copies)]
-    pushed, passed = (np.concatenate([_jumps(run, c) + shift for shift in shifts]) for c in (0, run.scene.N))
+    pushed, passed = (np.concatenate([jumps_of(run, c) + shift for shift in shifts]) for c in (0, run.scene.N))
     return Frames(samples, time, **{name: getattr(run, name)[index] for name in _SERIES},
                   input_jumps=pushed, output_jumps=passed)
 
@@ -165,6 +165,6 @@ class LiveWindow:
             self._series[name] = np.concatenate([old, new[1:]])[-self._rows:]
         passed = np.array([(len(run.time) - 1) / self._samples, 0.0])
         for name, contact in (("input_jumps", 0), ("output_jumps", run.scene.N)):
-            both = np.concatenate([self._jumps[name], _jumps(run, contact) * np.array([run.scene.f, 1.0])]) - passed
+            both = np.concatenate([self._jumps[name], jumps_of(run, contact) * np.array([run.scene.f, 1.0])]) - passed
             self._jumps[name] = both[both[:, 0] >= self._time[0]]
         return Frames(self._samples, self._time, **self._series, **self._jumps)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -10,7 +9,7 @@ from typing import Any
 from bokeh.document import Document
 from panel.io import unlocked
 
-from granchain_core import BadInput, NumbersFailed, OverBudget, Scene, Settled, State
+from granchain_core import Scene, Settled, State
 
 from ..pages.curve.page import Curves
 from ..parts.foundation import beside_kappa, foundation_words
@@ -20,21 +19,21 @@ from ..serve.compiler import COMPILER
 from ..serve.meters import METERS
 from ..serve.websocket import disable_nagle, gather_writes, with_document_lock
 from ..session.activities import Activity, account_activity, picture_activities
-from ..session.budget import TooLong
 from ..session.hooks import Actions, all_actions
 from ..session.live import LiveRun
 from ..session.message_checks import is_number, quoted
 from ..session.session import SPEEDS, Session, presets, slider_range
 from ..session.share import EXTRAS
+from .addresses import take_address
 from .display_choices import DisplayChoices
 from .layout import Views
 from .links_and_files import LinksAndFiles
 from .main_picture import Pictures
+from .pinned import Pinned
 from .playback import Playback
+from .sentences import Sentences
 from .show import show_regime
 from .table import PAGES
-
-log = logging.getLogger("granchain")
 
 
 class Controller:
@@ -43,32 +42,34 @@ class Controller:
     It is the `Host` of its pages. Everything here runs with the document locked.
     """
 
-    def __init__(self, document: Document, session: Session) -> None:
+    def __init__(self, document: Document, session: Session, start: State | None = None) -> None:
         self._document = document
         self._left = False
-        self._insistable: Scene | None = None
+        self._first_start = start
         METERS.visitors += 1
         METERS.opened += 1
         self.session = session
-        self.views = views = Views(self.received, partial(self._guarded, self._choose_frequency))
-        self.pictures = Pictures(self, views, self.note, self._arrived)
+        self.views = views = Views(session, self.received, partial(self._guarded, self._choose_frequency))
+        self.sentences = Sentences(session, views.status_line, self._compute)
+        self.pictures = Pictures(self, views, self.sentences.note, self._arrived)
         self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
         self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self._header,
                                       self.pictures.redraw)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
+        self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
         own: Actions = {
             "ping": lambda _: views.chain.send(type="pong"),
             "ready": self._ready, "page-visible": lambda _: self.pictures.restart(),
             "narrow": lambda m: views.fit(bool(m.get("value"))),
             "painted": lambda m: self.pictures.painted(m.get("number")),
-            "set": self._set, "restore": self._restore, "scene": self._scene,
-            "dismiss-sentence": self._dismiss_sentence, "insist": self._insist,
+            "set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go,
+            **self.sentences.actions,
         }
         playback = Playback(session, self.pictures, self._compute, self._header, self.say)
         self.owners: dict[str, Actions] = {
             "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
-            "display choices": self.choices.actions,
+            "display choices": self.choices.actions, "pins": self.pinned.actions,
             **{f"page `{row.name}`": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
         }
         self._actions = all_actions(self.owners)
@@ -108,34 +109,11 @@ class Controller:
 
     def say(self, sentence: str) -> None:
         """Show the visitor one sentence until the next valid action; an empty one removes it."""
-        self.session.sentence = sentence
-        self._insistable = None
-        self._show_sentences()
-
-    def note(self, notice: str) -> None:
-        """Show one sentence that the next picture removes."""
-        self.session.notice = notice
-        self._show_sentences()
-
-    def _show_sentences(self) -> None:
-        self.views.status_line.update_state(sentence=f"{self.session.sentence} {self.session.notice}".strip(),
-                                            insist=self._insistable is not None)
+        self.sentences.say(sentence)
 
     def failed(self, error: Exception) -> None:
         """Say in one sentence what happened; the last good picture stays."""
-        if isinstance(error, BadInput):
-            self.say(str(error))
-            if isinstance(error, (OverBudget, TooLong)):
-                METERS.refused_pictures += 1
-                self._insistable = self.session.scene
-                self._show_sentences()
-        elif isinstance(error, NumbersFailed):
-            self.note(error.sentence)
-        else:
-            METERS.errors += 1
-            log.error("unexpected failure", exc_info=error)
-            self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
-                     "stays. Move the knob back or reset, and please report it.")
+        self.sentences.failed(error)
 
     def close(self, session_context: object) -> None:
         """The visitor left: everything that is computed for this page ends, and nothing is called any more."""
@@ -144,6 +122,7 @@ class Controller:
         self.pictures.close()
         self.curves.close()
         self.files.close()
+        self.pinned.close()
         for page in self.pages:
             page.close()
 
@@ -193,6 +172,10 @@ class Controller:
         self._send_knob_values()
         self._scene_changed(state)
 
+    def address_changed(self) -> None:
+        """What the address of the page says has changed, but no knob has."""
+        self.views.header.send(type="address", query=self.session.link)
+
     def activities(self) -> list[Activity]:
         """Everything that is computed for this visitor, or could be."""
         return [
@@ -201,6 +184,7 @@ class Controller:
         ]
 
     def _arrived(self, picture: Settled) -> None:
+        self.pinned.picture_ready(picture)
         for page in self.pages:
             page.picture_ready(picture)
 
@@ -214,10 +198,10 @@ class Controller:
         disable_nagle(self._document)
         gather_writes(self._document)
         self.views.fit(bool(message.get("narrow")))
-        self.views.scales.fit = self.session.scale == "fit"
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.choose({"value": message.get("theme")})
-        self._new_scene()
+        self.pinned.show()
+        self._new_scene(self._first_start)
 
     def _new_scene(self, start: State | None = None) -> None:
         scene = self.session.scene
@@ -245,6 +229,7 @@ class Controller:
 
     def _tell_pages(self) -> None:
         scene = self.session.scene
+        self.pinned.scene_changed()
         for page in self.pages:
             page.scene_changed()
         self.views.equation.update_state(latex=scene.equation_latex())
@@ -290,13 +275,24 @@ class Controller:
         self.say("")
         self._new_scene()
 
-    def _insist(self, _: dict[str, Any]) -> None:
-        """Compute what was refused because it takes long; the other visitors still have their turns."""
-        if self._insistable == self.session.scene:
-            self.session.insisted = self.session.scene
-            self.say("")
-            self._compute()
-
-    def _dismiss_sentence(self, _: dict[str, Any]) -> None:
-        self.session.notice = ""
-        self.say("")
+    def _go(self, message: dict[str, Any]) -> None:
+        """A step back or forward: the session becomes what the address says, its picture to the last digit."""
+        session, name, curves = self.session, self.session.scene.name, self.session.curves
+        start, refused = take_address(session, str(message.get("query", "")))
+        if session.mode == "settled":
+            self.pictures.live = None
+        elif self.pictures.live is None:
+            self.pictures.live = LiveRun(session.scene, session.used)
+        for page in self.pages:
+            page.address_taken()
+        self.pinned.show()
+        if session.scene.name != name:
+            self._new_scene(start)
+        else:
+            if session.curves != curves:
+                session.curves = self.curves.select(session.scene, session.curves)
+            self._header()
+            self._send_knob_values()
+            self._scene_changed(start)
+        self.say(" ".join(refused))
+        self.views.header.send(type="went", query=session.link)

@@ -13,7 +13,7 @@ from .layout import Views
 
 
 class DisplayChoices:
-    """Display choices; of them only a chosen curve, and the scale of a paused live run, start a computation."""
+    """Display choices; of them only a chosen curve starts a computation."""
 
     def __init__(self, session: Session, views: Views, curves: Curves,
                  theme_changed: Callable[[Theme], None], header: Callable[[], None],
@@ -41,7 +41,6 @@ class DisplayChoices:
 
     def _scale(self, message: dict[str, Any]) -> None:
         self._session.set_scale(message.get("value"))
-        self._views.scales.fit = self._session.scale == "fit"
         self._header()
         self._redraw()
 

@@ -10,9 +10,8 @@ import panel as pn
 from bokeh.document import Document
 
 from ..session.session import Session
-from ..session.share import decode
+from .addresses import take_address
 from .controller import Controller
-from .table import overlay_names, tab_names
 
 
 def page() -> pn.Template:
@@ -21,8 +20,10 @@ def page() -> pn.Template:
     document = pn.state.curdoc
     if document is None:
         raise RuntimeError("the page is made inside a request; serve it, do not call it")
-    session, sentences = session_from_address(_query(document))
-    controller = Controller(document, session)
+    session = Session()
+    query = _query(document)
+    start, sentences = take_address(session, query) if query.strip("?") else (None, [])
+    controller = Controller(document, session, start)
     pn.config.exception_handler = _handler(controller)
     if sentences:
         controller.say(" ".join(sentences))
@@ -54,20 +55,3 @@ def _query(document: Document) -> str:
     """
     context = document.session_context
     return urlsplit(context.request.uri or "").query if context is not None and context.request is not None else ""
-
-
-def session_from_address(query: str) -> tuple[Session, list[str]]:
-    """The session a link describes, and a sentence for every field that could not be used."""
-    session = Session()
-    if not query.strip("?"):
-        return session, []
-    places = {"tab": tab_names(), "page": overlay_names()}
-    scene, extras, sentences = decode(query, places)
-    session.scene = scene
-    session.mode = extras.get("mode", session.mode)
-    session.start = extras.get("start", session.start)
-    session.scale = extras.get("scale", session.scale)
-    session.curves = extras.get("curves", session.curves)
-    session.place = {name: extras[name] for name in places if name in extras}
-    session.theme = extras.get("look", session.theme)
-    return session, sentences

@@ -27,8 +27,9 @@ from ..parts.trains import WIDEST_TITLES, Trains
 from ..pictures.curve import KEY
 from ..pictures.regimes import REGIMES, SYMBOLS
 from ..pictures.theme import Theme, style_sheet
+from ..session.session import Session
 from .scales import Scales
-from .table import GROUPS, PAGES, described_pages
+from .table import GROUPS, PAGES, described_tabs
 from .tabs import Tabs
 from .template import PageTemplate
 
@@ -38,9 +39,10 @@ _HERE = Path(__file__).resolve().parent
 class Views:
     """Every part of the page; all their messages go to `received`."""
 
-    def __init__(self, received: Callable[[dict[str, Any]], None], choose: Callable[[object], None]) -> None:
+    def __init__(self, session: Session, received: Callable[[dict[str, Any]], None],
+                 choose: Callable[[object], None]) -> None:
         self.time = Range1d(start=1.0, end=0.0)
-        self.scales = Scales()
+        self.scales = Scales(session)
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
         self.equation = Equation(received)
@@ -50,7 +52,7 @@ class Views:
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
-            "largest_file": MOST_BYTES, "lines": KEY, "pages": described_pages(), "groups": GROUPS, "regimes": [
+            "largest_file": MOST_BYTES, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS, "regimes": [
                 {"name": name, "symbol": SYMBOLS[style[0]], "colour": style[1]} for name, style in REGIMES.items()]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)

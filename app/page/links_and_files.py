@@ -1,8 +1,9 @@
-"""Share links and saved pictures; the visitor's own measurements are in measurement.py."""
+"""Share links, and what can be taken along; the visitor's own measurements are in measurement.py."""
 
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,16 @@ from ..pages.curve.page import Curves
 from ..serve.queues import FILES
 from ..session.hooks import Actions
 from ..session.host import Host
+from ..session.message_checks import quoted
+from ..session.take_along import TEXTS, Screen
 from ..session.task import Job, Task
 from .layout import Views
 from .main_picture import Pictures
 from .measurement import Measurement
+
+_NONE = "There is no picture to save yet; wait for the first one."
+_PASSES = ("A program repeats a settled picture, and this live run depends on when each knob was moved. Choose "
+           "“settled”, or save the run as HDF5.")
 
 
 class LinksAndFiles:
@@ -26,6 +33,7 @@ class LinksAndFiles:
     def __init__(self, host: Host, views: Views, curves: Curves, pictures: Pictures) -> None:
         self._host = host
         self._views = views
+        self._curves = curves
         self._pictures = pictures
         self._saving = Task(host, FILES, _say_nothing, "Saving the picture", host.failed)
         self._measurement = Measurement(host, views.tabs, curves)
@@ -39,20 +47,49 @@ class LinksAndFiles:
     def _share(self, _: dict[str, Any]) -> None:
         self._views.header.send(type="link", query=self._host.session.link)
 
-    def _save(self, _: dict[str, Any]) -> None:
+    def _save(self, message: dict[str, Any]) -> None:
+        what = message.get("what", "hdf5")
         run = self._pictures.run()
         if run is None:
-            raise BadInput("There is no picture to save yet; wait for the first one.")
-        self._saving.start(partial(self._write, run))
+            raise BadInput(_NONE)
+        if what == "hdf5":
+            self._write(".h5", partial(_hdf5, run))
+        elif isinstance(what, str) and what in TEXTS:
+            end, text = TEXTS[what]
+            screen = self._screen(run, what)
+            self._write(end, lambda: text(screen).encode())
+        else:
+            raise BadInput(f"There is no file {quoted(what)} to save; there are hdf5, {', '.join(TEXTS)}.")
 
-    def _write(self, run: Run, job: Job) -> None:
-        """In a worker thread: write the file in a temporary folder and send its content."""
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "picture.h5"
-            save(run, path)
-            content = path.read_bytes()
-        name = f"{run.scene.name}-{run.scene.f:g}Hz.h5"
-        job.next_tick(self._views.header.send, type="file", name=name, content=content)
+    def _screen(self, run: Run, what: str) -> Screen:
+        session = self._host.session
+        if what in ("script", "notebook"):
+            if session.mode == "live":
+                raise BadInput(_PASSES)
+            if session.picture is None or not session.picture.final or run.scene != session.scene:
+                raise BadInput("The picture is still being computed; save it when the line below no longer says "
+                               "“preview”.")
+        curves = self._curves.complete(session.scene)
+        if what == "curve" and not curves:
+            raise BadInput("No resonance curve is complete yet; wait until its bar is gone.")
+        return Screen(run, session.started_from, curves, session.link)
+
+    def _write(self, end: str, content: Callable[[], bytes]) -> None:
+        scene = self._host.session.scene
+        name = f"{scene.name}-{scene.f:g}Hz{end}"
+
+        def work(job: Job) -> None:
+            """In a worker thread."""
+            job.next_tick(self._views.header.send, type="file", name=name, content=content())
+
+        self._saving.start(work)
+
+
+def _hdf5(run: Run) -> bytes:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.h5"
+        save(run, path)
+        return path.read_bytes()
 
 
 def _say_nothing(status: str, sentence: str) -> None:

@@ -6,12 +6,12 @@ import math
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from functools import partial
 
 import numpy as np
 
-from granchain_core import Cancelled, Run, Scene, Settled, State, settling
+from granchain_core import Cancelled, OverBudget, Run, Scene, Settled, State, settling
 from granchain_core.warm import LIVE
 
 from ..frames import samples_for
@@ -21,7 +21,7 @@ from ..serve.pacing import FramePacer
 from ..serve.queues import PICTURES, LatestWins
 from ..serve.shared import Shared
 from ..serve.turns import Turn
-from ..session.budget import WHOLE_PICTURE, TooLong, check_first_picture
+from ..session.budget import WHOLE_PICTURE, Refused, TooLong, check_first_picture
 from ..session.energy_residual import with_account
 from ..session.host import Host
 from ..session.live import LivePicture, LiveRun
@@ -55,6 +55,15 @@ def _computed(scene: Scene, start: State | None, most: float, stop: Turn) -> Ite
             raise TooLong
 
 
+@contextmanager
+def _refusing(scene: Scene) -> Iterator[None]:
+    """What takes too long is refused for this scene, whatever the knobs say by then."""
+    try:
+        yield
+    except (OverBudget, TooLong) as problem:
+        raise Refused(scene, str(problem)) from None
+
+
 class Pictures:
     """Settled pictures and the live run. `note` takes a sentence that the next picture takes away.
 
@@ -73,6 +82,7 @@ class Pictures:
         self.live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LivePicture | None = None
+        self._shown: Settled | LivePicture | None = None
         self._asked: float | None = None
 
     @property
@@ -120,6 +130,10 @@ class Pictures:
 
     def _settled(self, scene: Scene, start: State | None, stop: Turn) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
+        with _refusing(scene):
+            yield from self._pictures_of(scene, start, stop)
+
+    def _pictures_of(self, scene: Scene, start: State | None, stop: Turn) -> Iterator[Settled]:
         if scene != self._session.insisted:
             check_first_picture(scene)
         self._await_live_kernels(scene, stop)
@@ -138,7 +152,9 @@ class Pictures:
 
     def _begun_from(self, origin: State | None) -> None:
         """With the document locked, before the first picture arrives: where the motion begins."""
-        self._session.started_from = origin
+        if origin is not self._session.started_from:
+            self._session.started_from = origin
+            self._host.address_changed()
 
     def _await_live_kernels(self, scene: Scene, stop: Turn) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
@@ -153,8 +169,9 @@ class Pictures:
     def _live_step(self, samples: int | None, stop: Turn) -> Iterator[LivePicture]:
         live, scene = self.live, self._session.scene
         if live is not None:
-            if scene != self._session.insisted:
-                check_first_picture(scene)
+            with _refusing(scene):
+                if scene != self._session.insisted:
+                    check_first_picture(scene)
             self._await_live_kernels(scene, stop)
             with live.turn.held():
                 picture = live.advance(samples) if samples else live.step(self._session.speed)
@@ -187,6 +204,7 @@ class Pictures:
             self._settled_arrived(picture)
         if self._session.notice:
             self._note("")
+        self._shown = picture
         self._pacer.offer(picture)
 
     def _failed(self, error: Exception) -> None:
@@ -215,10 +233,11 @@ class Pictures:
 
     def redraw(self) -> None:
         """Send the picture on the screen again, to be drawn otherwise; a running chain sends by itself."""
-        if self.live is None and self._session.picture is not None:
-            self._pacer.offer(self._session.picture)
-        elif self.live is not None and not self._session.playing:
-            self.advance(1)
+        shown, live = self._shown, self.live is not None
+        if shown is None or isinstance(shown, LivePicture) != live or (live and self._session.playing):
+            return
+        if shown.run.scene.name == self._session.scene.name:
+            self._pacer.offer(shown)
 
     def restart(self) -> None:
         """The page is visible again: forget outstanding acknowledgements, which will never come."""

@@ -16,6 +16,7 @@ from pathlib import Path
 from granchain_core import Scene
 
 from ..frames import Extremes, Frames, extremes_of
+from ..session.session import Session
 
 FILE = Path(__file__).resolve().parents[2] / "assets" / "scales.toml"
 
@@ -28,12 +29,17 @@ def _of_scenes() -> dict[str, Extremes]:
 
 
 class Scales:
-    """What the pictures of one page are drawn to; `fit` is the visitor's choice."""
+    """What the pictures of one page are drawn to; the visitor's choice, "same" or "fit", is that of the session."""
 
-    def __init__(self) -> None:
-        self.fit = False
+    def __init__(self, session: Session) -> None:
+        self._session = session
         self._scene = ""
         self._largest = Extremes()
+
+    @property
+    def fit(self) -> bool:
+        """Whether every picture is drawn to its own largest values."""
+        return self._session.scale == "fit"
 
     def forget(self) -> None:
         """A scene is opened: its own scale again, whatever has widened it before."""

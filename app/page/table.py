@@ -14,6 +14,7 @@ from ..pages.effects.page import EffectsPage
 from ..pages.hard_cases.page import HardCasesPage
 from ..pages.hard_cases.view import ABOUT, HardCases
 from ..pages.map.page import MapPage
+from ..pages.numbers.page import NumbersPage
 from ..pages.observer.page import ObserverPage
 from ..pages.observer.view import Observer
 from ..pages.paper.page import PaperPage
@@ -26,6 +27,22 @@ from ..pages.stories.page import StoriesPage
 from ..parts.component import Component
 from ..session.hooks import Page
 from ..session.host import Host
+
+
+@dataclass(frozen=True)
+class Tab:
+    """A tab that belongs to no page; the fields mean what they mean in a `Row`."""
+
+    name: str
+    group: str
+    taller: bool = False
+    placeholder: str = ""
+    reports_visibility: bool = False
+
+    @property
+    def title(self) -> str:
+        """What stands on it."""
+        return self.name
 
 
 @dataclass(frozen=True)
@@ -48,13 +65,14 @@ class Row:
     group: str = "explore"
 
 
-#: The groups of tabs, and the tabs that belong to no page; "data" stands apart from them.
+#: The groups of tabs; a tab of none of them stands apart at the end.
 GROUPS = ("understand", "explore", "trust")
-OWN_TABS = {"look at": "understand", "regimes": "understand", "data": ""}
 
-#: In the order of the tabs; the first is open when nothing else is said.
-PAGES = (
+#: The pages and the tabs without one, in the order of the tabs; the first is open when nothing else is said.
+TABS: tuple[Row | Tab, ...] = (
     Row("stories", "stories", StoriesPage, None, group="understand"),
+    Tab("look at", "understand"),
+    Tab("regimes", "understand"),
     Row("probe", "probe", ProbePage, Probe),
     Row("stability", "stability", StabilityPage, Stability),
     Row("accuracy", "accuracy", AccuracyPage, Accuracy, group="trust"),
@@ -68,18 +86,24 @@ PAGES = (
     Row("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
         group="understand"),
+    Row("numbers", "numbers", NumbersPage, None, reports_visibility=True, group=""),
+    Tab("compare", "", taller=True),
+    Tab("data", "", taller=True),
 )
+PAGES = tuple(row for row in TABS if isinstance(row, Row))
 
 
-def described_pages() -> list[dict[str, Any]]:
-    """What the tabs need of the table."""
+def described_tabs() -> list[dict[str, Any]]:
+    """What the browser needs of the table, in the order of the groups."""
+    order = (*GROUPS, "")
     return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller,
-             "reports_visibility": row.reports_visibility, "group": row.group} for row in PAGES]
+             "reports_visibility": row.reports_visibility, "group": row.group}
+            for row in sorted(TABS, key=lambda row: order.index(row.group))]
 
 
 def tab_names() -> tuple[str, ...]:
     """The tabs by the names they have in a link."""
-    return (*OWN_TABS, *(row.name for row in PAGES))
+    return tuple(row.name for row in TABS)
 
 
 def overlay_names() -> tuple[str, ...]:

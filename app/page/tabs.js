@@ -5,11 +5,13 @@ import { branchesTab } from "../pages/branches/branches_tab.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/cells.js";
 import { mapTab } from "../pages/map/map.js";
+import { numbersMessage, numbersTab } from "../pages/numbers/numbers_tab.js";
 import { observerTab } from "../pages/observer/observer_tab.js";
 import { leaveStories, storiesTab } from "../pages/stories/stories_tab.js";
 import { probeTab } from "../pages/probe/probe_tab.js";
 import { stabilityTab } from "../pages/stability/stability_tab.js";
 import { button, element, openButton, paragraph } from "../parts/dom.js";
+import { compareMessage, compareTab } from "./compare_tab.js";
 import { dataTab, saveSample } from "./data_tab.js";
 import { lookAtTab, regimesTab } from "./scene_tabs.js";
 
@@ -20,6 +22,8 @@ const TABS = {
   "look at": lookAtTab,
   regimes: regimesTab,
   probe: probeTab,
+  numbers: numbersTab,
+  compare: compareTab,
   stability: stabilityTab,
   accuracy: accuracyTab,
   map: mapTab,
@@ -28,9 +32,6 @@ const TABS = {
   observer: observerTab,
   data: dataTab,
 };
-
-// The tab that is open when nothing else is said.
-const FIRST = "stories";
 
 // The tab of a page that has no function in TABS: its sentence, or what it is, and a button that opens it.
 function plainTab(_, { name, placeholder }) {
@@ -59,27 +60,20 @@ function largerButton() {
 class Tabs {
   constructor(model) {
     this.model = model;
-    const pages = model.state.pages;
-    const own = (name, group) => ({ name, title: name, group });
-    const [stories, ...others] = pages;
-    const rows = [
-      stories,
-      own("look at", "understand"),
-      own("regimes", "understand"),
-      ...others,
-      { ...own("data", ""), taller: true },
-    ];
+    const rows = model.state.tabs;
     this.rows = new Map(rows.map((row) => [row.name, row]));
-    this.chosen = FIRST;
+    this.first = rows[0].name; // the tab that is open when nothing else is said
+    this.chosen = this.first;
     this.seen = null; // the tab that is on the screen, null while a page lies over the pictures
     this.redraw = () => {};
     const groups = [...model.state.groups, ""].map((group) => this.group(group, rows));
     this.tabs = groups.flatMap((group) => [...group.querySelectorAll("[role=tab]")]);
+    this.list = element("div", { role: "tablist", ariaLabel: "what stands below" }, ...groups);
     // The larger button floats, so it comes first: the second line of tabs has the whole width.
-    this.list = element("div", { className: "tabs", role: "tablist" }, largerButton(), ...groups);
+    const top = element("div", { className: "tabs" }, largerButton(), this.list);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
-    this.body = element("div", { className: "body", role: "tabpanel" });
-    this.root = element("div", { className: "part tabbed" }, this.list, this.body);
+    this.body = element("div", { className: "body", role: "tabpanel", tabIndex: 0 });
+    this.root = element("div", { className: "part tabbed" }, top, this.body);
   }
 
   // The tabs of a group, with its name before them.
@@ -97,11 +91,11 @@ class Tabs {
 
   choose(name) {
     this.chosen = name;
-    if (name !== FIRST) leaveStories();
+    if (name !== "stories") leaveStories();
     document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
     this.reportVisibility();
     this.show();
-    window.granchain.placed({ tab: name === FIRST ? "" : name });
+    window.granchain.placed({ tab: name === this.first ? "" : name });
     window.granchain.emit("tab", name);
   }
 
@@ -135,6 +129,7 @@ class Tabs {
       const selected = tab.dataset.tab === this.chosen;
       tab.ariaSelected = String(selected);
       tab.tabIndex = selected ? 0 : -1;
+      if (selected) this.body.ariaLabel = tab.textContent;
     }
     const make = TABS[this.chosen] ?? plainTab;
     const { content, show = () => {}, updatesItself = false } = make(this.model, this.rows.get(this.chosen));
@@ -154,7 +149,9 @@ export function render({ model }) {
   model.on("state", () => tabs.stateChanged());
   model.on("msg:custom", mapMessage);
   model.on("msg:custom", saveSample);
-  for (const { name } of model.state.pages)
+  model.on("msg:custom", compareMessage);
+  model.on("msg:custom", numbersMessage);
+  for (const { name } of model.state.tabs)
     window.granchain.on(name, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
@@ -162,10 +159,23 @@ export function render({ model }) {
     window.granchain.placed({ page: name ?? "" });
     tabs.reportVisibility();
   });
+  window.granchain.on("compare", () => {
+    window.granchain.closePage();
+    tabs.choose("compare");
+  });
+  for (const name of ["compare", "numbers"])
+    window.granchain.on(`${name}-told`, () => {
+      if (tabs.chosen === name) tabs.redraw();
+    });
+  // A step back or forward.
+  window.granchain.on("place", ({ tab: name, page: over }) => {
+    tabs.choose(tabs.rows.has(name) ? name : tabs.first);
+    window.granchain.openPage(over || null);
+  });
   window.granchain.on("bead", () => {
     if (tabs.chosen !== "probe" && !window.granchain.overlay) tabs.choose("probe");
   });
-  const { tab = FIRST, page } = model.state.place;
+  const { tab = tabs.first, page } = model.state.place;
   tabs.choose(tab);
   if (page) window.granchain.openPage(page);
   return tabs.root;

@@ -3,7 +3,7 @@
 import { ChainDrawing, unpack } from "./chain_drawing.js";
 import { Clock, Cursor } from "./clock.js";
 import { button, element } from "./dom.js";
-import { colourOf } from "./steel.js";
+import { colourOf, Steel } from "./steel.js";
 
 const SCALES = [
   ["same", "same scale", "One scale for all pictures of this scene: strong looks strong, weak looks weak"],
@@ -16,6 +16,8 @@ function afterFrame(act) {
   channel.port1.onmessage = act;
   channel.port2.postMessage(null);
 }
+
+const FINE = 3; // pixels of a bead in a file for one on the screen
 
 // Room for the driver and for the wall beside the beads, in pixels.
 const DRIVER = 62,
@@ -56,6 +58,7 @@ class Chain {
   setUpScale() {
     const scale = document.getElementById("scale");
     const shares = Array.from({ length: 17 }, (_, i) => colourOf(this.model.state.palette, (i / 16) ** 2));
+    window.granchain.chain = { canvas: this.canvas, colours: shares, redraw: (on) => this.redraw(on) };
     scale.querySelector("b").style.background = `linear-gradient(to right, ${shares.join(",")})`;
     this.energies = [...scale.querySelectorAll(".colours span")];
     this.scales = SCALES.map(([value, words, title]) =>
@@ -116,6 +119,8 @@ class Chain {
   load(frames) {
     Object.assign(frames, unpack(frames).series);
     this.showScale(frames);
+    window.granchain.shown = { scene: frames.scene, f: frames.f };
+    window.granchain.emit("shown", window.granchain.shown);
     const { beads } = this.drawing;
     this.drawing.load(frames);
     if (this.drawing.beads !== beads) this.placeColumn();
@@ -128,6 +133,18 @@ class Chain {
   painted({ number, live, sent }) {
     this.model.send_msg({ do: "painted", number });
     window.granchain.emit("painted", { number, live, lag: Date.now() - 1000 * sent });
+  }
+
+  // The chain as it is now, on a context that writes a file.
+  redraw(context) {
+    const { frames, row } = this.clock;
+    const { context: own, ratio, steel } = this.drawing;
+    Object.assign(this.drawing, { context, ratio: FINE * ratio, steel: new Steel(this.model.state.palette) });
+    try {
+      if (frames) this.drawing.draw(frames, row);
+    } finally {
+      Object.assign(this.drawing, { context: own, ratio, steel });
+    }
   }
 
   nextPeriod() {

@@ -39,6 +39,8 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, f
         "live": live,
         "rows": 1 if running else frames.rows,
         "samples": frames.samples,
+        "scene": scene.name,
+        "f": scene.f,
         **drawn_chain(scene),
         "energy_high": scale.kinetic_energy,
         "energy_labels": energy_labels(scale.kinetic_energy),

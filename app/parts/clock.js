@@ -59,11 +59,16 @@ export class Cursor {
     for (const element of [this.line, ...this.stage.querySelectorAll(".picture")])
       element.addEventListener("pointerdown", (event) => this.grab(event, element));
     this.line.addEventListener("keydown", (event) => {
-      const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-      if (!step || !clock.frames) return;
+      const { frames } = clock;
+      if (!frames || frames.rows < 2) return;
+      const row = 1 / (frames.rows - 1),
+        period = frames.samples * row;
+      const steps = { ArrowDown: row, ArrowUp: -row, PageDown: period, PageUp: -period, Home: -1, End: 1 };
+      const step = steps[event.key];
+      if (!step) return;
       event.preventDefault();
       window.granchain.emit("pause");
-      clock.moveTo(clock.fraction + step / (clock.frames.rows - 1));
+      clock.moveTo(clock.fraction + step);
     });
   }
 
@@ -137,6 +142,11 @@ export class Cursor {
   place() {
     if (!this.area || !this.clock.frames) return;
     this.line.style.display = "block";
-    this.line.style.top = `${this.area.y + this.clock.fraction * this.area.height}px`;
+    const { fraction, playing, frames } = this.clock;
+    this.line.style.top = `${this.area.y + fraction * this.area.height}px`;
+    if (playing && !frames.live && this.line.hasAttribute("aria-valuetext")) return; // nobody can read so fast
+    this.line.setAttribute("aria-valuenow", String(Math.round(100 * fraction)));
+    const periods = (fraction * (frames.rows - 1)) / frames.samples;
+    this.line.setAttribute("aria-valuetext", frames.live ? "now" : `${periods.toFixed(2)} drive periods`);
   }
 }

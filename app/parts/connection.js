@@ -19,11 +19,18 @@
   const unanswered = new Map();
   let viewFields = []; // the fields of a link that belong to no scene
   const linkReceived = (query, answered, fields = viewFields) => {
+    const acted = known && query !== link;
     link = query;
     viewFields = fields;
     for (const name of answered) unanswered.delete(name);
     known = true;
-    follow();
+    follow(acted);
+  };
+  // The address says more precisely what was asked for before: no step of its own.
+  const linkRefined = (query) => {
+    link = query;
+    known = true;
+    follow(false);
   };
   const requested = (name, value) => {
     if (name === "scene") unanswered.clear();
@@ -48,22 +55,84 @@
   };
 
   // Where the visitor is: the tab below the curve and the page over the pictures, empty for the first tab and for none.
-  const place = { tab: "", page: "" };
+  const wherever = new URLSearchParams(location.search);
+  const place = { tab: wherever.get("tab") ?? "", page: wherever.get("page") ?? "" };
+  if (page.embedded) place.embed = "1";
   const placed = (where) => {
+    const acted = known && Object.entries(where).some(([name, value]) => place[name] !== value);
     Object.assign(place, where);
-    follow();
+    follow(acted);
   };
-  // The address is always that of what is on the screen, so that reload, back and a bookmark bring it back. A browser
-  // takes only so many changes a second.
-  const FOLLOW_AFTER = 400; // ms
-  let following = 0;
-  const follow = () => {
+  // The address is always that of what is on the screen, so that reload, back and a bookmark bring it back. What a
+  // visitor does, and then rests, is a step of the browser's own history, so that back is undo and forward is redo.
+  const FOLLOW_AFTER = 400; // ms; a browser takes only so many changes a second
+  let following = 0,
+    stepping = false; // whether the visitor has done something since the last step
+  const follow = (acted) => {
+    stepping ||= acted && !steps.returning;
     clearTimeout(following);
     following = setTimeout(() => {
-      if (known && !leaving) history.replaceState(history.state, "", address());
+      if (!known || leaving) return;
+      const there = address();
+      if (stepping && there.href !== location.href) steps.push(there);
+      else history.replaceState({ ...history.state, at: steps.at }, "", there);
+      stepping = false;
     }, FOLLOW_AFTER);
   };
-  page.on("theme", () => follow());
+  page.on("theme", () => follow(known));
+
+  // Where in the history the page is. `newest` is the last step that one can go forward to.
+  const NEWEST = "granchain-newest";
+  const remember = (value) => {
+    try {
+      sessionStorage.setItem(NEWEST, String(value));
+    } catch {
+      /* redo is forgotten at a reload */
+    }
+  };
+  const steps = {
+    at: 0,
+    newest: 0,
+    returning: false, // while the server takes over an address of the history
+    begin(at, newest) {
+      Object.assign(this, { at, newest: Math.max(at, newest) });
+      this.tell();
+    },
+    push(there) {
+      this.at += 1;
+      this.newest = this.at;
+      history.pushState({ at: this.at }, "", there);
+      remember(this.newest);
+      this.tell();
+    },
+    tell() {
+      page.emit("steps", { back: this.at > 0, forward: this.at < this.newest });
+    },
+  };
+  const undo = () => steps.at > 0 && !page.lost && history.back();
+  const redo = () => steps.at < steps.newest && !page.lost && history.forward();
+  addEventListener("popstate", ({ state }) => {
+    if (!known || !ping) return;
+    clearTimeout(following);
+    stepping = false;
+    steps.at = state?.at ?? 0;
+    steps.returning = !page.lost;
+    steps.tell();
+    const query = new URLSearchParams(location.search);
+    const [tab, over] = ["tab", "page"].map((name) => query.get(name) ?? "");
+    page.restoreTheme(query.get("look"));
+    unanswered.clear();
+    if (!page.lost) page.go(location.search.slice(1));
+    Object.assign(place, { tab, page: over });
+    page.emit("place", place);
+    for (const name of ["tab", "page", "look"]) query.delete(name);
+    link = query.toString();
+  });
+  // The server shows what the address says.
+  const went = (query) => {
+    linkRefined(query);
+    steps.returning = false;
+  };
 
   const say = (sentence) => {
     const place = document.getElementById("lost");
@@ -106,7 +175,8 @@
   const rebuild = () => {
     leaving = true;
     try {
-      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, snapshot: snapshot() }));
+      const { at, newest } = steps;
+      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, at, newest, snapshot: snapshot() }));
     } catch {
       /* no room to keep them: the sentence and the last pictures are missing for a moment */
     }
@@ -177,6 +247,14 @@
   } catch {
     /* nothing kept */
   }
+  let kept = 0;
+  try {
+    kept = Number(sessionStorage.getItem(NEWEST)) || 0;
+  } catch {
+    /* nothing kept */
+  }
+  const begun = history.state?.at ?? again?.at ?? 0;
+  steps.begin(begun, history.state || again ? kept : begun);
   if (again) {
     const before = Object.assign(new Image(), { id: "last-pictures", alt: "", src: again.snapshot ?? "" });
     document.addEventListener("DOMContentLoaded", () => {
@@ -189,5 +267,5 @@
     });
   }
   Object.assign(page, { lost: false, kept: {}, again, requested, linkReceived, answerReceived, connect, address });
-  Object.assign(page, { place, placed });
+  Object.assign(page, { place, placed, linkRefined, went, undo, redo, steps, go: () => {} });
 })();

@@ -4,7 +4,6 @@ export class Embedded {
   constructor(host, filled = () => {}) {
     this.host = host;
     this.filled = filled;
-    this.host.setAttribute("role", "img");
     this.ready = Promise.resolve();
   }
 
@@ -12,6 +11,7 @@ export class Embedded {
   load(item, words) {
     if (!item || item === this.item) return;
     this.item = item;
+    this.host.setAttribute("role", "img");
     this.host.setAttribute("aria-label", words);
     this.enqueue(async () => {
       this.clear();

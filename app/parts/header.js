@@ -2,6 +2,7 @@
 
 import { button, element } from "./dom.js";
 import { Popovers } from "./popovers.js";
+import { download } from "./take_along.js";
 
 // Paths of our own, so that no font needs these symbols.
 const ICONS = {
@@ -10,6 +11,9 @@ const ICONS = {
   pause: "M8 5v14M16 5v14",
   play: "M8 5l11 7-11 7z",
   step: "M5 5l9 7-9 7zM18 5v14",
+  undo: "M9 5L4 10l5 5M4 10h10a5 5 0 0 1 0 10h-3",
+  redo: "M15 5l5 5-5 5M20 10H10a5 5 0 0 0 0 10h3",
+  pin: "M9 3h6l-1 7 4 4H6l4-4zM12 14v7",
   share: "M9 15l6-6M8 11l-3 3a3.5 3.5 0 0 0 5 5l3-3M16 13l3-3a3.5 3.5 0 0 0-5-5l-3 3",
   save: "M12 4v11m-5-4l5 5 5-5M5 20h14",
   help: "M9 9a3 3 0 1 1 4.2 2.7c-.9.4-1.2 1-1.2 2.3M12 18v.5",
@@ -40,39 +44,35 @@ function chooser(label, className, act) {
   return select;
 }
 
-function download({ name, content }) {
-  const link = element("a", { href: URL.createObjectURL(new Blob([content])), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
-
 class Header {
   constructor(model) {
     this.model = model;
     this.playing = true;
     this.themed = false; // whether the theme of the link has been taken over
     this.begun = false; // whether the first state has come
-    this.popovers = new Popovers();
+    this.popovers = new Popovers((what) => this.send("save", { what }));
     this.makeTimeControls();
     this.makeSceneChooser();
     this.makeButtons();
     this.name = element("h1", { textContent: "granchain" });
     this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
     this.popovers.menu.ariaLabel = "more controls";
+    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), this.wholePage()];
     const knobs = () => window.granchain.drawer(true);
-    this.root = element(
-      "div",
-      { className: "part bar" },
+    const all = [
       iconButton(icon("knobs", "knobs"), "Show the knobs", knobs, "knobs-button"),
       this.name,
       this.scene,
       this.reset,
       this.play,
       this.step,
+      this.undo,
+      this.redo,
       this.speed,
       this.mode,
       this.start,
       element("span", { className: "grow" }),
+      this.pin,
       this.share,
       this.save,
       this.help,
@@ -80,18 +80,37 @@ class Header {
       this.more,
       this.popovers.help,
       this.popovers.link,
+      this.popovers.take,
       this.popovers.menu,
-    );
+    ];
+    this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
+  }
+
+  // In a frame on a slide: what is shown, and the way to the whole page.
+  wholePage() {
+    const link = element("a", { textContent: "open in granchain ↗", target: "_blank", rel: "noopener" });
+    window.granchain.on("shown", ({ scene, f }) => {
+      if (!window.granchain.embedded) return;
+      this.name.textContent = `${scene}, ${f} Hz`;
+      const url = window.granchain.address();
+      url.searchParams.delete("embed");
+      link.href = url.href;
+    });
+    return link;
   }
 
   makeButtons() {
     const send = (name) => () => this.send(name);
     this.reset = iconButton(icon("reset", "reset"), "Back to rest", send("reset"));
     this.step = iconButton(icon("step", "period"), "Forward one drive period", () => this.nextPeriod());
+    this.undo = iconButton(icon("undo"), "Undo (Ctrl-Z)", () => window.granchain.undo(), "icon");
+    this.redo = iconButton(icon("redo"), "Redo (Ctrl-Shift-Z)", () => window.granchain.redo(), "icon");
+    this.pin = iconButton(icon("pin", "pin"), "Pin this picture and compare", () => this.pinPicture());
     this.share = iconButton(icon("share", "share"), "Link to this picture", send("share"));
-    this.save = iconButton(icon("save", "save"), "Save this picture as HDF5", send("save"), "save");
-    this.help = iconButton(icon("help"), "Help", () => this.popovers.toggleHelp(), "icon");
+    const take = "Take along: pictures, tables, a program";
+    this.save = iconButton(icon("save", "save"), take, () => this.popovers.toggle("take"), "save");
+    this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp(), "icon");
     this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon");
     this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "icon more");
   }
@@ -117,8 +136,10 @@ class Header {
       () => this.putAway(this.speed),
       () => this.putAway(this.start),
       () => this.putAway(this.save, this.share),
+      () => this.putAway(this.undo, this.redo),
       () => this.putAway(this.step),
       () => this.putAway(this.name),
+      () => this.putAway(this.pin),
       () => this.putAway(this.reset),
       () => this.putAway(this.mode),
       () => this.putAway(this.help, this.theme),
@@ -183,6 +204,16 @@ class Header {
     this.send("playing", { value });
   }
 
+  pinPicture() {
+    this.send("pin");
+    window.granchain.emit("compare");
+  }
+
+  showSteps({ back, forward }) {
+    this.undo.disabled = !back;
+    this.redo.disabled = !forward;
+  }
+
   nextPeriod() {
     this.setPlaying(false);
     window.granchain.emit("period");
@@ -195,10 +226,22 @@ class Header {
       event.preventDefault();
       this.setPlaying(!this.playing);
     }
+    if (event.key === "?" && !event.composedPath().some((node) => node.type === "text")) this.popovers.toggleHelp();
+    if ((event.ctrlKey || event.metaKey) && !event.altKey) this.takeStep(event);
     if (event.key === "Escape") {
       this.popovers.close();
       window.granchain.drawer(false);
     }
+  }
+
+  // Ctrl-Z undoes and Ctrl-Shift-Z or Ctrl-Y redoes, but for what is being typed.
+  takeStep(event) {
+    const key = event.key.toLowerCase();
+    if (event.composedPath().some((node) => node.dataset?.typing)) return;
+    if (key !== "z" && key !== "y") return;
+    event.preventDefault();
+    if (key === "y" || event.shiftKey) window.granchain.redo();
+    else window.granchain.undo();
   }
 
   show() {
@@ -262,14 +305,18 @@ class Header {
   }
 
   receive(message) {
-    if (message.type === "link") window.granchain.linkReceived(message.query, []);
+    if (message.type === "link" || message.type === "address") window.granchain.linkRefined(message.query);
+    if (message.type === "went") window.granchain.went(message.query);
     if (message.type === "link") this.popovers.showLink();
-    else if (message.type === "file") download(message);
+    if (message.type === "file") download(message.name, new Blob([message.content]));
   }
 }
 
 export function render({ model }) {
   const header = new Header(model);
+  window.granchain.go = (query) => header.send("go", { query });
+  window.granchain.on("steps", (steps) => header.showSteps(steps));
+  window.granchain.steps.tell();
   window.granchain.on("pause", () => header.setPlaying(false));
   window.granchain.on("theme", (value) => {
     header.send("theme", { value });

@@ -72,9 +72,11 @@ export class Knob {
     this.el.append(this.field, element("span", { className: "unit", textContent: unit }), this.slider);
     this.field.addEventListener("input", () => {
       this.editing = true;
+      this.field.dataset.typing = "yes";
     });
     this.field.addEventListener("blur", () => {
       this.editing = false;
+      delete this.field.dataset.typing;
     });
     this.field.addEventListener("change", () => this.typed());
     this.field.addEventListener("focus", () => this.field.select());
@@ -96,6 +98,7 @@ export class Knob {
   // Text that is not a number is sent as it is; the server answers with a sentence.
   typed() {
     this.editing = false;
+    delete this.field.dataset.typing;
     const raw = this.field.value.trim();
     const number = Number(raw);
     this.set(raw !== "" && !Number.isNaN(number) ? Number((number * this.spec.factor).toPrecision(12)) : raw, true);

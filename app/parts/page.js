@@ -32,12 +32,21 @@ window.granchain = (() => {
       }
     emit("theme", theme);
   };
+  // A step back or forward: the theme of its address, or the one that was there without any choice.
+  const restoreTheme = (look) => {
+    chosen = THEMES.includes(look);
+    setTheme(chosen ? look : first, false);
+  };
   const theme = () => document.documentElement.dataset.theme;
   setTheme(THEMES.includes(remembered()) ? remembered() : system(), false);
+  const first = theme();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     if (!remembered()) setTheme(system(), false);
   });
 
+  // `?embed=1`: the pictures alone, for a slide.
+  const embedded = new URLSearchParams(location.search).get("embed") === "1";
+  document.documentElement.classList.toggle("embed", embedded);
   const drawer = (open) => {
     document.getElementById("page").classList.toggle("drawer", open);
   };
@@ -47,6 +56,8 @@ window.granchain = (() => {
     overlay = name;
     document.getElementById("page").classList.toggle("overlaid", name !== null);
     for (const one of document.querySelectorAll("[data-overlay]")) one.hidden = one.dataset.overlay !== name;
+    // The one main part of the page is what is on the screen.
+    document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
     emit("overlay", name);
   };
   const closePage = () => openPage(null);
@@ -72,6 +83,8 @@ window.granchain = (() => {
       return chosen;
     },
     setTheme,
+    restoreTheme,
+    embedded,
     nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % THEMES.length], true),
     drawer,
   };

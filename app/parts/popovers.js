@@ -1,6 +1,7 @@
 // What opens over the pictures from the bar on top: the help, and the link to the picture.
 
 import { element } from "./dom.js";
+import { takeAlong } from "./take_along.js";
 
 const HELP = [
   ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
@@ -15,25 +16,40 @@ const HELP = [
   ["curve", "Click a frequency to go there. Shape and colour of a point show its regime."],
 ];
 
-function helpList() {
-  const list = element("dl");
-  for (const [term, meaning] of HELP)
-    list.append(element("dt", { textContent: term }), element("dd", { textContent: meaning }));
-  return list;
+const KEYS = [
+  ["?", "this sheet"],
+  ["Space", "play or pause"],
+  ["Ctrl-Z", "undo; Ctrl-Shift-Z: redo; so do the browser's back and forward"],
+  ["Tab", "to the next control; Shift-Tab: back"],
+  ["← →", "on a knob: fine steps, with Shift coarse; on tabs: the next tab; on the map: the next cell"],
+  ["↑ ↓", "on the time cursor: one sample; Page ↑ and ↓: one drive period; Home and End: the ends"],
+  ["Enter", "on the name of a peak: go there; on a knob's number: take it"],
+  ["Esc", "closes what is open"],
+];
+
+function list(rows) {
+  const made = element("dl");
+  for (const [term, meaning] of rows)
+    made.append(element("dt", { textContent: term }), element("dd", { textContent: meaning }));
+  return made;
 }
+
+const title = (textContent) => element("h2", { textContent });
 
 // At most one of them is open.
 export class Popovers {
-  constructor() {
+  constructor(save) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
-    this.help = element("div", { className: "popover", hidden: true }, helpList());
+    this.help = element("div", { className: "popover help", hidden: true, tabIndex: 0 });
+    this.help.append(title("what is what"), list(HELP), title("keys"), list(KEYS));
     this.copied = element("p", { role: "status" });
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
+    this.take = element("div", { className: "popover", hidden: true }, takeAlong(save));
     this.menu = element("div", { className: "popover menu", hidden: true });
   }
 
   close() {
-    this.help.hidden = this.link.hidden = this.menu.hidden = true;
+    this.help.hidden = this.link.hidden = this.take.hidden = this.menu.hidden = true;
   }
 
   toggleHelp() {

@@ -25,6 +25,17 @@ function entryOf([name, write, meaning], state) {
   return entry;
 }
 
+// Says what motion there is now, once it has stood for a moment: a moving knob passes many.
+const STANDS = 1200; // ms
+let timer = 0;
+function announce(words) {
+  clearTimeout(timer);
+  timer = setTimeout(() => {
+    const place = document.getElementById("announced");
+    if (place.textContent !== words && !words.startsWith("live")) place.textContent = words;
+  }, STANDS);
+}
+
 export function render({ model }) {
   const words = element("p");
   const close = button("✕", () => model.send_msg({ do: "dismiss-sentence" }), { title: "Close" });
@@ -37,6 +48,8 @@ export function render({ model }) {
   const show = () => {
     const { state } = model;
     words.textContent = state.sentence ?? "";
+    window.granchain.regime = state.regime;
+    announce(state.regime ?? "");
     sentence.hidden = !state.sentence;
     insist.hidden = !state.insist;
     const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");

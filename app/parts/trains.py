@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
 from bokeh.plotting import figure
 
+from granchain_core import Run
+
 from ..format import prefixed
 from ..frames import Extremes, Frames, round_up, with_jumps
 from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
+from .pinned_trains import PinnedTrains
 
 _TITLES = ("drive u₀", "input force", "output force")
 _SHORT = ("drive", "in", "out")
@@ -29,6 +34,7 @@ class Trains:
         self._units = ("m", "N", "N")
         self.left = self._left_figure(time)
         self.right = self._right_figure(time)
+        self._pinned = PinnedTrains(self.left, self.right)
 
     def _left_figure(self, time: Range1d) -> figure:
         plot = quiet_figure(LEFT, GAP, name="input force", y_range=time, x_range=Range1d(-1, 1))
@@ -67,8 +73,9 @@ class Trains:
         (input_time, input_force), (output_time, output_force) = (
             with_jumps(time, force, jumps * np.array([scale, 1.0])) for force, jumps in
             ((frames.input_force, frames.input_jumps), (frames.output_force, frames.output_jumps)))
-        input_range = _span(high.input_force, input_force)
-        output_range = _span(high.output_force, output_force, frames.output_force_elastic)
+        pinned = self._pinned.largest
+        input_range = _span(max(high.input_force, pinned[0]), input_force)
+        output_range = _span(max(high.output_force, pinned[1]), output_force, frames.output_force_elastic)
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
         out, out_letter = prefixed(max(map(abs, output_range)))
@@ -81,12 +88,17 @@ class Trains:
         passed = {"time": output_time, "force": output_force / out}
         for source, values in ((self._source, columns), (self._input, pushed), (self._output, passed)):
             source.data = {name: np.asarray(column, dtype=np.float32) for name, column in values.items()}
+        self._pinned.update(0.0 if frames.time[-1] == 0.0 else float(frames.time[-1]), scale, push, out)
         edge = 1.15 * drive_high / drive
         self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
         self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)
         self.right.x_range.update(start=output_range[0] / out, end=output_range[1] / out)
         self._units = (f"{drive_letter}m", f"{push_letter}N", f"{out_letter}N")
         self._write_titles()
+
+    def pin(self, runs: Sequence[Run | None]) -> None:
+        """Let these motions stay, as dashed grey lines over the same time; None leaves a place free."""
+        self._pinned.load(runs)
 
     def fit(self, narrow: bool) -> None:
         """Fewer ticks and shorter titles where there is little room."""

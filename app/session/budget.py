@@ -27,6 +27,14 @@ def check_first_picture(scene: Scene) -> None:
     check_picture(scene, _PERIODS, samples_for(scene), FIRST_PICTURE)
 
 
+class Refused(BadInput):
+    """The picture of a scene that would take too long, or has; the visitor may insist on this scene."""
+
+    def __init__(self, scene: Scene, sentence: str) -> None:
+        super().__init__(sentence)
+        self.scene = scene
+
+
 class TooLong(BadInput):
     """The steady state was not found within the time of one picture."""
 

@@ -47,6 +47,9 @@ class Host(Protocol):
         than "settled" and "live".
         """
 
+    def address_changed(self) -> None:
+        """What the address of the page says has changed, but no knob has."""
+
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         """Open a scene, maybe another preset, settled from `state` or from rest.
 

@@ -14,7 +14,9 @@ from granchain_core.scene import Bead
 
 from ..serve.turns import Account
 from .message_checks import is_number, quoted
-from .share import EXTRAS, encode
+from .pins import Pin, pin_texts
+from .share import EXTRAS, START, encode
+from .starts import start_text
 from .switches import ACCOUNT, changes
 
 MODES, STARTS = EXTRAS["mode"], EXTRAS["start"]
@@ -26,6 +28,7 @@ class Session:
     """The state of one page; methods change it or raise `BadInput` and leave it as it was.
 
     `used` is the processor time of its pictures, and `insisted` the scene that is computed however long it takes.
+    `started_from` is the state in which the motion on the screen began, None for rest; `story` is "NAME.STEP".
     """
 
     scene: Scene = field(default_factory=lambda: scene("sec2"))
@@ -45,12 +48,16 @@ class Session:
     remembered: dict[str, Any] = field(default_factory=dict)
     used: Account = field(default_factory=Account)
     insisted: Scene | None = None
+    pins: tuple[Pin, ...] = ()
+    story: str = ""
 
     @property
     def link(self) -> str:
-        """The query string that brings back scene, knobs, mode, start, scale and curves."""
-        return encode(self.scene, {"mode": self.mode, "start": self.start, "scale": self.scale,
-                                   "curves": self.curves})
+        """The query string that brings back what is on the screen: scene, knobs, where the motion began, the view."""
+        view = {"mode": self.mode, "start": self.start, "scale": self.scale, "curves": self.curves,
+                "speed": f"{self.speed:g}", "account": "on" if self.account else "off"}
+        began = self.started_from if self.mode == "settled" else None
+        return encode(self.scene, view, {START: start_text(began), "story": self.story, **pin_texts(self.pins)})
 
     def change(self, name: str, value: object) -> None:
         """Turn knob `name` to `value`."""

@@ -34,23 +34,29 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "scale": ("same", "fit"),
     "curves": ("auto", *sorted({joined(some) for size in range(5) for some in combinations(CURVES, size)})),
     "look": ("auto", "light", "dark", "projector"),
+    "speed": ("1", "0.1", "0.25", "0.5", "2", "5", "20", "100"),
+    "account": ("off", "on"),
 }
-_LONGEST = 2000
+#: Where the motion began, and the pinned pictures: texts that `starts.py` and `pins.py` read.
+START = "from"
+PINS = ("pin", "pin2", "pin3")
+_LONGEST = 4500
 
 
-def encode(shown: Scene, extras: Mapping[str, str]) -> str:
-    """The query string (without "?") that brings back this scene and view."""
+def encode(shown: Scene, extras: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
+    """The query string (without "?") that brings back this scene and view; `texts` has `START`, `PINS` and "story"."""
     fields: dict[str, Any] = {"v": VERSION, "scene": shown.name}
     for name, value in shown.differences().items():
         fields[name] = value if isinstance(value, str) else repr(value)
     for name, value in extras.items():
         if name in EXTRAS and value in EXTRAS[name] and value != EXTRAS[name][0]:
             fields[name] = value
+    fields.update({name: text for name, text in (texts or {}).items() if text})
     return urlencode(fields)
 
 
 def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple[Scene, dict[str, str], list[str]]:
-    """Scene, view settings, and one sentence for every field that was refused.
+    """Scene, view settings, and one sentence for every field that was refused; `START` and `PINS` come as they are.
 
     `more` has view settings beside those of `EXTRAS` with their values: what only the page itself knows.
     """
@@ -65,6 +71,9 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
     extras: dict[str, str] = {}
     # kappa last: it is converted with the link's own A0, and replaces k only if it is valid
     for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
+        if name in (START, *PINS):
+            extras[name] = text
+            continue
         if name in known:
             if text in known[name]:
                 extras[name] = text
@@ -72,7 +81,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
                 refused.append(f"{name} = {text[:40]!r} in the link is not one of {', '.join(known[name])}.")
             continue
         if name not in QUANTITIES:
-            refused.append(f"In the link: {unknown_name('field', name, ('scene', *known, *QUANTITIES))}")
+            refused.append(f"In the link: {unknown_name('field', name, ('scene', *known, START, *PINS, *QUANTITIES))}")
             continue
         try:
             shown = shown.evolve(**{name: text})
@@ -103,5 +112,5 @@ def _scene(name: str, refused: list[str]) -> Scene:
         return scene(scene_names()[0])
 
 
-if set(EXTRAS) & set(QUANTITIES):
+if {*EXTRAS, START, *PINS} & set(QUANTITIES):
     raise RuntimeError("a view setting has the name of a knob")

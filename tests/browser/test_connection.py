@@ -92,6 +92,7 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
     type_into(page, "f", "700")
     page.wait_for_function(BELONGS, arg=700, timeout=30_000)
     page.get_by_role("button", name="Play or pause").click()
+    page.get_by_role("button", name="More controls").click()
     page.locator("select.speed").select_option("5")
     page.get_by_role("tab", name="data").click()
     data = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"

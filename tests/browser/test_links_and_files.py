@@ -136,7 +136,8 @@ def test_the_picture_can_be_saved(visit: Visit, tmp_path: Path) -> None:
     page = visit()
     settled(page)
     with page.expect_download() as download:
-        page.get_by_role("button", name="Save this picture").click()
+        page.get_by_role("button", name="Take along").click()
+        page.get_by_role("button", name="everything, HDF5").click()
     path = tmp_path / download.value.suggested_filename
     download.value.save_as(path)
     with h5py.File(path) as file:

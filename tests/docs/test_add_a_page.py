@@ -51,7 +51,7 @@ dashboard.received({"do": "transmission-say"})
 print(dashboard.views.overlays["transmission"].state["sentence"])
 template = dashboard.views.template()
 print(dict(template._render_variables["overlays"])["transmission"], "transmission.js" in FILES)
-print([one["placeholder"] for one in dashboard.views.tabs.state["pages"] if one["title"] == "transmission"])
+print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["title"] == "transmission"])
 """)
     first, second, overlay, words = told.splitlines()
     assert first == second == "25.0 % of the largest input force arrives at the wall."

@@ -22,7 +22,9 @@ from app.page.controller import Controller
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
 from app.serve.meters import METERS
+from app.session.budget import Refused
 from app.session.hooks import all_actions
+from app.session.live import LiveRun
 from app.session.message_checks import listed, whole
 from app.session.session import Session
 from granchain_core import BadInput, run, scene
@@ -111,6 +113,35 @@ def test_a_picture_is_saved_in_the_background(monkeypatch: pytest.MonkeyPatch) -
     (file,) = [message for message in dashboard.told if message["type"] == "file"]
     assert file["name"] == "sec2-340Hz.h5" and file["content"][1:4] == b"HDF"
     assert threads[0].startswith("files")
+
+
+def test_a_refusal_belongs_to_the_scene_that_was_refused() -> None:
+    """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about."""
+    dashboard = Dashboard()
+    refused = dashboard.session.scene.evolve(N=10_000)
+    dashboard.failed(Refused(refused, "It would take long."))
+    assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")
+    dashboard.session.scene = refused
+    dashboard.failed(Refused(refused, "It would take long."))
+    assert dashboard.views.status_line.state["insist"]
+    dashboard.failed(BadInput("Something else."))
+    assert not dashboard.views.status_line.state["insist"]
+    dashboard.close(None)
+
+
+def test_another_scale_leaves_a_paused_chain_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    dashboard = Dashboard()
+    sent: list[object] = []
+    monkeypatch.setattr(dashboard.pictures._pacer, "offer", sent.append)
+    session, pictures = dashboard.session, dashboard.pictures
+    session.set_mode("live")
+    session.playing = False
+    pictures.live = LiveRun(session.scene, session.used)
+    pictures._arrived(pictures.live.advance(7))
+    dashboard.received({"do": "scale", "value": "fit"})
+    dashboard.work_off(lambda: not pictures.busy)
+    assert sent[0] is sent[1] and len(sent) == 2 and pictures.live._shown == 7
+    dashboard.close(None)
 
 
 def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -47,7 +47,7 @@ class AccuracyPage {
     this.picture = element("div", { className: "picture" });
     this.figure = new Embedded(this.picture, (one) => fillAccuracy(one, window.granchain.accuracy));
     this.naive = new NaiveForces();
-    this.methods = element("div", { className: "table" });
+    this.methods = element("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "methods" });
     this.root = element(
       "div",
       { className: "part sheet" },

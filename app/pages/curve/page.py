@@ -65,8 +65,7 @@ class Curves:
     def selection(self, scene: Scene) -> str:
         """What is drawn, as a link has it; "auto" for what the scene shows by itself."""
         chosen = {name for name, wanted in self._wanted.items() if wanted}
-        own = {"rest", "features"} if scene.pattern == rig_beads() else {"rest"}
-        return "auto" if chosen == own else joined(chosen)
+        return "auto" if chosen == _own(scene) else joined(chosen)
 
     def open(self, scene: Scene, selected: str) -> str:
         """Show an empty figure over the frequencies of another scene, with the curves of a link; return which.
@@ -144,8 +143,9 @@ class Curves:
             self.stop()
 
     def select(self, scene: Scene, selected: str) -> str:
-        """Draw the curves of a link; return which."""
-        self._wanted = {name: name in selected.split(".") for name in self._wanted}
+        """Draw the curves of a link, those of the scene for "auto"; return which."""
+        chosen = _own(scene) if selected == "auto" else set(selected.split("."))
+        self._wanted = {name: name in chosen for name in self._wanted}
         self._show_features(scene)
         self.changed(scene)
         return self.selection(scene)
@@ -203,6 +203,12 @@ class Curves:
         """Show the visitor's own data, or none; returns them beside the curve from rest, once that is there."""
         self._figure.measured(measured)
         return self._figure.difference
+
+    def complete(self, scene: Scene) -> dict[str, list[CurvePoint]]:
+        """The curves of a scene that are drawn and complete, by their starts."""
+        key = without_frequency(scene)
+        return {name: self._figure.points(name) for name in DIRECTIONS
+                if self._wanted[name] and self._computed.get(name) == key}
 
     def _begin(self, scene: Scene) -> None:
         """Compute the selected directions that are missing; a change of f alone needs no new curve."""
@@ -277,3 +283,8 @@ class Curves:
     def _ended(self, status: str, _: str) -> None:
         if status == "failed":
             self.stop()
+
+
+def _own(scene: Scene) -> set[str]:
+    """The curves that a scene shows by itself: the paper's rig has stated features."""
+    return {"rest", "features"} if scene.pattern == rig_beads() else {"rest"}

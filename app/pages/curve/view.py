@@ -17,6 +17,7 @@ from granchain_core.steady.curve.resonance import Place, place_of
 from ...format import prefixed
 from ...frames import round_up
 from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
+from ...parts.pinned_trains import DASHES as PIN_DASHES
 from ...pictures.curve import DASHES, curve_columns, curve_tooltips
 from ...pictures.measured import COLUMNS, TOOLTIPS, measured_columns
 from ...pictures.regimes import REGIMES, SYMBOLS, regime_key
@@ -36,9 +37,13 @@ class Curve:
         self._now = ColumnDataSource({"frequency": [], "force": []})
         self._measured = ColumnDataSource({name: [] for name in COLUMNS})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
+        self._pins = ColumnDataSource({name: [] for name in ("frequency", "force", "name")})
+        self._pinned: list[tuple[str, float, float]] = []
+        self._ghosts: list[list[CurvePoint]] = []
         self._measurement: Measured | None = None
         self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in DASHES}
         self.figure = self._frame(choose)
+        self._ghost_lines = [self._ghost(dash) for dash in PIN_DASHES]
         self._old = {name: self._line(name, grey=True) for name in DASHES}
         self._new = {name: self._line(name, grey=False) for name in DASHES}
         # In the overlay, so that moving f repaints a line and a dot and not the whole curve.
@@ -72,6 +77,12 @@ class Curve:
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(direction)))
         return source
 
+    def _ghost(self, dash: list[int]) -> ColumnDataSource:
+        source = ColumnDataSource({"frequency": [], "force": []})
+        self.figure.line("frequency", "force", source=source, line_dash=dash, line_color=GREY, line_width=1.5,
+                         level="underlay")
+        return source
+
     def _marks(self) -> None:
         """Stated features, the visitor's data and the current point, in front of the curves."""
         plot = self.figure
@@ -87,6 +98,11 @@ class Curve:
         self._dots = plot.scatter("frequency", "force", source=self._measured, marker="square", size=7,
                                   fill_color=None, line_width=1.2, level="overlay")
         plot.add_tools(HoverTool(renderers=[self._dots], tooltips=TOOLTIPS))
+        self._pin_marks = plot.scatter("frequency", "force", source=self._pins, marker="circle", size=17,
+                                       fill_color=None, line_width=1.5, line_dash=[3, 2], level="overlay")
+        self._pin_names = plot.text("frequency", "force", "name", source=self._pins, text_align="center",
+                                    text_baseline="top", y_offset=10, text_font_size="13px",
+                                    text_font_style="bold", level="overlay")
         self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=OUTPUT,
                                  line_width=3, level="overlay")
 
@@ -96,9 +112,10 @@ class Curve:
 
     def ink(self, colour: str, thick: float) -> None:
         """The colour of measured data and of the current point's ring: dark on light, light on dark."""
-        for renderer in (self._bars, self._dots, self._dot):
+        for renderer in (self._bars, self._dots, self._dot, self._pin_marks):
             renderer.glyph.line_color = colour
-        self._labels.glyph.text_color = colour
+        for names in (self._labels, self._pin_names):
+            names.glyph.text_color = colour
         self._dot.glyph.size = 15 * thick
 
     def range(self, low: float, high: float) -> None:
@@ -135,6 +152,36 @@ class Curve:
         self._whole = self._whole and direction != "rest"
         self._points[direction] = []
         self.add(direction, points, covers=True)
+
+    def pin(self, places: Sequence[tuple[str, float, float]]) -> None:
+        """Mark pinned motions: name, frequency [Hz] and largest output force [N]."""
+        self._pinned = list(places)
+        self._rescale()
+        self._draw_pins()
+
+    def pinned_curves(self, curves: Sequence[list[CurvePoint]]) -> None:
+        """Draw the curves of the pins, in their order, dashed as their trains are; an empty one is the present one."""
+        if [*map(len, curves)] == [*map(len, self._ghosts)] == [0] * len(curves):
+            return
+        self._ghosts = [[point for point in points if np.isfinite(point.max_output_force)] for points in curves]
+        self._rescale()
+        self._draw_pins()
+
+    def _draw_pins(self) -> None:
+        factor = self._scale[0]
+        names, frequencies, forces = zip(*self._pinned, strict=True) if self._pinned else ((), (), ())
+        self._pins.data = {"name": list(names), "frequency": list(frequencies),
+                           "force": [force / factor for force in forces]}
+        for place, source in enumerate(self._ghost_lines):
+            points = self._ghosts[place] if place < len(self._ghosts) else []
+            if points or len(source.data["frequency"]):
+                source.data = {"frequency": [p.frequency for p in points],
+                               "force": [p.max_output_force / factor for p in points]}
+
+    @property
+    def whole(self) -> bool:
+        """Whether the curve from rest is complete."""
+        return self._whole
 
     @property
     def factor(self) -> float:
@@ -214,8 +261,9 @@ class Curve:
                         np.array([point.max_output_force for point in points]))
 
     def _rescale(self) -> None:
-        curves = (*self._points.values(), *self._before.values())
+        curves = (*self._points.values(), *self._before.values(), *self._ghosts)
         forces = [point.max_output_force for points in curves for point in points]
+        forces += [force for _, _, force in self._pinned]
         if self._measurement is not None:
             forces.append(float(np.max(self._measurement.force)))
         high = round_up(max(forces, default=1.0))
@@ -226,6 +274,7 @@ class Curve:
                 self._draw(name)
                 self._draw_before(name)
             self.now(*self._shown)
+            self._draw_pins()
             if self._measurement is not None:
                 self.measured(self._measurement)
         self.figure.y_range.end = 1.15 * high / scale[0]  # room for the names of the peaks

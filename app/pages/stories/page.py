@@ -22,6 +22,11 @@ def _told() -> tuple[tuple[Story, ...], tuple[str, ...]]:
     return stories()
 
 
+def story_places() -> tuple[str, ...]:
+    """Every step of every story by the name it has in a link, "coexisting.2"."""
+    return tuple(f"{story.name}.{number}" for story in _told()[0] for number in range(1, len(story.steps) + 1))
+
+
 class StoriesPage(Page):
     """It turns the knobs of the dashboard to a step, and sends the tab its words."""
 
@@ -32,20 +37,34 @@ class StoriesPage(Page):
         told, refused = _told()
         self._stories = {one.name: one for one in told}
         self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}
-        view.update_state(story=None, stories=[
-            {"name": one.name, "title": one.title, "about": one.about} for one in told], refused=list(refused))
+        view.update_state(stories=[{"name": one.name, "title": one.title, "about": one.about} for one in told],
+                          refused=list(refused))
+        self.address_taken()
 
     def scene_changed(self) -> None:
         """The visitor has moved on, or the story has: a step that is still being settled is not shown any more."""
         self._task.cancel()
+
+    def address_taken(self) -> None:
+        """The address says which step is told; its motion is in the address, too."""
+        self._task.cancel()
+        name, _, number = self._host.session.story.partition(".")
+        self._view.update_state(story=self._words(self._stories[name], int(number)) if name else None)
 
     def close(self) -> None:
         """The visitor left."""
         self._task.cancel()
 
     def _close(self) -> None:
-        self._task.cancel()
-        self._view.update_state(story=None)
+        self._host.session.story = ""
+        self.address_taken()
+        self._host.address_changed()
+
+    @staticmethod
+    def _words(story: Story, number: int) -> dict[str, Any]:
+        words = {name: told_words(story, number, name) for name in ("say", "ask", "answer")}
+        return {"name": story.name, "title": story.title, "step": number, "steps": len(story.steps),
+                "look": story.steps[number - 1].look, **words}
 
     def _open(self, message: dict[str, Any]) -> None:
         story = self._stories.get(str(message.get("name")))
@@ -53,9 +72,8 @@ class StoriesPage(Page):
             raise BadInput("That story is not here any more; reload the page.")
         number = whole("step", message.get("step"), 1, len(story.steps))
         step = story.steps[number - 1]
-        words = {name: told_words(story, number, name) for name in ("say", "ask", "answer")}
-        self._view.update_state(story={"name": story.name, "title": story.title, "step": number,
-                                       "steps": len(story.steps), "look": step.look, **words})
+        self._host.session.story = f"{story.name}.{number}"
+        self.address_taken()
         if step.via:
             self._task.start(partial(self._through, step))
         else:

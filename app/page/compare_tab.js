@@ -1,0 +1,63 @@
+// The Compare tab: up to three pinned pictures, their numbers, and by how much the present picture differs.
+
+import { button, element, paragraph } from "../parts/dom.js";
+
+const INVITES =
+  "Pin a picture, then move a knob: its forces stay as dashed grey lines, its place on the curve as a ring with its name, and what the present picture has more or less stands here. A link keeps the pins.";
+const DASHES = ["╌", "┈", "─ ·"]; // of the lines, in the order of the pins
+
+let told = { pins: [], rows: [] };
+
+// The server's message; the key over the force trains says that there are grey lines.
+export function compareMessage(message) {
+  if (message.type !== "compare") return;
+  told = message;
+  document.getElementById("pinned").hidden = !told.pins.length;
+  window.granchain.emit("compare-told");
+}
+
+const cell = (textContent, tag = "td") => element(tag, { textContent });
+
+function head(model, { name, words, known }, number) {
+  const act = (words, action, title) =>
+    button(words, () => model.send_msg({ do: action, number }), { title, ariaLabel: title });
+  const shown = element("b", { textContent: `${name} ${DASHES[number]}` });
+  const place = element("th", { scope: "col" }, shown, ` ${words}`, known ? "" : " – computing … ");
+  place.append(
+    element(
+      "span",
+      { className: "pin-buttons" },
+      act("show", "pin-open", `Turn the knobs to pin ${name}`),
+      act("✕", "unpin", `Remove pin ${name}`),
+    ),
+  );
+  return place;
+}
+
+// A pinned value, and below it how much larger the present one is: the difference and the ratio.
+function pinned([value, ...differences]) {
+  const place = cell(value);
+  for (const textContent of differences) if (textContent) place.append(element("small", { textContent }));
+  return place;
+}
+
+// A quantity: its name over the whole width, below it the present value and those of the pins.
+function lines({ title, now, pins }) {
+  const name = element("th", { textContent: title, scope: "rowgroup", colSpan: 1 + pins.length });
+  const values = element("tr", { className: title === "motion" ? title : "" }, cell(now), ...pins.map(pinned));
+  return element("tbody", {}, element("tr", {}, name), values);
+}
+
+export function compareTab(model) {
+  const pin = button("pin this picture", () => model.send_msg({ do: "pin" }), { className: "primary" });
+  const body = element("div", { className: "compared" });
+  const show = () => {
+    const { pins, rows } = told;
+    pin.disabled = pins.length >= DASHES.length;
+    if (!pins.length) return body.replaceChildren(paragraph(INVITES, "soft"));
+    const titles = element("tr", {}, cell("now", "th"), ...pins.map((one, i) => head(model, one, i)));
+    return body.replaceChildren(element("table", {}, element("thead", {}, titles), ...rows.map(lines)));
+  };
+  show();
+  return { content: [element("div", { className: "row" }, pin), body], show };
+}

@@ -1,0 +1,172 @@
+"""Pinned pictures: lines that stay in the force trains and on the curve, and their numbers beside the present ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+from panel.io import unlocked
+
+from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
+
+from ..frames import samples_for
+from ..pages.curve.sweep import Progress, Sweep
+from ..serve.compiler import PICTURE_PIECES
+from ..serve.queues import ANALYSES, CURVES
+from ..session.budget import check_first_picture, curve_affordable
+from ..session.hooks import Actions
+from ..session.host import Host
+from ..session.message_checks import listed
+from ..session.pins import NAMES, Pin, compared_rows, setting_words
+from ..session.session import slider_range, without_frequency
+from ..session.starts import MOST_BEADS
+from ..session.task import Job, Task
+from .layout import Views
+
+
+class Pinned:
+    """Actions of the tab “compare”. A pin is a scene and a start, so that a link has it; its motion is computed."""
+
+    def __init__(self, host: Host, views: Views) -> None:
+        self._host = host
+        self._session = host.session
+        self._views = views
+        self._runs: dict[str, Run] = {}
+        self._curves: dict[Scene, list[CurvePoint]] = {}
+        self._task = Task(host, ANALYSES, lambda *_: None, "The pinned picture", host.failed)
+        self._curve_task = Task(host, CURVES, lambda *_: None, "The curve of a pinned picture", host.failed)
+        self.actions: Actions = {"pin": lambda _: self._add(), "unpin": self._remove, "pin-open": self._open}
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+        self._curve_task.cancel()
+
+    def show(self) -> None:
+        """Draw the session's pins, and compute what is missing of them."""
+        pins = self._session.pins
+        self._runs = {name: run for name, run in self._runs.items() if name in map(_key, pins)}
+        missing = [pin for pin in pins if _key(pin) not in self._runs]
+        if missing:
+            self._task.start(partial(self._settle, missing))
+        else:
+            self._task.cancel()
+        self._draw()
+        self.scene_changed()
+
+    def scene_changed(self) -> None:
+        """Knobs have moved: the curve of a pin is drawn where it is not the present one."""
+        others = self._other_curves()
+        missing = [key for key in others if key and key not in self._curves and _affordable(key)]
+        if missing:
+            self._curve_task.start(partial(self._sweep, missing))
+        elif self._session.pins:
+            self._curve_task.cancel()
+        with unlocked():
+            self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
+
+    def picture_ready(self, picture: Settled) -> None:
+        """Another picture to compare with."""
+        if self._session.pins and picture.final:
+            self._tell()
+
+    # What the visitor does
+
+    def _add(self) -> None:
+        session = self._session
+        if session.mode != "settled" or session.picture is None:
+            raise BadInput("Only a settled picture can be pinned: a live run passes. Choose “settled” first.")
+        if len(session.pins) == len(NAMES):
+            raise BadInput(f"{len(NAMES)} pictures are pinned already; remove one of them in the tab “compare” first.")
+        picture = session.picture
+        if picture.run.scene != session.scene:  # where it begins is not known yet
+            raise BadInput("The picture of these knobs is still being computed; pin it when it is there.")
+        pin = Pin(session.scene, session.started_from)
+        if picture.final:
+            self._runs[_key(pin)] = picture.run
+        if self._views.curve.whole:
+            self._curves[without_frequency(session.scene)] = self._views.curve.points("rest")
+        session.pins = (*session.pins, pin)
+        self._changed()
+
+    def _remove(self, message: dict[str, Any]) -> None:
+        gone = listed("pin", self._session.pins, message.get("number"))
+        self._session.pins = tuple(pin for pin in self._session.pins if pin is not gone)
+        self._changed()
+
+    def _open(self, message: dict[str, Any]) -> None:
+        pin = listed("pin", self._session.pins, message.get("number"))
+        self._host.open(pin.scene, pin.start, "")
+
+    def _changed(self) -> None:
+        self.show()
+        self._host.address_changed()
+
+    # In a worker thread
+
+    def _settle(self, missing: Sequence[Pin], job: Job) -> None:
+        for pin in missing:
+            check_first_picture(pin.scene)
+            job.give_way()
+            job.compile(pin.scene, *PICTURE_PIECES)
+            found = settle(pin.scene, start=pin.start, samples=samples_for(pin.scene), stop=job.stop)
+            job.next_tick(self._settled, pin, found.run)
+
+    def _sweep(self, missing: Sequence[Scene], job: Job) -> None:
+        """After the present curve, which comes first."""
+        for key in missing:
+            job.compile(key, *PICTURE_PIECES)
+            job.give_way(lambda: self._host.busy or self._host.curve_computing)
+            found: list[Progress] = []
+            Sweep(key, ["rest"], found.append, lambda: self._host.busy, self._session.used)(job)
+            job.next_tick(self._swept, key, [point for progress in found for point in progress.points])
+
+    # To the browser
+
+    def _settled(self, pin: Pin, run: Run) -> None:
+        self._runs[_key(pin)] = run
+        self._draw()
+
+    def _swept(self, key: Scene, points: list[CurvePoint]) -> None:
+        self._curves[key] = sorted(points, key=lambda point: point.frequency)
+        self.scene_changed()
+
+    def _other_curves(self) -> list[Scene | None]:
+        """The scene of each pin's curve; None where that is the present one."""
+        self._curves = {key: points for key, points in self._curves.items()
+                        if key in [without_frequency(pin.scene) for pin in self._session.pins]}
+        now = without_frequency(self._session.scene)
+        keys = [without_frequency(pin.scene) for pin in self._session.pins]
+        return [None if key == now else key for key in keys]
+
+    def _found(self) -> list[Run | None]:
+        return [self._runs.get(_key(pin)) for pin in self._session.pins]
+
+    def _draw(self) -> None:
+        runs = self._found()
+        with unlocked():
+            self._views.trains.pin(runs)
+            self._views.curve.pin([(name, run.scene.f, run.max_output_force)
+                                   for name, run in zip(NAMES, runs, strict=False) if run is not None])
+        self._tell()
+
+    def _tell(self) -> None:
+        session = self._session
+        picture = session.picture
+        self._views.tabs.send(
+            type="compare", now=setting_words(session.scene, session.scene),
+            pins=[{"name": name, "words": setting_words(pin.scene, session.scene), "known": _key(pin) in self._runs}
+                  for name, pin in zip(NAMES, session.pins, strict=False)],
+            rows=[] if picture is None else compared_rows(picture.run, self._found()))
+
+
+def _key(pin: Pin) -> str:
+    """What tells a pin from others: its link, and the start itself where that is too long for a link."""
+    short = pin.start is None or len(pin.start.displacement) <= MOST_BEADS
+    return pin.text if short else f"{pin.text} {id(pin.start)}"
+
+
+def _affordable(key: Scene) -> bool:
+    low, high = slider_range(key, "f")
+    return curve_affordable(key.evolve(f=0.5 * (low + high)))

@@ -1,0 +1,72 @@
+"""What the visitor is told in sentences, and the refused picture that may be computed all the same."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from granchain_core import BadInput, NumbersFailed, Scene
+
+from ..parts.status_line import StatusLine
+from ..serve.meters import METERS
+from ..session.budget import Refused
+from ..session.hooks import Actions
+from ..session.session import Session
+
+log = logging.getLogger("granchain")
+
+
+class Sentences:
+    """The sentence over the status line. `compute` asks for the picture of the knobs as they are."""
+
+    def __init__(self, session: Session, line: StatusLine, compute: Callable[[], None]) -> None:
+        self._session = session
+        self._line = line
+        self._compute = compute
+        self._refused: Scene | None = None
+        self.actions: Actions = {"dismiss-sentence": self._dismiss, "insist": self._insist}
+
+    def say(self, sentence: str) -> None:
+        """Show one sentence until the next valid action; an empty one removes it."""
+        self._session.sentence = sentence
+        self._refused = None
+        self._show()
+
+    def note(self, notice: str) -> None:
+        """Show one sentence that the next picture removes."""
+        self._session.notice = notice
+        self._show()
+
+    def failed(self, error: Exception) -> None:
+        """Say in one sentence what happened; the last good picture stays."""
+        if isinstance(error, Refused):
+            METERS.refused_pictures += 1
+            if error.scene == self._session.scene:  # else a knob has moved since, and asked for another picture
+                self.say(str(error))
+                self._refused = error.scene
+                self._show()
+        elif isinstance(error, BadInput):
+            self.say(str(error))
+        elif isinstance(error, NumbersFailed):
+            self.note(error.sentence)
+        else:
+            METERS.errors += 1
+            log.error("unexpected failure", exc_info=error)
+            self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
+                     "stays. Move the knob back or reset, and please report it.")
+
+    def _show(self) -> None:
+        self._line.update_state(sentence=f"{self._session.sentence} {self._session.notice}".strip(),
+                                insist=self._refused is not None)
+
+    def _insist(self, _: dict[str, Any]) -> None:
+        """Compute what was refused because it takes long; the other visitors still have their turns."""
+        if self._refused is not None and self._refused == self._session.scene:
+            self._session.insisted = self._refused
+            self.say("")
+            self._compute()
+
+    def _dismiss(self, _: dict[str, Any]) -> None:
+        self._session.notice = ""
+        self.say("")

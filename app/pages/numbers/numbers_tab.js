@@ -1,0 +1,57 @@
+// The Numbers tab: the pictures in words and in tables. The words describe the pictures to a screen reader, too.
+
+import { element, paragraph, table } from "../../parts/dom.js";
+
+const TABLES = {
+  forces: ["forces over time", ["time", "drive", "input force", "output force"]],
+  beads: ["beads", ["bead", "largest displacement", "largest speed", "largest kinetic energy", "at"]],
+  curve: ["resonance curve", ["drive frequency", "largest output force", "elastic part", "input force", "motion"]],
+};
+const CURVE = "resonance curve"; // the name of its model
+
+let told = { summary: "" };
+let chosen = "forces";
+
+export function numbersMessage(message) {
+  if (message.type !== "numbers") return;
+  told = message;
+  document.getElementById("summary").textContent = message.summary;
+  window.granchain.emit("numbers-told");
+}
+
+// The rows of the curve are those that its figure draws.
+function curveRows() {
+  const figure = window.Bokeh.documents.map((one) => one.get_model_by_name(CURVE)).find(Boolean);
+  const points = (figure?.renderers ?? [])
+    .map(({ data_source, visible, glyph }) => (visible && glyph.type === "Scatter" ? data_source.data : {}))
+    .filter(({ regime }) => regime?.length);
+  return points.flatMap(({ frequency, total, elastic, input, sentence }) =>
+    [...frequency].map((f, i) => [`${Number(f.toFixed(1))} Hz`, total[i], elastic[i], input[i], sentence[i]]),
+  );
+}
+
+function rowsOf(name) {
+  const body = element("tbody");
+  for (const row of (name === "curve" ? curveRows() : told[name]) ?? [])
+    body.append(element("tr", {}, ...row.map((textContent) => element("td", { textContent }))));
+  return body;
+}
+
+export function numbersTab() {
+  const which = element("select", { ariaLabel: "which table" });
+  which.append(...Object.entries(TABLES).map(([name, [title]]) => new Option(title, name)));
+  which.value = chosen;
+  const words = paragraph();
+  const place = element("div", { className: "numbers" });
+  const show = () => {
+    words.textContent = told.summary || "The first picture is being computed.";
+    const [title, titles] = TABLES[chosen];
+    place.replaceChildren(table(titles, rowsOf(chosen), { ariaLabel: title }));
+  };
+  which.addEventListener("change", () => {
+    chosen = which.value;
+    show();
+  });
+  show();
+  return { content: [words, element("div", { className: "row" }, which), place], show };
+}

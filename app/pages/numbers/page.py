@@ -1,0 +1,35 @@
+"""The Numbers page of one visitor: a summary of every settled picture, and its tables while somebody looks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from granchain_core import Settled
+
+from ...parts.component import Component
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from .words import beads, forces_over_time, summary
+
+
+class NumbersPage(Page):
+    """It has no view: its tab is drawn by the tabs, and the summary also describes the pictures."""
+
+    def __init__(self, host: Host, view: Component) -> None:
+        self._host = host
+        self._view = view
+        self._seen = False
+        self.actions: Actions = {"numbers-visible": self._visible}
+
+    def picture_ready(self, picture: Settled) -> None:
+        """Another motion."""
+        if picture.final:
+            run = picture.run
+            tables = {"forces": forces_over_time(run), "beads": beads(run)} if self._seen else {}
+            self._view.send(type="numbers", summary=summary(run), **tables)
+
+    def _visible(self, message: dict[str, Any]) -> None:
+        self._seen = bool(message.get("value"))
+        picture = self._host.session.picture
+        if self._seen and picture is not None:
+            self.picture_ready(picture)

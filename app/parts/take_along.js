@@ -1,0 +1,246 @@
+// Pictures of the page as PNG and SVG, made in the browser from what is on the screen; the other files come from the
+// server.
+
+import { button, element } from "./dom.js";
+
+const SVG = "http://www.w3.org/2000/svg";
+const MARGIN = 12, // px around a picture
+  SHARP = 2; // pixels of a PNG for one of the picture
+// Of the main page: the name in a file, the element, the model of its figure.
+const FIGURES = {
+  driver: ["at the driver", "left", "input force"],
+  energy: ["kinetic energy", "map", "kinetic energy"],
+  wall: ["at the wall", "right", "output force"],
+  curve: ["resonance curve", "curve", "resonance curve"],
+};
+const FILES = [
+  ["trains", "forces over time, CSV"],
+  ["curve", "resonance curve, CSV"],
+  ["hdf5", "everything, HDF5"],
+  ["script", "Python script that computes it again"],
+  ["notebook", "Jupyter notebook that computes it again"],
+];
+
+const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+export function download(name, blob) {
+  const link = element("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+const views = (name) =>
+  window.Bokeh.documents
+    .map((one) => one.get_model_by_name(name))
+    .filter(Boolean)
+    .map((model) => window.Bokeh.index.find_one(model))
+    .filter(Boolean);
+
+// The figures of the page over the pictures, as far as they are on the screen.
+function figuresOf(node, found = []) {
+  for (const one of node.querySelectorAll("*")) {
+    const view = one.bokehView;
+    if (view?.export && one.getClientRects().length) found.push(view);
+    if (one.shadowRoot) figuresOf(one.shadowRoot, found);
+  }
+  return found;
+}
+
+const asSvg = (view) => {
+  const drawn = view.export("svg", true);
+  return new DOMParser().parseFromString(drawn.ctx.get_serialized_svg(true), "image/svg+xml").documentElement;
+};
+
+// One piece of a picture: its box on the screen, and its drawing.
+const figurePiece = (view) => ({ box: view.el.getBoundingClientRect(), svg: () => asSvg(view) });
+
+// The chain is drawn once more, by the same code, on a context that writes SVG.
+const chainPiece = () => {
+  const { canvas, redraw } = window.granchain.chain;
+  return {
+    box: canvas.getBoundingClientRect(),
+    svg: () => {
+      const { SVGRenderingContext2D } = window.Bokeh.require("core/util/svg");
+      const { width, height } = canvas.getBoundingClientRect();
+      const context = new SVGRenderingContext2D({ width, height, document });
+      redraw(context);
+      return new DOMParser().parseFromString(context.get_serialized_svg(true), "image/svg+xml").documentElement;
+    },
+  };
+};
+
+// The words that stand over the pictures, where they are on the screen.
+const wordsOf = (selector) =>
+  [...document.querySelectorAll(selector)]
+    .filter((one) => one.checkVisibility() && one.textContent.trim())
+    .map((one) => {
+      const { color, fontSize, fontWeight } = getComputedStyle(one);
+      const range = document.createRange();
+      range.selectNodeContents(one);
+      const { left, top, right, bottom } = range.getBoundingClientRect();
+      const { mark = "" } = one.dataset; // the piece of line before a word of the key
+      const box = { left: left - (mark ? 22 : 0), top, right, bottom };
+      return { box, text: mark + one.textContent.trim(), color, fontSize, fontWeight };
+    });
+
+// The bar with the colours of the energy.
+const colours = () => {
+  const bar = document.querySelector("#scale .colours b");
+  return { box: bar.getBoundingClientRect(), stops: window.granchain.chain.colours };
+};
+
+function pieces(name) {
+  if (name === "chain") return { parts: [chainPiece()], words: [], bars: [] };
+  if (name === "stage") {
+    const figures = ["driver", "energy", "wall"].flatMap((one) => views(FIGURES[one][2]).map(figurePiece));
+    return {
+      parts: [chainPiece(), ...figures],
+      words: wordsOf("#stage .title, #key span, #scale .colours span"),
+      bars: [colours()],
+    };
+  }
+  const [, id, model] = FIGURES[name];
+  const bars = id === "map" ? [colours()] : [];
+  const words = { map: "#scale .colours span", right: "#key span", curve: ".chapters button" }[id];
+  return { parts: views(model).map(figurePiece), words: words ? wordsOf(words) : [], bars };
+}
+
+const bounds = (boxes) => {
+  const left = Math.min(...boxes.map((box) => box.left)),
+    top = Math.min(...boxes.map((box) => box.top));
+  return {
+    left,
+    top,
+    width: Math.max(...boxes.map((box) => box.right)) - left,
+    height: Math.max(...boxes.map((box) => box.bottom)) - top,
+  };
+};
+
+// Words in lines of so many letters.
+function broken(words, most) {
+  const lines = [""];
+  for (const word of words.split(" ")) {
+    const longer = `${lines.at(-1)} ${word}`.trim();
+    if (longer.length <= most || !lines.at(-1)) lines[lines.length - 1] = longer;
+    else lines.push(word);
+  }
+  return lines;
+}
+
+// The frame of a picture: what it shows in a line on top, then everything where it is on the screen.
+function sheet(title, { parts, words, bars }) {
+  const all = bounds([...parts, ...words, ...bars].map(({ box }) => box));
+  const line = parseFloat(style("--small")) || 14;
+  const lines = broken(title, all.width / (0.56 * line)); // an average letter is so wide
+  const head = 1.25 * line * lines.length + 2 * MARGIN;
+  return {
+    line,
+    lines,
+    width: all.width + 2 * MARGIN,
+    height: all.height + head + MARGIN,
+    x: ({ box }) => box.left - all.left + MARGIN,
+    y: ({ box }) => box.top - all.top + head,
+  };
+}
+
+const made = (tag, attributes, ...children) => {
+  const one = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) one.setAttribute(name, value);
+  one.append(...children);
+  return one;
+};
+
+const textOf = (x, y, text, fill, size, weight) => {
+  const family = style("--font").replaceAll('"', "'");
+  const given = { x, y: y + 0.8 * parseFloat(size), fill, "font-size": size, "font-weight": weight };
+  return made("text", { ...given, "font-family": family }, text);
+};
+
+// Two drawings in one file must not share the names of their gradients and clips.
+function renamed(drawn, prefix) {
+  for (const one of drawn.querySelectorAll("[id]")) {
+    const { id } = one;
+    one.id = prefix + id;
+    for (const user of drawn.querySelectorAll("*"))
+      for (const { name, value } of [...user.attributes])
+        if (value.includes(`#${id})`) || value === `#${id}`)
+          user.setAttribute(name, value.replaceAll(`#${id}`, `#${prefix}${id}`));
+  }
+  return drawn;
+}
+
+function barOf(bar, x, y, id) {
+  const last = bar.stops.length - 1;
+  const stops = bar.stops.map((colour, i) => made("stop", { offset: i / last, "stop-color": colour }));
+  const { width, height } = bar.box;
+  return [made("linearGradient", { id }, ...stops), made("rect", { x, y, width, height, fill: `url(#${id})` })];
+}
+
+function svg(title, found) {
+  const { line, lines, width, height, x, y } = sheet(title, found);
+  const root = made("svg", { xmlns: SVG, width, height, viewBox: `0 0 ${width} ${height}` });
+  root.append(made("title", {}, title), made("rect", { width: "100%", height: "100%", fill: style("--card") }));
+  for (const [number, words] of lines.entries())
+    root.append(textOf(MARGIN, MARGIN + 1.25 * line * number, words, style("--ink"), `${line}px`, 600));
+  for (const [number, part] of found.parts.entries()) {
+    const drawn = renamed(document.importNode(part.svg(), true), `p${number}-`);
+    const place = { x: x(part), y: y(part), width: part.box.width, height: part.box.height };
+    for (const [name, value] of Object.entries(place)) drawn.setAttribute(name, value);
+    root.append(drawn);
+  }
+  for (const [number, bar] of found.bars.entries()) root.append(...barOf(bar, x(bar), y(bar), `energy-${number}`));
+  for (const one of found.words) root.append(textOf(x(one), y(one), one.text, one.color, one.fontSize, one.fontWeight));
+  return { text: new XMLSerializer().serializeToString(root), width, height };
+}
+
+// A PNG is the SVG in pixels, more of them than a screen has.
+async function png({ text, width, height }) {
+  const image = Object.assign(new Image(), { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}` });
+  await image.decode();
+  const canvas = Object.assign(document.createElement("canvas"), { width: SHARP * width, height: SHARP * height });
+  canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+  return new Promise((done) => canvas.toBlob(done, "image/png"));
+}
+
+// What a picture is of, for its first line and its name.
+function told(what) {
+  const { scene, f } = window.granchain.shown ?? {};
+  return { name: `${scene}-${f}Hz-${what}`, title: `${scene}, f = ${f} Hz: ${window.granchain.regime ?? ""}` };
+}
+
+async function savePicture(what, kind) {
+  const { name, title } = told(what);
+  const found =
+    what === "page"
+      ? { parts: figuresOf(document.getElementById("overlay")).map(figurePiece), words: [], bars: [] }
+      : pieces(what);
+  if (!found.parts.length) return;
+  const drawn = svg(title, found);
+  download(`${name}.${kind}`, kind === "svg" ? new Blob([drawn.text], { type: "image/svg+xml" }) : await png(drawn));
+}
+
+// The list of what can be taken along. `send` asks the server for a file.
+export function takeAlong(send) {
+  const picture = element("select", { ariaLabel: "which picture" });
+  const options = [
+    ["stage", "chain and pictures over time"],
+    ["chain", "chain"],
+  ];
+  for (const [name, [words]] of Object.entries(FIGURES)) options.push([name, words]);
+  picture.append(...options.map(([value, words]) => new Option(words, value)));
+  const over = new Option("the open page", "page");
+  window.granchain.on("overlay", (name) => {
+    if (name) picture.add(over);
+    else over.remove();
+    picture.value = name ? "page" : "stage";
+  });
+  const save = (kind) => button(kind.toUpperCase(), () => savePicture(picture.value, kind));
+  const files = FILES.map(([what, words]) => button(words, () => send(what)));
+  return element(
+    "div",
+    { className: "take" },
+    element("h2", { textContent: "take along" }),
+    element("div", { className: "row" }, picture, save("png"), save("svg")),
+    ...files,
+  );
+}

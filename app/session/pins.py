@@ -1,0 +1,112 @@
+"""Pinned motions, which stay while the knobs move: as links, and in numbers beside the present one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from granchain_core import BadInput, Run, Scene, State
+from granchain_core.quantities import QUANTITIES
+
+from ..format import prefixed
+from .share import PINS, START, decode, encode
+from .starts import read_start, start_text
+
+#: What the pins are called, in their order.
+NAMES = "ABC"
+_NOTHING = ["", "", ""]
+
+
+@dataclass(frozen=True, eq=False)
+class Pin:
+    """A settled motion: its scene, and the state in which it began; None is rest."""
+
+    scene: Scene
+    start: State | None = None
+
+    @property
+    def text(self) -> str:
+        """The pin as a link without a view."""
+        return encode(self.scene, {}, {START: start_text(self.start)})
+
+
+def pin_texts(pins: Sequence[Pin]) -> dict[str, str]:
+    """The fields of a link that has these pins."""
+    return {name: pin.text for name, pin in zip(PINS, pins, strict=False)}
+
+
+def read_pin(text: str) -> Pin:
+    """The pin of a link's field. Raises `BadInput` for the first thing that is wrong: half a pin is none."""
+    shown, extras, refused = decode(text)
+    if refused:
+        raise BadInput(f"A pin of the link was left out. {refused[0]}")
+    return Pin(shown, read_start(extras[START], shown) if START in extras else None)
+
+
+def setting_words(pin: Scene, now: Scene) -> str:
+    """The scene and the knobs by which a pinned scene differs from the present one."""
+    told = [pin.name] if pin.name != now.name else []
+    for name, value in pin.knobs.items():
+        if value != now.knobs[name] and name != "kappa":
+            told.append(f"{QUANTITIES[name].symbol or name} = {_knob(name, value)}")
+    return ", ".join(told) or "the same knobs"
+
+
+def _knob(name: str, value: object) -> str:
+    quantity = QUANTITIES[name]
+    if not isinstance(value, (int, float)):
+        return str(value)
+    factor, unit = quantity.shown_in or (1.0, quantity.unit if quantity.unit != "1" else "")
+    return f"{value / factor:.6g} {unit}".rstrip()
+
+
+def compared_rows(now: Run, pinned: Sequence[Run | None]) -> list[dict[str, object]]:
+    """The numbers of the present motion and of each pinned one, with difference and ratio of the present one to it.
+
+    A pin that is still being computed has None, and empty cells.
+    """
+    rows: list[dict[str, object]] = []
+    for title, attribute, error in (("output force", "max_output_force", "output"),
+                                    ("elastic part", "max_output_force_elastic", "elastic"),
+                                    ("input force", "max_input_force", "input")):
+        rows.append({"title": title, "now": _stated(now, attribute, error),
+                     "pins": [_beside(now, run, attribute, error) for run in pinned]})
+    rows.append({"title": "output / input", "now": _share(now),
+                 "pins": [_NOTHING if run is None else [_share(run), "", _times(_ratio(now), _ratio(run))]
+                          for run in pinned]})
+    rows.append({"title": "motion", "now": now.regime.sentence,
+                 "pins": [_NOTHING if run is None else [run.regime.sentence, "", ""] for run in pinned]})
+    return rows
+
+
+def _stated(run: Run, attribute: str, error: str) -> str:
+    """A force with the digits that its error leaves, at most six."""
+    value = float(getattr(run, attribute))
+    relative = getattr(run.force_errors, error)
+    digits = 3 if relative is None else int(np.clip(np.floor(-np.log10(max(relative, 1e-12))), 1, 6))
+    factor, letter = prefixed(abs(value))
+    return f"{value / factor:.{digits}g} {letter}N"
+
+
+def _beside(now: Run, run: Run | None, attribute: str, error: str) -> list[str]:
+    if run is None:
+        return _NOTHING
+    here, there = float(getattr(now, attribute)), float(getattr(run, attribute))
+    gap = here - there
+    factor, letter = prefixed(abs(gap)) if gap else (1.0, "")
+    sign = "+" if gap >= 0.0 else "−"
+    return [_stated(run, attribute, error), f"{sign}{abs(gap) / factor:.3g} {letter}N", _times(here, there)]
+
+
+def _times(here: float, there: float) -> str:
+    return f"× {here / there:.3g}" if there > 0.0 else "–"
+
+
+def _ratio(run: Run) -> float:
+    return run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
+
+
+def _share(run: Run) -> str:
+    return f"{100 * _ratio(run):.3g} %"

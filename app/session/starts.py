@@ -1,0 +1,43 @@
+"""The state in which a motion began, as a text in a link: without it, nobody could repeat a picture that hysteresis
+decides.
+
+Little-endian doubles, in base64 for addresses: drive phase, N displacements [m], N velocities [m/s].
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+
+import numpy as np
+
+from granchain_core import BadInput, Scene, State
+
+#: Beads of the longest chain whose state a link has room for.
+MOST_BEADS = 40
+
+
+def start_text(start: State | None) -> str:
+    """The state as a text; empty for rest, and for a chain that is too long for a link."""
+    if start is None or len(start.displacement) > MOST_BEADS:
+        return ""
+    values = np.concatenate([[start.phase], start.displacement, start.velocity]).astype("<f8")
+    return base64.urlsafe_b64encode(values.tobytes()).decode().rstrip("=")
+
+
+def read_start(text: str, scene: Scene) -> State:
+    """The state that a text has for a scene. Raises `BadInput`."""
+    try:
+        content = base64.b64decode(text + "=" * (-len(text) % 4), altchars=b"-_", validate=True)
+        values = np.frombuffer(content, dtype="<f8").astype(float)
+    except (binascii.Error, ValueError):
+        raise BadInput("The state in which the motion began is damaged in the link; it begins at rest.") from None
+    if len(values) != 2 * scene.N + 1:
+        raise BadInput(f"The link begins the motion in a state of {(len(values) - 1) // 2} beads, but the chain has "
+                       f"{scene.N}; it begins at rest.")
+    phase, places, speeds = values[0], values[1:scene.N + 1], values[scene.N + 1:]
+    # Beyond a bead's size and the speed of sound in steel no contact law means anything.
+    sane = np.isfinite(values).all() and 0.0 <= phase < 1.0 and np.abs(places).max() < 1.0
+    if not sane or np.abs(speeds).max() > 6000.0:
+        raise BadInput("The state in which the motion began is no state of a chain; it begins at rest.")
+    return State(places, speeds, float(phase))

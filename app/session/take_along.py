@@ -1,0 +1,195 @@
+"""What is on the screen as tables, and as a program that computes it again."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import pprint
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from granchain_core import CurvePoint, Run, Scene, State, __version__
+
+from ..frames import jumps_of
+from .session import without_frequency
+
+#: Names of the forces in a program, and the fields of a run.
+_FORCES = {"largest output force [N]": "max_output_force", "its elastic part [N]": "max_output_force_elastic",
+           "largest input force [N]": "max_input_force"}
+#: Relative difference from which on a program says that it found something else than the page: the last of six digits.
+_SAME = 5e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Screen:
+    """A settled picture with its start (None is rest), its complete curves by the start of each, and its address."""
+
+    run: Run
+    start: State | None
+    curves: Mapping[str, Sequence[CurvePoint]]
+    query: str
+
+    @property
+    def scene(self) -> Scene:
+        """The chain."""
+        return self.run.scene
+
+
+def trains_csv(run: Run) -> str:
+    """The force trains and the drive, one row a sample; what a force does between samples stands in comments above.
+
+    A force that jumps does so from 0.
+    """
+    comments = [f"# {name} force jumps from 0 to {float(force)!r} N at {float(time)!r} s"
+                for name, contact in (("input", 0), ("output", run.scene.N))
+                for time, force in jumps_of(run, contact)]
+    titles = ["time_s", "drive_displacement_m", "input_force_N", "output_force_N", "elastic_part"]
+    rows = zip(run.time - run.time[0], run.drive_displacement, run.input_force, run.output_force,
+               run.output_force_elastic, strict=True)
+    return "".join(f"{line}\n" for line in comments) + _csv(titles, ([repr(float(one)) for one in row] for row in rows))
+
+
+def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
+    """The resonance curves, one row a point: largest forces, and the relative error of the output force where one is
+    claimed.
+    """
+    titles = ["start", "frequency_Hz", "force_N", "elastic_part", "at_the_driver", "claim", "regime", "period"]
+
+    def row(start: str, point: CurvePoint) -> list[str]:
+        claim = point.force_errors.output
+        return [start, repr(point.frequency), repr(point.max_output_force), repr(point.max_output_force_elastic),
+                repr(point.max_input_force), "" if claim is None else repr(claim), point.regime.name,
+                str(point.regime.period or "")]
+
+    return _csv(titles, (row(start, point) for start, points in curves.items() for point in points))
+
+
+def script(screen: Screen) -> str:
+    """A Python program that computes what is on the screen and says whether it found the same."""
+    return "\n\n".join(source for _, source in _pieces(screen)) + "\n"
+
+
+def notebook(screen: Screen) -> str:
+    """The same as a Jupyter notebook, with pictures."""
+    cells: list[dict[str, Any]] = []
+    for words, source in [*_pieces(screen), *_drawings(screen)]:
+        if words:
+            cells.append(_cell("markdown", words))
+        cells.append(_cell("code", source))
+    kernel = {"kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
+              "language_info": {"name": "python"}}
+    for number, cell in enumerate(cells):
+        cell["id"] = f"cell-{number}"
+    return json.dumps({"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}, indent=1)
+
+
+def _cell(kind: str, source: str) -> dict[str, Any]:
+    cell: dict[str, Any] = {"cell_type": kind, "metadata": {}, "source": source.splitlines(keepends=True)}
+    return {**cell, "execution_count": None, "outputs": []} if kind == "code" else cell
+
+
+def _pieces(screen: Screen) -> list[tuple[str, str]]:
+    """Words and source of each part of the program."""
+    shown = screen.scene
+    arguments = ", ".join(f"{name}={value!r}" for name, value in shown.differences().items())
+    chain = f'scene("{shown.name}")' + (f".evolve({arguments})" if arguments else "")
+    head = f'''"""What granchain {__version__} showed: {shown.title}, {shown.f:g} Hz.
+
+Install granchain, then run this with Python. It computes the picture again and compares.
+Address on the page: ?{screen.query}
+"""
+
+import numpy as np
+
+from granchain import State, resonance_curve, scene, settle
+
+chain = {chain}'''
+    picture = f"""{_start(screen.start)}
+run = settle(chain, start=start, samples={screen.run.samples}).run"""
+    told = {title: float(getattr(screen.run, field)) for title, field in _FORCES.items()}
+    numbers = f"""# What the page showed, and what was computed now.
+page = {pprint.pformat(told, sort_dicts=False, width=100)}
+fields = {pprint.pformat(_FORCES, sort_dicts=False, width=100)}
+here = {{name: float(getattr(run, field)) for name, field in fields.items()}}
+print(run.regime.sentence)
+for name, value in here.items():
+    same = abs(value - page[name]) <= {_SAME:g} * abs(page[name])
+    print(f"{{name:26}} {{value:.6g}}", "as on the page" if same else f"but the page had {{page[name]:.6g}}")"""
+    pieces = [("", head), ("The motion, settled.", picture), ("Its largest forces.", numbers)]
+    pieces += [(f"The resonance curve, {start}.", _curve(start, points, screen)) for start, points
+               in screen.curves.items()]
+    return pieces
+
+
+def _start(start: State | None) -> str:
+    if start is None:
+        return "start = None  # at rest"
+    return (f"# The state in which the motion on the page began: another start may settle to another motion.\n"
+            f"start = State(displacement={_array(start.displacement)},\n"
+            f"              velocity={_array(start.velocity)}, phase={start.phase!r})")
+
+
+def _array(values: Sequence[float] | np.ndarray) -> str:
+    return f"np.array({[float(value) for value in values]!r})"
+
+
+def _curve(start: str, points: Sequence[CurvePoint], screen: Screen) -> str:
+    name = f"curve_{start}"
+    over = screen.scene.evolve(f=without_frequency(screen.scene).f)
+    return f"""# The page's curve, {start}: its frequencies [Hz], and the largest output forces it drew [N].
+frequencies = {_array([point.frequency for point in points])}
+drawn = {_array([point.max_output_force for point in points])}
+{name} = resonance_curve(chain.evolve(f={over.f!r}), frequencies, start="{start}")
+computed = {name}.column("max_output_force")
+apart = np.nanmax(np.abs(computed - drawn)) / np.nanmax(drawn)
+print(f"curve, {start}: {{len(frequencies)}} points, largest difference from the page {{apart:.1e}} of its peak")"""
+
+
+def _drawings(screen: Screen) -> list[tuple[str, str]]:
+    forces = """from bokeh.io import output_notebook, show
+from bokeh.models import LinearColorMapper
+from bokeh.plotting import figure
+
+output_notebook(hide_banner=True)
+time = 1e3 * (run.time - run.time[0])
+forces = figure(title="forces", x_axis_label="time (ms)", y_axis_label="force (N)", width=760, height=260)
+forces.line(time, run.input_force, color="#3b82f6", legend_label="input")
+forces.line(time, run.output_force, color="#2f9e6a", legend_label="output")
+show(forces)"""
+    energy = """energy = run.kinetic_energy
+beads = energy.shape[1]
+plot = figure(title="kinetic energy", x_axis_label="bead", y_axis_label="time (ms)", width=560, height=420,
+              x_range=(0.5, beads + 0.5), y_range=(time[-1], 0))
+# Colours follow the square root of the energy, as on the page.
+plot.image([np.sqrt(energy)], x=0.5, y=0, dw=beads, dh=time[-1],
+           color_mapper=LinearColorMapper("Inferno256", low=0, high=float(np.sqrt(energy.max()))))
+show(plot)"""
+    found = [("The force trains.", forces), ("Every bead in time.", energy)]
+    for start in screen.curves:
+        found.append((f"The curve, {start}.", f"""plot = figure(title="resonance curve, {start}", width=760, height=300,
+              x_axis_label="drive frequency (Hz)", y_axis_label="largest output force (N)")
+plot.line(frequencies_of := [point.frequency for point in curve_{start}.points],
+          curve_{start}.column("max_output_force"), color="#2f9e6a")
+plot.scatter([chain.f], [run.max_output_force], size=11, color="#2f9e6a")
+show(plot)"""))
+    return found
+
+
+def _csv(titles: Sequence[str], rows: Any) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(titles)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+#: What can be taken along as a text: the end of its name, and how it is written.
+TEXTS: dict[str, tuple[str, Callable[[Screen], str]]] = {
+    "trains": ("-trains.csv", lambda screen: trains_csv(screen.run)),
+    "curve": ("-curve.csv", lambda screen: curve_csv(screen.curves)),
+    "script": (".py", script), "notebook": (".ipynb", notebook),
+}

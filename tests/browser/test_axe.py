@@ -1,0 +1,74 @@
+"""axe-core finds nothing on any tab, page and popover; what the page says to those who do not see it."""
+
+from __future__ import annotations
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from knobs import COMPILED, Visit, settled, type_into
+from playwright.sync_api import Page, expect
+
+POPOVERS = ("Help and keys (?)", "Take along: pictures, tables, a program", "Link to this picture")
+#: What depends on the look; everything else is the same in all of them.
+OF_THE_LOOK = {"runOnly": {"type": "rule", "values": ["color-contrast"]}}
+
+
+def violations(page: Page, look: str) -> list[str]:
+    """Rule and element of everything that axe-core finds."""
+    found = Axe().run(page, options={} if look == "light" else OF_THE_LOOK)
+    return [f"{one['id']}: {node['html'][:120]}" for one in found.response["violations"] for node in one["nodes"]]
+
+
+@pytest.mark.parametrize("look", ["light", "dark", "projector"])
+def test_axe_finds_nothing(visit: Visit, look: str) -> None:
+    page = visit(f"?v=1&look={look}")
+    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    found = {}
+    for name in page.evaluate("[...document.querySelectorAll('[data-overlay]')].map((one) => one.dataset.overlay)"):
+        page.evaluate("(name) => granchain.openPage(name)", name)
+        page.evaluate("shown()")
+        found[f"page {name}"] = violations(page, look)
+    page.evaluate("granchain.closePage()")
+    for tab in page.get_by_role("tab").all():
+        tab.click()
+        page.evaluate("shown()")
+        found[f"tab {tab.text_content()}"] = violations(page, look)
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    for name in POPOVERS:
+        page.get_by_role("button", name=name, exact=True).click()
+        found[name] = violations(page, look)
+    assert len(found) > 20 and {where: what for where, what in found.items() if what} == {}
+
+
+def test_the_pictures_are_told_in_words_and_tables(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=850")
+    settled(page)
+    summary = page.locator("#summary")
+    expect(summary).to_contain_text("At 850 Hz: period 1")
+    expect(summary).to_contain_text("591 mN, and at most 237 mN arrive at the wall, 40.1 % of it. Bead 1 has the most")
+    expect(page.locator("main")).to_have_attribute("aria-describedby", "summary")
+    expect(page.locator("#announced")).to_contain_text("period 1")
+    page.get_by_role("tab", name="numbers").click()
+    rows = page.locator("#tabs tbody tr")
+    expect(rows).to_have_count(25)
+    page.get_by_label("which table").select_option("beads")
+    expect(rows).to_have_count(11)
+    type_into(page, "f", "340")
+    expect(summary).to_contain_text("arrive at the wall, 90.1 %")
+    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.get_by_label("which table").select_option("curve")
+    assert rows.count() > 75
+    expect(rows.first).to_contain_text("mN")
+
+
+def test_the_keyboard_has_a_sheet_and_moves_time(visit: Visit) -> None:
+    page = visit()
+    settled(page)
+    page.keyboard.press("?")
+    expect(page.get_by_text("play or pause", exact=True)).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.get_by_text("play or pause", exact=True)).to_be_hidden()
+    cursor = page.get_by_role("slider", name="time cursor")
+    cursor.focus()
+    for key, told in (("Home", "0.00"), ("PageDown", "1.00"), ("End", "4.00"), ("PageUp", "3.00")):
+        page.keyboard.press(key)
+        expect(cursor).to_have_attribute("aria-valuetext", f"{told} drive periods")

@@ -1,0 +1,140 @@
+"""Undo and redo, pins, what is taken along, and the page in a frame."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from knobs import COMPILED, Visit, field, settled, type_into
+from PIL import Image
+from playwright.sync_api import Page, expect
+from room import faults
+from started import until
+
+# Points of the lines of pins in a figure, which lie behind all others.
+PINNED = """(name) => Bokeh.documents.map((one) => one.get_model_by_name(name)).find(Boolean).renderers
+  .filter((one) => one.level === "underlay")
+  .map((one) => (one.data_source.data.force ?? []).length)"""
+
+
+def step(page: Page, holds: str) -> None:
+    """Wait until the address has followed, as a step of the history."""
+    page.wait_for_function(f"location.search.includes('{holds}') && !granchain.steps.returning")
+
+
+def test_undo_and_redo_go_through_everything_a_visitor_does(visit: Visit) -> None:
+    page = visit()
+    undo, redo = (page.get_by_role("button", name=name) for name in ("Undo (Ctrl-Z)", "Redo (Ctrl-Shift-Z)"))
+    expect(undo).to_be_disabled()
+    type_into(page, "f", "615.3")
+    step(page, "f=615.3")
+    page.get_by_role("button", name="fit", exact=True).click()
+    step(page, "scale=fit")
+    page.get_by_role("tab", name="effects").click()
+    step(page, "tab=effects")
+    page.get_by_role("button", name="Theme: light, dark, projector").click()
+    step(page, "look=dark")
+    page.locator("select.scene").select_option("rig")
+    step(page, "scene=rig")
+    expect(redo).to_be_disabled()
+    for key, gone in (("Control+z", "scene=rig"), ("Control+z", "look=dark"), ("Control+z", "tab=effects")):
+        page.keyboard.press(key)
+        page.wait_for_function(f"!location.search.includes('{gone}') && !granchain.steps.returning")
+    expect(field(page, "f")).to_have_value("615.3")
+    assert page.evaluate("document.documentElement.dataset.theme") == "light"
+    expect(page.get_by_role("tab", name="stories")).to_have_attribute("aria-selected", "true")
+    undo.click()
+    page.wait_for_function("!location.search.includes('scale')")
+    expect(page.locator("#stage")).to_have_attribute("data-scale", "same")
+    page.go_back()
+    expect(field(page, "f")).to_have_value("340")
+    expect(undo).to_be_disabled()
+    page.wait_for_function("!granchain.steps.returning")
+    for holds in ("f=615.3", "scale=fit", "tab=effects"):
+        page.keyboard.press("Control+Shift+z")
+        step(page, holds)
+    expect(redo).to_be_enabled()
+    type_into(page, "f", "700")  # another way: what was ahead is gone
+    step(page, "f=700")
+    expect(redo).to_be_disabled()
+    field(page, "f").fill("12")  # while one types, undo belongs to the field
+    field(page, "f").press("Control+z")
+    step(page, "f=700")
+
+
+def test_a_step_back_brings_the_motion_and_not_only_the_knobs(visit: Visit) -> None:
+    """At 880 Hz the chain keeps the motion it comes with; the address has the state in which that began."""
+    page = visit("?v=1&scene=sec2&f=860&start=previous")
+    settled(page)
+    type_into(page, "f", "880")
+    expect(page.locator("#foot b")).to_contain_text("period 1,")
+    step(page, "from=")
+    type_into(page, "f", "400")
+    step(page, "f=400")
+    page.keyboard.press("Control+z")
+    expect(field(page, "f")).to_have_value("880")
+    expect(page.locator("#foot b")).to_contain_text("period 1,", timeout=20_000)
+    expect(page.locator("#foot #start")).to_have_text("from previous state")
+    page.reload()
+    page.wait_for_function("window.painted.length > 0")
+    expect(page.locator("#foot b")).to_contain_text("period 1,", timeout=20_000)
+
+
+def test_a_pin_stays_while_knobs_move_and_comes_back_with_the_link(visit: Visit) -> None:
+    page = visit()
+    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.get_by_role("button", name="Pin this picture and compare").click()
+    expect(page.get_by_role("tab", name="compare")).to_have_attribute("aria-selected", "true")
+    type_into(page, "D", "60")
+    type_into(page, "f", "850")
+    settled(page)
+    table = page.locator("#tabs .compared")
+    expect(table).to_contain_text("f = 340 Hz, D = 100 N s/m")
+    expect(table).to_contain_text("628.504 mN")
+    for figure in ("input force", "output force", "resonance curve"):
+        until(page, lambda figure=figure: max(page.evaluate(PINNED, figure)) > 50)  # type: ignore[misc]
+    expect(page.locator("#pinned")).to_be_visible()
+    until(page, lambda: faults(page) == [])
+    step(page, "pin=")
+    other = visit(page.evaluate("location.search"))
+    expect(other.locator("#tabs .compared")).to_contain_text("628.504 mN", timeout=30_000)
+    until(other, lambda: max(other.evaluate(PINNED, "resonance curve")) > 50, 60.0)
+    other.get_by_role("button", name="Turn the knobs to pin A").click()
+    expect(field(other, "D")).to_have_value("100")
+    other.get_by_role("button", name="Remove pin A").click()
+    expect(other.locator("#pinned")).to_be_hidden()
+    assert max(other.evaluate(PINNED, "output force")) == 0
+
+
+def test_pictures_are_taken_along_as_they_are_on_the_screen(visit: Visit, tmp_path: Path) -> None:
+    page = visit(accept_downloads=True)
+    settled(page)
+    page.get_by_role("button", name="Take along").click()
+    for what in ("stage", "chain", "driver", "energy", "wall", "curve"):
+        page.get_by_label("which picture").select_option(what)
+        kind = "SVG" if what in ("stage", "curve") else "PNG"
+        with page.expect_download() as download:
+            page.get_by_role("button", name=kind, exact=True).click()
+        path = tmp_path / download.value.suggested_filename
+        download.value.save_as(path)
+        assert path.name.startswith(f"sec2-340Hz-{what}.")
+        if kind == "SVG":
+            text = path.read_text(encoding="utf-8")
+            assert "1:1" in text and "340 Hz" in text and text.count("<path") > 10
+        else:
+            with Image.open(path) as drawn:
+                assert min(drawn.size) > 150 and len(set(drawn.convert("L").resize((90, 90)).tobytes())) > 20
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Python script that computes it again").click()
+    download.value.save_as(tmp_path / "again.py")
+    assert 'scene("sec2")' in (tmp_path / "again.py").read_text(encoding="utf-8")
+
+
+def test_in_a_frame_there_are_the_pictures_and_nothing_to_turn(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=850&embed=1", viewport={"width": 900, "height": 520})
+    for gone in ("#side", "#tabs", "#curvebar"):
+        expect(page.locator(gone)).to_be_hidden()
+    whole = page.get_by_role("link", name="open in granchain")
+    href = whole.get_attribute("href") or ""
+    assert "scene=sec2&f=850" in href and "embed" not in href
+    expect(page.get_by_role("heading", name="sec2, 850 Hz")).to_be_visible()
+    until(page, lambda: faults(page) == [])

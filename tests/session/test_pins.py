@@ -1,0 +1,77 @@
+"""Pins and starts in a link: the same to the last bit, and what is damaged is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.page.addresses import take_address
+from app.session.pins import NAMES, Pin, compared_rows, read_pin, setting_words
+from app.session.session import Session
+from app.session.share import PINS
+from app.session.starts import MOST_BEADS, read_start, start_text
+from granchain_core import BadInput, State, run, scene
+
+SHOWN = scene("sec2").evolve(f=880.0)
+RNG = np.random.default_rng(14)
+START = State(1e-6 * RNG.standard_normal(11), 1e-2 * RNG.standard_normal(11))
+
+
+def test_a_start_comes_back_to_the_last_bit() -> None:
+    back = read_start(start_text(START), SHOWN)
+    assert np.array_equal(back.displacement, START.displacement) and np.array_equal(back.velocity, START.velocity)
+    assert back.phase == 0.0 and start_text(None) == ""
+
+
+def test_a_chain_that_is_too_long_begins_at_rest() -> None:
+    assert start_text(State(np.zeros(MOST_BEADS), np.zeros(MOST_BEADS))) != ""
+    assert start_text(State(np.zeros(MOST_BEADS + 1), np.zeros(MOST_BEADS + 1))) == ""
+
+
+@pytest.mark.parametrize(("text", "told"), [
+    ("!!", "damaged"), ("AAAA", "damaged"), ("ä", "damaged"), (start_text(State(np.zeros(3), np.zeros(3))), "of 3 beads"),
+    (start_text(replace(START, displacement=np.full(11, np.nan))), "no state of a chain"),
+    (start_text(replace(START, velocity=np.full(11, 1e6))), "no state of a chain"),
+    (start_text(replace(START, phase=1.0)), "no state of a chain")])
+def test_what_is_no_state_is_refused(text: str, told: str) -> None:
+    with pytest.raises(BadInput, match=told):
+        read_start(text, SHOWN)
+
+
+def test_an_address_brings_everything_back() -> None:
+    left = Session(SHOWN, start="previous", scale="fit", speed=0.25, account=True, story="coexisting.2",
+                   started_from=START, pins=(Pin(scene("sec2")), Pin(scene("rig").evolve(D=12.0), START)))
+    back = Session()
+    start, refused = take_address(back, left.link)
+    assert refused == [] and start is not None
+    back.started_from = start
+    assert back.link == left.link
+    assert np.array_equal(back.pins[1].start.velocity, START.velocity)  # type: ignore[union-attr]
+    # what is left out is the default again
+    take_address(back, "v=1")
+    assert back.link == Session().link
+
+
+def test_a_damaged_pin_is_left_out_and_told() -> None:
+    session = Session()
+    _, refused = take_address(session, "v=1&pin=scene%3Dsec2%26f%3Dlots&pin2=scene%3Drig&from=AAAA&story=none.1")
+    assert [pin.scene.name for pin in session.pins] == ["rig"]
+    assert len(refused) == 3 and any("A pin of the link was left out" in one for one in refused)
+
+
+def test_every_pin_has_a_name_and_a_field() -> None:
+    assert len(NAMES) == len(PINS)
+
+
+def test_pinned_numbers_are_beside_the_present_ones() -> None:
+    now, before = (run(scene("sec2").evolve(f=f), periods=2, record=1, samples=24) for f in (850.0, 340.0))
+    rows = {row["title"]: row for row in compared_rows(now, [before, None])}
+    output = rows["output force"]["pins"][0]  # type: ignore[index]
+    assert output[1].startswith("−" if now.max_output_force < before.max_output_force else "+")
+    assert output[2] == f"× {now.max_output_force / before.max_output_force:.3g}"
+    assert rows["input force"]["pins"][1] == ["", "", ""]  # type: ignore[index]
+    assert setting_words(before.scene, now.scene) == "f = 340 Hz"
+    assert setting_words(now.scene, now.scene) == "the same knobs"
+    assert read_pin(Pin(before.scene).text).scene == before.scene

@@ -1,0 +1,88 @@
+"""What is taken along: tables that granchain reads again, and programs that find what the page showed."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.frames import samples_for
+from app.session.take_along import TEXTS, Screen, curve_csv, notebook, script, trains_csv
+from granchain_core import resonance_curve, scene, settle
+from granchain_core.experiment import Answers, Measured, read_data
+
+ROOT = Path(__file__).resolve().parents[2]
+SHOWN = scene("sec2").evolve(f=880.0)
+
+
+@pytest.fixture(scope="module")
+def screen() -> Screen:
+    """880 Hz, where the motion depends on where the chain was before, with three points of the curve."""
+    start = settle(SHOWN.evolve(f=860.0)).state
+    found = settle(SHOWN, start=start, samples=samples_for(SHOWN))
+    points = resonance_curve(SHOWN.evolve(f=30.0), [340.0, 620.0, 1600.0]).points
+    return Screen(found.run, start, {"rest": points}, "v=1&scene=sec2&f=880.0")
+
+
+def run_again(program: str, tmp_path: Path) -> str:
+    """What a program prints."""
+    path = tmp_path / "again.py"
+    path.write_text(program, encoding="utf-8")
+    done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, timeout=300, check=False,
+                          env={**os.environ, "PYTHONPATH": str(ROOT)}, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_the_script_finds_what_the_page_showed_to_the_last_digit(screen: Screen, tmp_path: Path) -> None:
+    told = run_again(script(screen) + "\nprint(repr(run.max_output_force))\n", tmp_path)
+    assert told.count("as on the page") == 3 and "but the page" not in told
+    assert repr(screen.run.max_output_force) in told  # not only to the digits shown
+    assert "3 points, largest difference from the page 0.0e+00" in told
+    # the start matters: from rest there is another motion
+    assert settle(SHOWN).run.regime.period != screen.run.regime.period
+
+
+def test_a_script_says_where_it_found_something_else(screen: Screen, tmp_path: Path) -> None:
+    other = script(screen).replace("f=880.0)", "f=881.0)", 1)
+    assert "but the page had" in run_again(other, tmp_path)
+
+
+def test_the_notebook_runs_and_finds_the_same(screen: Screen, tmp_path: Path) -> None:
+    """Its pictures are drawn by Bokeh; what shows them in a notebook is put aside here."""
+    content = json.loads(notebook(screen))
+    assert (content["nbformat"], content["nbformat_minor"]) == (4, 5)
+    assert len({cell["id"] for cell in content["cells"]}) == len(content["cells"])
+    code = ["".join(cell["source"]) for cell in content["cells"] if cell["cell_type"] == "code"]
+    shown = re.sub(r"^output_notebook.*$", "drawn = []\nshow = drawn.append", "\n\n".join(code), flags=re.MULTILINE)
+    told = run_again(shown + "\nprint(len(drawn), 'pictures')\n", tmp_path)
+    assert told.count("as on the page") == 3 and "3 pictures" in told
+
+
+def test_the_curve_can_be_read_again(screen: Screen) -> None:
+    found = read_data(curve_csv(screen.curves).encode(), Answers(), ("curve",), "curve.csv", 2_000_000, 100_000)
+    assert isinstance(found, Measured)
+    points = screen.curves["rest"]
+    assert list(found.frequency) == [point.frequency for point in points]
+    assert list(found.force) == [point.max_output_force for point in points]
+
+
+def test_the_trains_have_every_sample_and_every_jump(screen: Screen) -> None:
+    lines = trains_csv(screen.run).splitlines()
+    comments = [line for line in lines if line.startswith("#")]
+    rows = np.array([[float(cell) for cell in line.split(",")] for line in lines[len(comments) + 1:]])
+    assert lines[len(comments)].split(",")[2:4] == ["input_force_N", "output_force_N"]
+    assert np.array_equal(rows[:, 3], screen.run.output_force) and rows[0, 0] == 0.0
+    jumps = screen.run.jumps
+    ends = [c for c in jumps.contact if c in (0, SHOWN.N)]
+    assert len(comments) == len(ends) >= 1
+
+
+def test_everything_that_is_offered_can_be_written(screen: Screen) -> None:
+    assert all(write(screen) for _, write in TEXTS.values())
