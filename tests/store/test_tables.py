@@ -55,6 +55,9 @@ RESULTS = {
     "StrobeDiagram": lambda: granchain_core.strobe_diagram(CHAIN, "f", [1900.0, 2000.0], keep=4),
     "Basins": lambda: granchain_core.basins(CHAIN, ("u1", [0.0, 1e-7, 2e-7]), ("v1", [0.0, 1e-3])),
     "Attractors": lambda: granchain_core.attractors(CHAIN, random_states=2),
+    "Driven": lambda: granchain_core.drive(CHAIN, granchain_core.Signal.burst(CHAIN.A0, 2000.0, 2, 0.002)),
+    "Pulse": lambda: granchain_core.pulse(granchain_core.run(
+        scene("sec2").evolve(N=5, f=800.0, drive="rest", strike=0.01), periods=0, record=1, samples=500)),
 }
 
 
