@@ -11,7 +11,19 @@ import numpy as np
 import pytest
 from distributed import Client, LocalCluster
 
-from granchain_core import BadInput, Cancelled, NumbersFailed, Stop, branch, diagram, fit, orbit, resonance_curve, run_many, scene
+from granchain_core import (
+    BadInput,
+    Cancelled,
+    NumbersFailed,
+    Stop,
+    branch,
+    diagram,
+    fit,
+    orbit,
+    resonance_curve,
+    run_many,
+    scene,
+)
 from granchain_core.diagram import Axis, Grid
 from granchain_core.diagram.cells import empty_cells
 from granchain_core.diagram.scheduled import blocks_of, iter_blocks
