@@ -108,7 +108,8 @@ class Fit(Labelled):
             "amplitude": json.dumps(self.amplitude.to_json())}
         return {**provenance(self.scene, "least squares, profile likelihood", None), "misfit": self.misfit,
                 "data": self.data, "freedom": self.freedom, "probability": or_nan(self.probability),
-                "verdict": self.verdict, "sentence": self.sentence, "scale": self.scale, "level": LEVEL, "wall_s": self.wall_s, **drive}
+                "verdict": self.verdict, "sentence": self.sentence, "scale": self.scale, "level": LEVEL,
+                "wall_s": self.wall_s, **drive}
 
     def summary(self) -> list[str]:
         """Each parameter with its interval, and the verdict."""
