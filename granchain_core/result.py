@@ -14,7 +14,7 @@ from .kernels.samples import Samples
 from .regime import Regime
 from .scene import Scene
 from .scene.validity import overlap_warnings
-from .tables import MAXIMA, Column, Labelled, Table, axis, bead_axis, contact_axis, or_nan, provenance
+from .tables import MAXIMA, Column, Labelled, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
 from .tables.provenance import Attribute
 
 _COLUMNS = {  # of a run and of an observation by name: (axes, unit, meaning)
@@ -243,10 +243,24 @@ class Run(Labelled):
         return elastic_output(self.scene, self.displacement[:, -1])
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `run`: the motion over time, bead and contact, and the jumps of forces."""
+        """One table, `run`: the motion over time, bead and contact, the jumps of forces, and what a run has one of."""
         axes = axis("time", self.time, "s", "time since the start, at drive phase 0")
         return (Table("run", {**axes, **bead_axis(self.scene.N), **contact_axis(self.scene.N), **self.jumps.axis()},
-                      {**motion_columns(self), **self.jumps.columns()}),)
+                      {**motion_columns(self), **self.jumps.columns(), **self._single()}),)
+
+    def _single(self) -> dict[str, Column]:
+        """Largest forces, errors and regime: columns without an axis."""
+        forces = np.array([getattr(self, name) for name in MAXIMA])
+        errors = {name: Column(np.array(error), (), "1", f"relative error of the largest {force} force, NaN if unknown")
+                  for name, error, force in zip(ERRORS, self.force_errors.row, ("input", "output", "elastic output"),
+                                                strict=True)}
+        return {**force_columns(forces, (), "over the recorded time"), **errors,
+                "error_estimate_displacement": Column(
+                    np.array(or_nan(self.error_estimate)), (), "1",
+                    "largest error of a displacement over the largest displacement, NaN if unknown"),
+                "regime": Column(np.array(self.regime.name, dtype=object), (), "", "what kind of motion it is"),
+                "period": Column(np.array(self.regime.period or 0), (), "1",
+                                 "period in drive periods, 0 where not periodic")}
 
     def attributes(self) -> dict[str, Attribute]:
         """Largest forces with their errors, regime, status, start, warnings and cost, and where they come from."""

@@ -128,7 +128,7 @@ class WorkPrecision(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Both references and how well they agree, and where it comes from."""
-        return {**provenance(self.scene, self.reference, self.agreement), "reference": self.reference,
+        return {**provenance(self.scene, self.reference, None), "reference": self.reference,
                 "second": self.second, "agreement": self.agreement, "disagreement": self.disagreement}
 
     def summary(self) -> list[str]:

@@ -106,9 +106,10 @@ class Fit(Labelled):
         """Misfit and verdict, and where they come from."""
         drive: dict[str, Attribute] = {} if self.amplitude is None else {
             "amplitude": json.dumps(self.amplitude.to_json())}
-        return {**provenance(self.scene, "profile likelihood", None), "misfit": self.misfit, "data": self.data,
-                "freedom": self.freedom, "probability": or_nan(self.probability), "verdict": self.verdict,
-                "sentence": self.sentence, "scale": self.scale, "level": LEVEL, "wall_s": self.wall_s, **drive}
+        return {**provenance(self.scene, "least squares, profile likelihood", None), "misfit": self.misfit,
+                "data": self.data, "freedom": self.freedom, "probability": or_nan(self.probability),
+                "verdict": self.verdict, "sentence": self.sentence, "scale": self.scale, "level": LEVEL,
+                "wall_s": self.wall_s, **drive}
 
     def summary(self) -> list[str]:
         """Each parameter with its interval, and the verdict."""

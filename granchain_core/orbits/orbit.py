@@ -111,7 +111,7 @@ class Orbit(Labelled):
     def attributes(self) -> dict[str, Attribute]:
         """Period, residual, stability, and where it comes from."""
         found: dict[str, Attribute] = {
-            **provenance(self.scene, CERTIFIED, self.residual), "period": self.period, "residual": self.residual,
+            **provenance(self.scene, CERTIFIED, None), "period": self.period, "residual": self.residual,
             "stable": int(self.stable), "liouville": or_nan(self.liouville)}
         return found if self.observer_stable is None else {**found, "observer_stable": int(self.observer_stable)}
 

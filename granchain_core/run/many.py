@@ -56,7 +56,8 @@ class Runs(list[Any], Labelled):
     def tables(self) -> tuple[Table, ...]:
         """One table, `runs`: each scene's knobs and what failed; of motions regime and largest forces with errors."""
         along = ("run",)
-        columns = {"scene": _words([one.name for one in self.scenes], "name of the scene")}
+        columns = {"scene": _words([one.name for one in self.scenes], "name of the scene"),
+                   "scene_digest": _words([one.digest for one in self.scenes], "hash of everything in the scene")}
         for name, quantity in QUANTITIES.items():
             values = [getattr(one, name) for one in self.scenes]
             if any(isinstance(value, str) for value in values):

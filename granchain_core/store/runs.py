@@ -3,6 +3,7 @@
 /run    time (s), bead, contact; displacement, velocity, kinetic_energy (time, bead); force (time, contact);
         drive_displacement, input_force, output_force, output_force_elastic (time)
         jump; jump_time (s), jump_contact, jump_force (N) (jump): closings at which the force jumps from 0
+        max_input_force, max_output_force, max_output_force_elastic (N), their errors, regime, period: one of each
 The root carries the largest forces with their errors, cost, regime, status and start, besides what every root has.
 """
 

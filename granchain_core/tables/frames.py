@@ -40,7 +40,7 @@ def frame(table: Table, rows: tuple[str, ...], attributes: Mapping[str, Any]) ->
     columns: dict[str, np.ndarray] = {}
     units, meanings = {}, {}
     for name, column in table.columns.items():
-        if not (set(rows) <= set(column.axes) or set(column.axes) <= set(rows)):
+        if not column.axes or not (set(rows) <= set(column.axes) or set(column.axes) <= set(rows)):
             continue
         for called, values in _pieces(table, name, column, rows):
             columns[called], units[called], meanings[called] = values, column.unit, column.meaning
