@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from dataclasses import asdict
 from typing import Any
@@ -30,7 +29,7 @@ def do(arguments: argparse.Namespace) -> None:
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: work_precision(chosen, stop, progress))
     write_picture(arguments.picture, f"What accuracy costs for {chosen.name}",
-                  lambda theme: _drawn(found, chosen.accuracy, theme))
+                  lambda theme: _drawn(found, theme))
     if arguments.json:
         show_json(_accuracy_json(found))
     else:
@@ -68,11 +67,7 @@ def _show_accuracy(found: Any) -> None:
         print(f"output force by {one.method} with {one.steps} steps a period: {drawn}")
 
 
-def _drawn(found: Any, asked: float, theme: Any) -> Any:
-    from ..pictures.accuracy import Annotations
-    from ..pictures.accuracy import accuracy as drawn
+def _drawn(found: Any, theme: Any) -> Any:
+    from ..pictures.door import measured_accuracy
 
-    best = found.cheapest(asked)
-    cheapest = None if best is None else (best.wall_s, best.error)
-    agreement = found.agreement if math.isfinite(found.agreement) else None
-    return drawn(found.rows, Annotations(asked, agreement, cheapest), theme)
+    return measured_accuracy(found, theme)

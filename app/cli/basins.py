@@ -6,10 +6,10 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from app.cli.common import chosen_scene, in_background, show_json, show_percent
-from app.cli.options import add_json, add_scene, values_from
-from app.cli.picture import add_option as add_picture
-from app.cli.picture import check_picture, write_picture
+from .common import chosen_scene, in_background, show_json, show_percent
+from .options import add_json, add_scene, values_from
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Basins
@@ -54,6 +54,6 @@ def _json(found: Basins) -> dict[str, Any]:
 
 
 def _drawn(found: Basins, theme: Any) -> Any:
-    from app.pictures.basins import basins
+    from ..pictures.basins import basins
 
     return basins(found, theme)

@@ -152,6 +152,6 @@ def _rows(found: Fit) -> list[tuple[float, float, float, str]]:
 
 
 def _drawn(found: Fit, theme: Any) -> Any:
-    from app.pictures.fit import fit
+    from ..pictures.fit import fit
 
     return fit(found, theme)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 import sys
 
-from app.cli.common import chosen_scene, in_background, show_json, show_percent
-from app.cli.options import add_json, add_scene, whole
+from .common import chosen_scene, in_background, show_json, show_percent
+from .options import add_json, add_scene, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -95,12 +95,9 @@ def _refuse_too_many(grid: Grid) -> None:
 
 
 def _drawn(found: Diagram, theme: Any) -> Any:
-    """The map of forces above the map of regimes."""
-    from bokeh.layouts import column
+    from ..pictures.door import both_maps
 
-    from ..pictures.diagram import diagram
-
-    return column(*(diagram(found, theme, shown) for shown in ("force", "regime")), sizing_mode="stretch_both")
+    return both_maps(found, theme)
 
 
 def _client(address: str | None) -> Any:

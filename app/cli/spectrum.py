@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from app.cli.common import chosen_scene, in_background, show_json
-from app.cli.options import add_json, add_scene, whole
-from app.cli.picture import add_option as add_picture
-from app.cli.picture import check_picture, write_picture
+from .common import chosen_scene, in_background, show_json
+from .options import add_json, add_scene, whole
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Run, Scene, Spectrum, Stop, Transfer
@@ -77,6 +77,6 @@ def _show(found: Spectrum, through: Transfer | None) -> None:
 
 
 def _drawn(found: Spectrum, theme: Any) -> Any:
-    from app.pictures.spectrum import spectrum
+    from ..pictures.spectrum import spectrum
 
     return spectrum(found, theme)

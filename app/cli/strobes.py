@@ -6,11 +6,12 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from app.cli.common import chosen_scene, in_background, say, show_json, show_percent
-from app.cli.options import add_json, add_scene, values_from, whole
-from app.cli.picture import add_option as add_picture
-from app.cli.picture import check_picture, write_picture
 from granchain_core.errors import check_range
+
+from .common import chosen_scene, in_background, say, show_json, show_percent
+from .options import add_json, add_scene, values_from, whole
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import StrobeDiagram
@@ -62,6 +63,6 @@ def _json(found: StrobeDiagram, bead: int) -> dict[str, Any]:
 
 
 def _drawn(found: StrobeDiagram, bead: int, theme: Any) -> Any:
-    from app.pictures.strobe_diagram import strobe_diagram
+    from ..pictures.strobe_diagram import strobe_diagram
 
     return strobe_diagram(found, bead, theme)

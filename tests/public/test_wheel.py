@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -54,3 +55,19 @@ def test_the_wheel_has_only_names_that_are_ours_and_runs(tmp_path: Path) -> None
             "print(granchain.figure(found).height, 'granchain_app.pictures.door' in sys.modules, 'app' in sys.modules)")
     drawn = subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=tmp_path, text=True, capture_output=True, check=False)
     assert drawn.stdout == "420 True False\n", drawn.stderr
+
+
+def test_every_module_of_the_wheel_is_found_under_its_name_there(tmp_path: Path) -> None:
+    """With the files it reads when it is imported; and imports inside functions do not name the tree's package."""
+    wheel(tmp_path)
+    named = [path for path in (tmp_path / "granchain_app").rglob("*.py")
+             if re.search(r"^\s*(from|import) app\b", path.read_text(encoding="utf-8"), re.MULTILINE)]
+    assert named == []
+    code = ("import sys; sys.path.insert(0, sys.argv[1]); import importlib, pkgutil, granchain_app\n"
+            "names = [found.name for found in pkgutil.walk_packages(granchain_app.__path__, 'granchain_app.')]\n"
+            "for name in names: importlib.import_module(name)\n"
+            "from granchain_app.page import measurement, scales; from granchain_app.session import stories\n"
+            "assert scales.FILE.is_file() and measurement.SAMPLES.is_dir() and stories.FOLDER.is_dir()\n"
+            "print(len(names) > 100, 'app' in sys.modules)")
+    ran = subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=tmp_path, text=True, capture_output=True, check=False)
+    assert ran.stdout == "True False\n", ran.stderr
