@@ -128,6 +128,8 @@ _TABLE = (
              0.0, 100.0, "cubic", 1e-5, main=True, short="k / (K√A₀)"),
     Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
              1, 10_000, "linear", 1, whole=True, short="beads"),
+    Quantity("F0", "F₀", "N", "F_0", "preload", "Static force that presses the chain together; 0 is the sonic vacuum.",
+             0.0, 1e4, "linear", 0.1),
     Quantity("dimer", "m₂/m₁", "1", "m_2/m_1", "mass of every second bead",
              "Mass of beads 2, 4, … over that of the others; of the same material, so the radius goes with its cube "
              "root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer"),
@@ -145,8 +147,6 @@ _TABLE = (
     Quantity("strike", "v₁", "m/s", "v_1", "initial velocity of bead 1",
              "Speed at which bead 1 moves towards the wall at time 0.", 0.0, 100.0, "cubic", 0.001, short="strike",
              at_start=True),
-    Quantity("F0", "F₀", "N", "F_0", "preload", "Static force that presses the chain together; 0 is the sonic vacuum.",
-             0.0, 1e4, "linear", 0.1),
     Quantity("wall", "W", "1", r"K_N/K", "right wall",
              "Stiffness of the last contact: a fixed bead (K), a flat wall of the same material (√2 K), "
              "a rigid flat wall (2√2 K), or a number times K.",

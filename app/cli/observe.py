@@ -82,7 +82,7 @@ def described(seen: Any) -> dict[str, Any]:
     """An observation as one JSON object."""
     return {
         "scene": seen.scene.name, "knobs": seen.scene.knobs,
-        "effects": ["given force" if e == "driver" else e for e in seen.scene.effects],
+        "effects": ["given force" if e.startswith("driver") else e for e in seen.scene.effects],
         "status": seen.status, "input": {
             "understood": seen.record.understood, "notes": list(seen.record.notes), "samples": len(seen.time),
             "spacing": seen.record.spacing, "from": float(seen.time[0]), "to": float(seen.time[-1])},

@@ -19,10 +19,8 @@ from ..stop import Stop
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)
 #: Samples a period of the drawn force; it divides all of them.
 _SAMPLES = 100
-#: Drive periods run from rest.
-_RUN = 10
-#: The last of them, which are shown.
-_SHOWN = 2
+#: Drive periods run from rest, and the last of them, which are shown; without a drive it is one time 1/f.
+_RUN, _SHOWN = 10, 2
 #: Reference.
 _TRUE = certified(1e-11)
 
@@ -63,7 +61,7 @@ class Lesson:
 
 def lesson(scene: Scene, stop: Stop) -> Lesson:
     """Run the naive methods at usual steps. Raises `NumbersFailed` where the reference fails, and `Cancelled`."""
-    first = (_RUN - _SHOWN) * _SAMPLES
+    first = (_RUN - _SHOWN) * _SAMPLES if scene.is_driven else 0
     true = output_force(scene, _TRUE, stop)[first:]
     time = (first + np.arange(len(true))) / _SAMPLES * scene.period
     found = Lesson(time, true)
@@ -85,4 +83,4 @@ def lesson(scene: Scene, stop: Stop) -> Lesson:
 def output_force(scene: Scene, setting: Setting, stop: Stop) -> np.ndarray:
     """Total force on the wall from rest [N], both ends of every sample."""
     engine = Engine(scene, setting, _SAMPLES, stop=stop)
-    return engine.record(_RUN * _SAMPLES).force[:, -1] * engine.lowered.scales.force
+    return engine.record((_RUN if scene.is_driven else 1) * _SAMPLES).force[:, -1] * engine.lowered.scales.force

@@ -24,7 +24,7 @@ from .naive import Lesson, lesson
 from .scipy_methods import solve
 from .ways import SCIPY, Choice, choices
 
-#: Drive periods run from rest.
+#: Drive periods run from rest; without a drive it is one time 1/f.
 PERIODS = 10
 #: Samples a period at which displacements are compared.
 SAMPLES = 16
@@ -271,18 +271,22 @@ def _within(what: str, stop: Stop, seconds: float, measure: Measure) -> Measured
         raise NumbersFailed(f"{what} was not done after {seconds:g} s and was stopped.", "too-slow") from None
 
 
+def _periods(scene: Scene) -> int:
+    return PERIODS if scene.is_driven else 1
+
+
 def _ours(scene: Scene, setting: Setting, stop: Stop) -> Measured:
     """The motion by one of granchain's methods."""
     engine = Engine(scene, setting, SAMPLES, stop=stop)
     began = time.perf_counter()
-    moved = engine.record(PERIODS * SAMPLES).displacement
+    moved = engine.record(_periods(scene) * SAMPLES).displacement
     return Measured(moved, engine.counts.rhs, time.perf_counter() - began)
 
 
 def _scipys(scene: Scene, solver: str, tolerance: float, stop: Stop, located: bool = False) -> Measured:
     """The motion by one of SciPy's solvers."""
     began = time.perf_counter()
-    moved, counts = solve(scene, solver, tolerance, PERIODS, SAMPLES, stop, located)
+    moved, counts = solve(scene, solver, tolerance, _periods(scene), SAMPLES, stop, located)
     return Measured(moved, counts.rhs, time.perf_counter() - began)
 
 

@@ -129,7 +129,7 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
     scene : Scene
         The chain.
     knob : str
-        A continuous knob: "f", "A0", "D", "k", "kappa" or "F0".
+        A continuous knob: "f", "A0", "D", "k", "kappa", "F0", "dimer", "taper", "striker" or "impurity".
     values : sequence of float
         Its values in SI, at most 20,000.
     start : str

@@ -13,6 +13,7 @@ from scipy.stats import chi2
 
 from ..errors import BadInput
 from ..scene import Amplitude, Scene
+from ..scene.driven import refuse_undriven
 from ..stop import Stop
 from ..tables import Labelled, Table, or_nan, provenance
 from ..tables.provenance import Attribute
@@ -188,6 +189,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
     """
     began = time.perf_counter()
     names = [one.name for one in free]
+    refuse_undriven(scene)
     if not 1 <= len(free) <= MOST_FREE or len(set(names)) < len(names) or {"k", "kappa"} <= set(names):
         raise BadInput(f"A fit has 1 to {MOST_FREE} different parameters, of k and kappa only one; not "
                        f"{', '.join(names) or 'none'}.")

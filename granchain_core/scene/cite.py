@@ -10,6 +10,10 @@ _PAPER = ("Y. Zhang, D. Pozharskiy, D. M. McFarland, P. G. Kevrekidis, I. G. Kev
           "Study of Nonlinear Resonances and Anti-resonances in a Forced, Ordered Granular Chain. arXiv:1606.09305 "
           "(2016).")
 _HERTZ = "H. Hertz. Ueber die Berührung fester elastischer Körper. J. reine angew. Math. 92, 156–171 (1882)."
+_NESTERENKO = ("V. F. Nesterenko. Propagation of nonlinear compression pulses in granular media. J. Appl. Mech. Tech. "
+               "Phys. 24, 733–743 (1983).")
+_DIMERS = ("K. R. Jayaprakash, Y. Starosvetsky, A. F. Vakakis. New family of solitary waves in granular dimer chains "
+           "with no precompression. Phys. Rev. E 83, 036606 (2011).")
 _LAWS = {
     "tsuji": "Y. Tsuji, T. Tanaka, T. Ishida. Lagrangian numerical simulation of plug flow of cohesionless particles "
              "in a horizontal pipe. Powder Technology 71, 239–250 (1992).",
@@ -23,4 +27,8 @@ def citations(scene: Description) -> list[tuple[str, str]]:
     found = [("software", _SOFTWARE), ("model", _PAPER), ("contact", _HERTZ)]
     if scene.has_dissipation and scene.dissipation in _LAWS:
         found.append((f"{scene.dissipation} damping", _LAWS[scene.dissipation]))
+    if not scene.is_driven and scene.F0 == 0.0:
+        found.append(("solitary wave", _NESTERENKO))
+    if scene.dimer != 1.0:
+        found.append(("dimers", _DIMERS))
     return found

@@ -86,7 +86,8 @@ class Scene(Description):
     @property
     def effects(self) -> list[str]:
         """Names of the effects that are in this scene, and therefore in its kernel."""
-        return ["contact", "driver", "wall", *(effect.label(self) for effect in effects_of(self))]
+        driver = "driver" if self.is_driven else "driver at rest"
+        return ["contact", driver, "wall", *(effect.label(self) for effect in effects_of(self))]
 
     def equation_latex(self) -> str:
         """The equation of motion with the terms that are computed, and no others."""

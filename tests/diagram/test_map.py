@@ -230,3 +230,12 @@ def test_blocks_hold_every_cell_once() -> None:
     blocks = blocks_of(list(range(1000)), 256)
     assert sorted(n for block in blocks for n in block) == list(range(1000)) and max(map(len, blocks)) <= 256
     assert blocks_of([]) == []
+
+
+def test_an_axis_may_pass_through_equal_beads() -> None:
+    """Equal beads are computed by other kernels than unequal ones: each cell is that of its own chain."""
+    chain = scene("sec2").evolve(N=3, f=1500.0)
+    found = diagram(chain, ("dimer", [0.5, 1.0, 2.0]), ("D", [100.0])).column("max_output_force")[0]
+    for ratio, force in zip((0.5, 1.0, 2.0), found, strict=True):
+        assert force == resonance_curve(chain.evolve(dimer=ratio), [1500.0]).points[0].max_output_force
+    assert len(set(found)) == 3
