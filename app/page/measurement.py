@@ -27,6 +27,7 @@ from granchain_core.experiment.labelled import HDF5
 from granchain_core.experiment.measured import MOST_BYTES, MOST_ROWS
 from granchain_core.experiment.reader import KINDS
 from granchain_core.experiment.units import UNITS
+from granchain_core.scene.presets import ASSETS
 
 from ..pages.curve.page import Curves
 from ..parts.component import Component
@@ -42,7 +43,7 @@ _DIMENSIONS = {"frequency": "frequency", "force": "force", "error": "force"}
 #: Most rows of the table of differences.
 _ROWS = 100
 #: Files to try it with: computed by granchain with noise, and they say so.
-SAMPLES = Path(__file__).resolve().parents[2] / "assets" / "samples"
+SAMPLES = ASSETS / "samples"
 
 _TOO_LARGE = (f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve of frequency and force needs a few "
               "kB.")

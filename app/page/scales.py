@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import tomllib
 from functools import cache
-from pathlib import Path
 
 from granchain_core import Scene
+from granchain_core.scene.presets import ASSETS
 
 from ..frames import Extremes, Frames, extremes_of
 from ..session.session import Session
 
-FILE = Path(__file__).resolve().parents[2] / "assets" / "scales.toml"
+FILE = ASSETS / "scales.toml"
 
 
 @cache

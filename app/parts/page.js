@@ -53,6 +53,7 @@ window.granchain = (() => {
   // The name of the page that lies over the pictures, or null; the curve is not computed while there is one.
   let overlay = null;
   const openPage = (name) => {
+    if (name === overlay) return;
     overlay = name;
     document.getElementById("page").classList.toggle("overlaid", name !== null);
     for (const one of document.querySelectorAll("[data-overlay]")) one.hidden = one.dataset.overlay !== name;

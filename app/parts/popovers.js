@@ -1,6 +1,6 @@
 // What opens over the pictures from the bar on top: the help, and the link to the picture.
 
-import { element } from "./dom.js";
+import { button, element } from "./dom.js";
 import { takeAlong } from "./take_along.js";
 
 const HELP = [
@@ -46,6 +46,15 @@ export class Popovers {
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
     this.take = element("div", { className: "popover", hidden: true }, takeAlong(save));
     this.menu = element("div", { className: "popover menu", hidden: true });
+  }
+
+  // A button at the end of the help.
+  offer(words, act) {
+    const go = () => {
+      this.close();
+      act();
+    };
+    this.help.append(button(words, go));
   }
 
   close() {

@@ -15,13 +15,14 @@ from typing import Any
 
 from granchain_core import BadInput, Run, Scene, Settled, scene, settle
 from granchain_core.errors import unknown_name
+from granchain_core.scene.presets import ASSETS
 from granchain_core.stop import Stop
 
 from ..format import prefixed
 from ..frames import samples_for
 from .share import EXTRAS
 
-FOLDER = Path(__file__).resolve().parents[2] / "assets" / "stories"
+FOLDER = ASSETS / "stories"
 
 #: What a step may point to: the parts of the main page by the names of their elements.
 LOOKS = ("chain", "left", "map", "right", "curve")
