@@ -43,6 +43,8 @@ function plainTab(_, { name, placeholder }) {
   return { content: [element("div", { className: "row top" }, said, openButton(name))], show };
 }
 
+const READABLE = 250; // ms between two changes of the numbers
+
 // The button that gives the tabs the place of the curve, and back.
 function largerButton() {
   const larger = button(
@@ -164,8 +166,14 @@ export function render({ model }) {
     window.granchain.closePage();
     tabs.choose("numbers");
   });
+  // While a knob moves, numbers come faster than one can read, and tables take time that the pictures need.
+  let waiting = 0;
   window.granchain.on("numbers-told", () => {
-    if (tabs.chosen === "numbers") tabs.redraw();
+    if (waiting) return;
+    waiting = setTimeout(() => {
+      waiting = 0;
+      if (tabs.chosen === "numbers") tabs.redraw();
+    }, READABLE);
   });
   // A step back or forward.
   window.granchain.on("place", ({ tab: name, page: over }) => {

@@ -36,9 +36,9 @@ class Header {
     this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
     this.popovers.menu.ariaLabel = "more controls";
     const small = [this.play, this.step, this.name, element("span", { className: "grow" }), this.wholePage()];
-    const knobs = () => window.granchain.drawer(true);
+    const knobs = () => window.granchain.drawer(!document.getElementById("page").classList.contains("drawer"));
     const all = [
-      iconButton(icon("knobs", "knobs"), "Show the knobs", knobs, "knobs-button"),
+      iconButton(icon("knobs", "knobs"), "All knobs, or the first one", knobs, "knobs-button"),
       this.name,
       this.scene,
       this.reset,
