@@ -1,6 +1,7 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
 import { element } from "./dom.js";
+import { wholePage } from "./embed.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
 import { Popovers } from "./popovers.js";
@@ -35,7 +36,7 @@ class Header {
     this.name = element("h1", { textContent: "granchain" });
     this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
     this.popovers.menu.ariaLabel = "more controls";
-    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), this.wholePage()];
+    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), wholePage(this.name)];
     const knobs = () => window.granchain.drawer(!document.getElementById("page").classList.contains("drawer"));
     const all = [
       iconButton(icon("knobs", "knobs"), "All knobs, or the first one", knobs, "knobs-button"),
@@ -54,6 +55,7 @@ class Header {
       this.share,
       this.save,
       this.help,
+      this.sound,
       this.theme,
       this.more,
       this.popovers.help,
@@ -63,19 +65,6 @@ class Header {
     ];
     this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
-  }
-
-  // In a frame on a slide: what is shown, and the way to the whole page.
-  wholePage() {
-    const link = element("a", { textContent: "open in granchain ↗", target: "_blank", rel: "noopener" });
-    window.granchain.on("shown", ({ scene, f }) => {
-      if (!window.granchain.embedded) return;
-      this.name.textContent = `${scene}, ${f} Hz`;
-      const url = window.granchain.address();
-      url.searchParams.delete("embed");
-      link.href = url.href;
-    });
-    return link;
   }
 
   makeButtons() {
@@ -90,6 +79,8 @@ class Header {
     this.save = iconButton(icon("save", "save"), take, () => this.popovers.toggle("take"), "save");
     this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp(), "icon");
     this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon");
+    this.sound = iconButton(icon("sound"), "Hear the force at the wall", () => this.toggleSound(), "icon");
+    this.sound.ariaPressed = "false";
     this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "icon more");
   }
 
@@ -111,6 +102,7 @@ class Header {
     const steps = [
       () => root.classList.add("short"),
       () => this.nameScenes(false),
+      () => this.putAway(this.sound),
       () => this.putAway(this.speed),
       () => this.putAway(this.start),
       () => this.putAway(this.save, this.share),
@@ -185,6 +177,12 @@ class Header {
   pinPicture() {
     this.send("pin");
     window.granchain.emit("compare");
+  }
+
+  toggleSound() {
+    const on = this.sound.ariaPressed !== "true";
+    this.sound.ariaPressed = String(on);
+    window.granchain.emit("sound", on);
   }
 
   showSteps({ back, forward }) {

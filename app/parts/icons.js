@@ -16,6 +16,7 @@ const ICONS = {
   save: "M12 4v11m-5-4l5 5 5-5M5 20h14",
   help: "M9 9a3 3 0 1 1 4.2 2.7c-.9.4-1.2 1-1.2 2.3M12 18v.5",
   theme: "M12 3a9 9 0 1 0 0 18zM12 3a9 9 0 0 1 0 18",
+  sound: "M4 9h4l5-4v14l-5-4H4zM17 9a4 4 0 0 1 0 6",
   more: "M5 12h.5M12 12h.5M19 12h.5",
 };
 export const icon = (name, words = "") =>

@@ -6,6 +6,10 @@ import { takeAlong } from "./take_along.js";
 const HELP = [
   ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
   ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
+  [
+    "values",
+    "Point at a picture: a line through all of them, with the values there. Shift and drag in the map: a measuring tape for time, distance and speed.",
+  ],
   ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
   ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
   [
