@@ -22,4 +22,5 @@ class CustomBuildHook(BuildHookInterface):
         if version != "editable":
             parts = [path.name for path in (Path(self.root) / "app").iterdir() if path.name not in _LEFT_OUT]
             build_data["force_include"] = {**{f"app/{name}": f"granchain_app/{name}" for name in sorted(parts)},
-                                           "assets": "granchain_core/assets"}
+                                           "assets": "granchain_core/assets",
+                                           "docs/glossary.md": "granchain_core/assets/glossary.md"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -28,6 +29,7 @@ from ..pictures.curve import KEY
 from ..pictures.regimes import REGIMES, SYMBOLS
 from ..pictures.theme import Theme, style_sheet
 from ..session.session import Session
+from ..session.terms import definitions
 from .scales import Scales
 from .table import GROUPS, PAGES, described_tabs
 from .tabs import Tabs
@@ -75,6 +77,7 @@ class Views:
         page = PageTemplate((_HERE / "page.html").read_text(encoding="utf-8"))
         page.add_variable("page_css", style_sheet() + (_HERE / "page.css").read_text(encoding="utf-8"))
         page.add_variable("page_js", text("page.js") + text("connection.js"))
+        page.add_variable("terms", json.dumps(definitions()).replace("<", "\\u003c"))
         page.add_variable("frame_top", TOP)
         page.add_variable("frame_bottom", BOTTOM)
         page.add_variable("frame_left", LEFT)

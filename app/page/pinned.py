@@ -26,7 +26,7 @@ from .layout import Views
 
 
 class Pinned:
-    """Actions of the tab “compare”. A pin is a scene and a start, so that a link has it; its motion is computed."""
+    """Actions of the tab “numbers”. A pin is a scene and a start, so that a link has it; its motion is computed."""
 
     def __init__(self, host: Host, views: Views) -> None:
         self._host = host
@@ -78,7 +78,7 @@ class Pinned:
         if session.mode != "settled" or session.picture is None:
             raise BadInput("Only a settled picture can be pinned: a live run passes. Choose “settled” first.")
         if len(session.pins) == len(NAMES):
-            raise BadInput(f"{len(NAMES)} pictures are pinned already; remove one of them in the tab “compare” first.")
+            raise BadInput(f"{len(NAMES)} pictures are pinned already; remove one of them in the tab “numbers” first.")
         picture = session.picture
         if picture.run.scene != session.scene:  # where it begins is not known yet
             raise BadInput("The picture of these knobs is still being computed; pin it when it is there.")

@@ -87,7 +87,6 @@ TABS: tuple[Row | Tab, ...] = (
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
         group="understand"),
     Row("numbers", "numbers", NumbersPage, None, reports_visibility=True, group=""),
-    Tab("compare", "", taller=True),
     Tab("data", "", taller=True),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, Row))

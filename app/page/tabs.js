@@ -5,15 +5,16 @@ import { branchesTab } from "../pages/branches/branches_tab.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/cells.js";
 import { mapTab } from "../pages/map/map.js";
+import { compareMessage } from "../pages/numbers/compared.js";
 import { numbersMessage, numbersTab } from "../pages/numbers/numbers_tab.js";
 import { observerTab } from "../pages/observer/observer_tab.js";
 import { leaveStories, storiesTab } from "../pages/stories/stories_tab.js";
 import { probeTab } from "../pages/probe/probe_tab.js";
 import { stabilityTab } from "../pages/stability/stability_tab.js";
 import { button, element, openButton, paragraph } from "../parts/dom.js";
-import { compareMessage, compareTab } from "./compare_tab.js";
 import { dataTab, saveSample } from "./data_tab.js";
 import { lookAtTab, regimesTab } from "./scene_tabs.js";
+import { explainTerms } from "./terms.js";
 
 // The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name. A tab
 // that `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
@@ -23,7 +24,6 @@ const TABS = {
   regimes: regimesTab,
   probe: probeTab,
   numbers: numbersTab,
-  compare: compareTab,
   stability: stabilityTab,
   accuracy: accuracyTab,
   map: mapTab,
@@ -42,6 +42,8 @@ function plainTab(_, { name, placeholder }) {
   show();
   return { content: [element("div", { className: "row top" }, said, openButton(name))], show };
 }
+
+const READABLE = 250; // ms between two changes of the numbers
 
 // The button that gives the tabs the place of the curve, and back.
 function largerButton() {
@@ -135,6 +137,7 @@ class Tabs {
     const { content, show = () => {}, updatesItself = false } = make(this.model, this.rows.get(this.chosen));
     Object.assign(this, { redraw: show, updatesItself });
     this.body.replaceChildren(...content);
+    explainTerms(this.body);
     if (focused) this.body.querySelector(`[data-name="${focused}"]`)?.focus();
   }
 
@@ -161,12 +164,17 @@ export function render({ model }) {
   });
   window.granchain.on("compare", () => {
     window.granchain.closePage();
-    tabs.choose("compare");
+    tabs.choose("numbers");
   });
-  for (const name of ["compare", "numbers"])
-    window.granchain.on(`${name}-told`, () => {
-      if (tabs.chosen === name) tabs.redraw();
-    });
+  // While a knob moves, numbers come faster than one can read, and tables take time that the pictures need.
+  let waiting = 0;
+  window.granchain.on("numbers-told", () => {
+    if (waiting) return;
+    waiting = setTimeout(() => {
+      waiting = 0;
+      if (tabs.chosen === "numbers") tabs.redraw();
+    }, READABLE);
+  });
   // A step back or forward.
   window.granchain.on("place", ({ tab: name, page: over }) => {
     tabs.choose(tabs.rows.has(name) ? name : tabs.first);

@@ -2,7 +2,9 @@
 
 import { ChainDrawing, unpack } from "./chain_drawing.js";
 import { Clock, Cursor } from "./clock.js";
+import { Crosshair } from "./crosshair.js";
 import { button, element } from "./dom.js";
+import { Sound } from "./sound.js";
 import { colourOf, Steel } from "./steel.js";
 
 const SCALES = [
@@ -30,6 +32,8 @@ class Chain {
     this.drawing = new ChainDrawing(this.canvas, model.state.palette);
     this.clock = new Clock(() => this.mark());
     this.cursor = new Cursor(this.clock);
+    this.crosshair = new Crosshair(this.clock, this.cursor);
+    this.sound = new Sound();
     this.dirty = true;
     this.narrow = null; // as the server was last told; null before it was
   }
@@ -119,6 +123,8 @@ class Chain {
   load(frames) {
     Object.assign(frames, unpack(frames).series);
     this.showScale(frames);
+    this.crosshair.roll();
+    if (this.sound.on) this.sound.play(frames);
     window.granchain.shown = { scene: frames.scene, f: frames.f };
     window.granchain.emit("shown", window.granchain.shown);
     const { beads } = this.drawing;
@@ -187,6 +193,7 @@ function listen(chain) {
     clock.speed = speed;
   });
   page.on("period", () => chain.nextPeriod());
+  page.on("sound", (on) => chain.sound.set(on, clock.frames));
   page.on("overlay", () => chain.mark());
   page.on("theme", () => chain.measure());
 }

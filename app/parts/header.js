@@ -1,29 +1,12 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
-import { button, element } from "./dom.js";
+import { element } from "./dom.js";
+import { wholePage } from "./embed.js";
+import { icon, iconButton } from "./icons.js";
+import { keyPressed } from "./keys.js";
 import { Popovers } from "./popovers.js";
 import { download } from "./take_along.js";
-
-// Paths of our own, so that no font needs these symbols.
-const ICONS = {
-  knobs: "M3 6h7m4 0h7M3 12h3m4 0h11M3 18h11m4 0h3M12 4v4M8 10v4M16 16v4",
-  reset: "M4 12a8 8 0 1 0 3-6.2M7 2v4h4",
-  pause: "M8 5v14M16 5v14",
-  play: "M8 5l11 7-11 7z",
-  step: "M5 5l9 7-9 7zM18 5v14",
-  undo: "M9 5L4 10l5 5M4 10h10a5 5 0 0 1 0 10h-3",
-  redo: "M15 5l5 5-5 5M20 10H10a5 5 0 0 0 0 10h3",
-  pin: "M9 3h6l-1 7 4 4H6l4-4zM12 14v7",
-  share: "M9 15l6-6M8 11l-3 3a3.5 3.5 0 0 0 5 5l3-3M16 13l3-3a3.5 3.5 0 0 0-5-5l-3 3",
-  save: "M12 4v11m-5-4l5 5 5-5M5 20h14",
-  help: "M9 9a3 3 0 1 1 4.2 2.7c-.9.4-1.2 1-1.2 2.3M12 18v.5",
-  theme: "M12 3a9 9 0 1 0 0 18zM12 3a9 9 0 0 1 0 18",
-  more: "M5 12h.5M12 12h.5M19 12h.5",
-};
-const icon = (name, words = "") =>
-  `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>${
-    words && `<span class="wide">${words}</span>`
-  }`;
+import { Tour } from "./tour.js";
 
 const MODES = [
   ["settled", "The steady state for these knobs, replayed"],
@@ -33,10 +16,6 @@ const STARTS = [
   ["rest", "start: from rest"],
   ["previous", "start: previous state"],
 ];
-
-// A button with an icon; its title is its name for who cannot see it.
-const iconButton = (innerHTML, title, act, className = "") =>
-  button("", act, { innerHTML, title, ariaLabel: title, className });
 
 function chooser(label, className, act) {
   const select = element("select", { className, title: label, ariaLabel: label });
@@ -57,10 +36,10 @@ class Header {
     this.name = element("h1", { textContent: "granchain" });
     this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
     this.popovers.menu.ariaLabel = "more controls";
-    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), this.wholePage()];
-    const knobs = () => window.granchain.drawer(true);
+    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), wholePage(this.name)];
+    const knobs = () => window.granchain.drawer(!document.getElementById("page").classList.contains("drawer"));
     const all = [
-      iconButton(icon("knobs", "knobs"), "Show the knobs", knobs, "knobs-button"),
+      iconButton(icon("knobs", "knobs"), "All knobs, or the first one", knobs, "knobs-button"),
       this.name,
       this.scene,
       this.reset,
@@ -76,6 +55,7 @@ class Header {
       this.share,
       this.save,
       this.help,
+      this.sound,
       this.theme,
       this.more,
       this.popovers.help,
@@ -85,19 +65,6 @@ class Header {
     ];
     this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
-  }
-
-  // In a frame on a slide: what is shown, and the way to the whole page.
-  wholePage() {
-    const link = element("a", { textContent: "open in granchain ↗", target: "_blank", rel: "noopener" });
-    window.granchain.on("shown", ({ scene, f }) => {
-      if (!window.granchain.embedded) return;
-      this.name.textContent = `${scene}, ${f} Hz`;
-      const url = window.granchain.address();
-      url.searchParams.delete("embed");
-      link.href = url.href;
-    });
-    return link;
   }
 
   makeButtons() {
@@ -112,6 +79,8 @@ class Header {
     this.save = iconButton(icon("save", "save"), take, () => this.popovers.toggle("take"), "save");
     this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp(), "icon");
     this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon");
+    this.sound = iconButton(icon("sound"), "Hear the force at the wall", () => this.toggleSound(), "icon");
+    this.sound.ariaPressed = "false";
     this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "icon more");
   }
 
@@ -133,6 +102,7 @@ class Header {
     const steps = [
       () => root.classList.add("short"),
       () => this.nameScenes(false),
+      () => this.putAway(this.sound),
       () => this.putAway(this.speed),
       () => this.putAway(this.start),
       () => this.putAway(this.save, this.share),
@@ -209,6 +179,12 @@ class Header {
     window.granchain.emit("compare");
   }
 
+  toggleSound() {
+    const on = this.sound.ariaPressed !== "true";
+    this.sound.ariaPressed = String(on);
+    window.granchain.emit("sound", on);
+  }
+
   showSteps({ back, forward }) {
     this.undo.disabled = !back;
     this.redo.disabled = !forward;
@@ -218,30 +194,6 @@ class Header {
     this.setPlaying(false);
     window.granchain.emit("period");
     this.send("next-period");
-  }
-
-  key(event) {
-    const inField = event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
-    if (event.key === " " && !inField && !window.granchain.lost) {
-      event.preventDefault();
-      this.setPlaying(!this.playing);
-    }
-    if (event.key === "?" && !event.composedPath().some((node) => node.type === "text")) this.popovers.toggleHelp();
-    if ((event.ctrlKey || event.metaKey) && !event.altKey) this.takeStep(event);
-    if (event.key === "Escape") {
-      this.popovers.close();
-      window.granchain.drawer(false);
-    }
-  }
-
-  // Ctrl-Z undoes and Ctrl-Shift-Z or Ctrl-Y redoes, but for what is being typed.
-  takeStep(event) {
-    const key = event.key.toLowerCase();
-    if (event.composedPath().some((node) => node.dataset?.typing)) return;
-    if (key !== "z" && key !== "y") return;
-    event.preventDefault();
-    if (key === "y" || event.shiftKey) window.granchain.redo();
-    else window.granchain.undo();
   }
 
   show() {
@@ -314,6 +266,13 @@ class Header {
 
 export function render({ model }) {
   const header = new Header(model);
+  const tour = new Tour();
+  header.popovers.offer("show the tour again", () => tour.show(0));
+  let toured = false;
+  window.granchain.on("painted", () => {
+    if (!toured && !window.granchain.lost) tour.begin();
+    toured = true;
+  });
   window.granchain.go = (query) => header.send("go", { query });
   window.granchain.on("steps", (steps) => header.showSteps(steps));
   window.granchain.steps.tell();
@@ -328,7 +287,7 @@ export function render({ model }) {
     width = header.root.clientWidth;
     header.fit();
   }).observe(header.root);
-  document.addEventListener("keydown", (event) => header.key(event));
+  document.addEventListener("keydown", (event) => keyPressed(event, header));
   document.addEventListener("pointerdown", (event) => {
     if (!event.composedPath().includes(header.root)) header.popovers.close();
   });

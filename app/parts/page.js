@@ -47,12 +47,15 @@ window.granchain = (() => {
   // `?embed=1`: the pictures alone, for a slide.
   const embedded = new URLSearchParams(location.search).get("embed") === "1";
   document.documentElement.classList.toggle("embed", embedded);
+  // On a phone: all knobs, in the lower half of the screen, or the first alone.
   const drawer = (open) => {
+    if (open) scrollTo({ top: 0 });
     document.getElementById("page").classList.toggle("drawer", open);
   };
   // The name of the page that lies over the pictures, or null; the curve is not computed while there is one.
   let overlay = null;
   const openPage = (name) => {
+    if (name === overlay) return;
     overlay = name;
     document.getElementById("page").classList.toggle("overlaid", name !== null);
     for (const one of document.querySelectorAll("[data-overlay]")) one.hidden = one.dataset.overlay !== name;
@@ -63,11 +66,6 @@ window.granchain = (() => {
   const closePage = () => openPage(null);
   document.addEventListener("keydown", (event) => {
     if (event.key === "Escape" && overlay) closePage();
-  });
-  document.addEventListener("pointerdown", (event) => {
-    const side = document.getElementById("side");
-    const page = document.getElementById("page");
-    if (page?.classList.contains("drawer") && !event.composedPath().includes(side)) drawer(false);
   });
 
   return {

@@ -49,6 +49,8 @@ class PinnedTrains:
 
     def __init__(self, left: figure, right: figure) -> None:
         self._sources = tuple(tuple(self._line(plot, dash) for dash in DASHES) for plot in (left, right))
+        for plot in (left, right):  # first in the list, as they are behind
+            plot.renderers = [*plot.renderers[-len(DASHES):], *plot.renderers[:-len(DASHES)]]
         self._trains: list[_Train | None] = []
         self._drawn: tuple[object, ...] = ()
         self._last: tuple[float, float, float, float] = (0.0, 1.0, 1.0, 1.0)

@@ -1,11 +1,15 @@
 // What opens over the pictures from the bar on top: the help, and the link to the picture.
 
-import { element } from "./dom.js";
+import { button, element } from "./dom.js";
 import { takeAlong } from "./take_along.js";
 
 const HELP = [
   ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
   ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
+  [
+    "values",
+    "Point at a picture: a line through all of them, with the values there. Shift and drag in the map: a measuring tape for time, distance and speed.",
+  ],
   ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
   ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
   [
@@ -46,6 +50,15 @@ export class Popovers {
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
     this.take = element("div", { className: "popover", hidden: true }, takeAlong(save));
     this.menu = element("div", { className: "popover menu", hidden: true });
+  }
+
+  // A button at the end of the help.
+  offer(words, act) {
+    const go = () => {
+      this.close();
+      act();
+    };
+    this.help.append(button(words, go));
   }
 
   close() {

@@ -60,6 +60,8 @@ def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
 
 
 RUNTIME = """
+// Only the tests of the tour are a first visit.
+try { localStorage.setItem("granchain-toured", "yes"); } catch { /* about:blank keeps nothing */ }
 window.painted = [];
 document.addEventListener("DOMContentLoaded", () => {
   if (window.granchain) granchain.on("painted", (event) => window.painted.push(event));

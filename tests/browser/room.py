@@ -45,8 +45,8 @@ FAULTS = """() => {
     if (part.top > box.top + slack || part.bottom < box.bottom - slack) return "is cut";
     return "";
   };
-  const elements = [...all(document.body)].filter(seen).filter((one) => !inside(one, document.getElementById("lost")));
-  const bars = ["bar", "foot"].map((id) => document.getElementById(id)); // on a phone what scrolls passes under them
+  const elements = [...all(document.body)].filter(seen).filter((one) => !inside(one, document.getElementById("lost")) && !one.closest(".unseen"));
+  const bars = ["bar", "foot", "side"].map((id) => document.getElementById(id)); // on a phone what scrolls passes under them
   const passes = (a, b) => scrolling && bars.some((bar) => inside(a, bar) !== inside(b, bar));
   const controls = elements.filter((one) => one.matches("button, input, select, summary, a[href]"));
   for (const one of controls) {

@@ -48,7 +48,7 @@ def test_the_pictures_are_told_in_words_and_tables(visit: Visit) -> None:
     expect(page.locator("main")).to_have_attribute("aria-describedby", "summary")
     expect(page.locator("#announced")).to_contain_text("period 1")
     page.get_by_role("tab", name="numbers").click()
-    rows = page.locator("#tabs tbody tr")
+    rows = page.locator("#tabs .numbers tbody tr")
     expect(rows).to_have_count(25)
     page.get_by_label("which table").select_option("beads")
     expect(rows).to_have_count(11)

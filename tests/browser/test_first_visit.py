@@ -48,3 +48,30 @@ def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromi
         expect(page.locator("#foot b")).to_contain_text("period 1", timeout=240_000)
         expect(page.get_by_role("alert")).to_be_hidden()
         page.close()
+
+
+def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:
+    first = "addEventListener('DOMContentLoaded', () => { localStorage.removeItem('granchain-toured'); }, { once: true });"
+    page = visit(script=f"if (!sessionStorage.getItem('again')) {{ sessionStorage.setItem('again', 1); {first} }}")
+    tour = page.get_by_role("dialog", name="tour of the page")
+    for number, part in enumerate(("knobs", "chain", "map", "right", "curve"), 1):
+        expect(tour).to_contain_text(f"{number} of 5")
+        expect(page.locator(".toured")).to_have_id(part)
+        here, there = tour.bounding_box(), page.locator(f"#{part}").bounding_box()
+        assert here and there  # beside what it tells about, not over it
+        assert (here["x"] >= there["x"] + there["width"] or here["x"] + here["width"] <= there["x"]
+                or here["y"] >= there["y"] + there["height"] or here["y"] + here["height"] <= there["y"])
+        tour.get_by_role("button", name="next" if number < 5 else "to the stories").click()
+    expect(tour).to_be_hidden()
+    expect(page.locator(".toured")).to_have_count(0)
+    term = page.locator("#tabs dfn").first
+    term.hover()
+    expect(page.get_by_role("tooltip")).to_contain_text("a peak of the largest output force")
+    page.reload()
+    page.wait_for_function("window.painted.length > 0")
+    expect(tour).to_be_hidden()
+    page.get_by_role("button", name="Help and keys (?)").click()
+    page.get_by_role("button", name="show the tour again").click()
+    expect(tour).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(tour).to_be_hidden()

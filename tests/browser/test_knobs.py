@@ -83,9 +83,25 @@ def test_wrong_values_get_their_sentence(visit: Visit) -> None:
         regime = page.locator("#foot b").inner_text()
 
 
-def test_a_phone_has_the_knobs_in_a_drawer(visit: Visit) -> None:
+def test_a_phone_has_f_at_hand_and_the_pictures_in_view_while_a_knob_moves(visit: Visit) -> None:
     page = visit(viewport={"width": 390, "height": 844}, has_touch=True)
+    settled(page)
     assert page.evaluate("document.documentElement.scrollWidth") == 390
-    expect(page.locator("#side")).to_be_hidden()
-    page.get_by_role("button", name="Show the knobs").click()
-    expect(page.locator('[data-knob="f"] input[type="range"]')).to_be_visible()
+    height = "(id) => document.getElementById(id).getBoundingClientRect().height / innerHeight"
+    assert page.evaluate(height, "bar") + page.evaluate(height, "foot") < 0.15
+    first, second = (page.locator(f'[data-knob="{name}"] input[type="range"]') for name in ("f", "A0"))
+    expect(first).to_be_in_viewport(ratio=0.9)
+    expect(second).not_to_be_in_viewport(ratio=0.5)
+    page.get_by_role("button", name="All knobs, or the first one").click()
+    expect(second).to_be_in_viewport(ratio=0.9)
+    assert page.evaluate(height, "side") < 0.5
+    for part in ("chain", "left", "map", "right"):
+        expect(page.locator(f"#{part}")).to_be_in_viewport(ratio=0.95)
+    before = page.evaluate("window.painted.length")
+    box = first.bounding_box()
+    assert box is not None and box["height"] >= 44  # px, a finger
+    page.touchscreen.tap(box["x"] + 0.8 * box["width"], box["y"] + 0.5 * box["height"])
+    page.wait_for_function("(before) => window.painted.length > before", arg=before)
+    expect(second).to_be_in_viewport(ratio=0.9)  # the sheet stays
+    page.get_by_role("button", name="All knobs, or the first one").click()
+    expect(second).not_to_be_in_viewport(ratio=0.5)

@@ -167,7 +167,8 @@ def test_all_tabs_fit_and_arrows_reach_them(visit: Visit, width: int) -> None:
         box = button.bounding_box()
         assert box is not None and edge["x"] <= box["x"] and box["x"] + box["width"] <= edge["x"] + edge["width"]
     box = tabs.bounding_box()
-    assert box is not None and box["height"] < 105  # a row for each group, or one more
+    # a row for each group, or one more; on a phone a row is as high as a finger is wide
+    assert box is not None and box["height"] < (105 if width == 1280 else 5 * 46)
     page.get_by_role("tab", name="look at").focus()
     page.keyboard.press("ArrowRight")
     expect(page.get_by_role("tab", name="regimes")).to_be_focused()

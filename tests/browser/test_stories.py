@@ -25,7 +25,8 @@ def shows(page: Page, story: Story, number: int) -> None:
     expect(badge).not_to_contain_text("preview", timeout=20_000)
     expect(badge).to_contain_text(f"period {step.expect.period}," if step.expect.period else step.expect.regime,
                                   timeout=30_000)
-    allowed = TOLERANCE if step.expect.period else IRREGULAR
+    # The line joins samples, and the top may lie between two: at 96 a period up to 0.7 % higher in these scenes.
+    allowed = max(TOLERANCE, 7e-3) if step.expect.period else IRREGULAR
     page.wait_for_function(f"([told, allowed]) => Math.abs(({FORCE})() / told - 1) < allowed",
                            arg=[step.expect.output, allowed + 1e-3], timeout=20_000)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from knobs import Visit, settled
+from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
 
 from app.parts.figure_style import BOTTOM, GAP, TOP
@@ -114,3 +114,61 @@ def test_live_stops_when_paused_and_steps_by_one_period(visit: Visit) -> None:
     assert page.evaluate("painted.length") == count
     page.get_by_role("button", name="Forward one drive period").click()
     page.wait_for_function(f"painted.length > {count}")
+
+
+def test_a_line_with_values_goes_through_all_pictures_and_a_tape_measures_speed(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=340")
+    settled(page)
+    area = page.evaluate("""() => { const box = document.getElementById("map").getBoundingClientRect(), style = getComputedStyle(document.getElementById("stage"));
+      const [top, bottom, gap] = ["--frame-top", "--frame-bottom", "--gap"].map((name) => parseFloat(style.getPropertyValue(name)));
+      return [box.left + gap, box.top + top, box.width - 2 * gap, box.height - top - bottom]; }""")
+
+    def at(bead: float, share: float) -> tuple[float, float]:
+        return area[0] + (bead - 0.5) / 11 * area[2], area[1] + share * area[3]
+
+    page.mouse.move(*at(4, 0.25))  # after one of four periods the driver is where it began
+    cross = page.locator("#cross")
+    expect(cross).to_contain_text("bead 4: ")
+    # 0.25 of 4 periods of 1/340 s, to a row of the picture or two
+    words = cross.inner_text()
+    shown = float(words.split(" ms")[0].split()[-1])
+    assert abs(shown - 1e3 / 340) < 0.07
+    page.keyboard.down("Shift")
+    page.mouse.move(*at(1, 0.1))
+    page.mouse.down()
+    page.mouse.move(*at(11, 0.6))
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    tape = page.locator("#measured")
+    expect(tape).to_contain_text("bead 1 to 11: 191 mm in ")  # ten diameters of 19.05 mm
+    periods = float(tape.inner_text().split("= ")[1].split(" drive")[0])
+    speed = float(tape.inner_text().split(": ")[-1].removesuffix(" m/s"))
+    assert abs(periods - 2.0) < 0.05 and abs(speed - 0.1905 * 340 / periods) < 0.01 * speed
+    page.keyboard.press("Escape")
+    expect(tape).to_be_hidden()
+
+
+def test_the_force_at_the_wall_can_be_heard(visit: Visit) -> None:
+    """What is given to the loudspeaker has the period of the drive, and an anti-resonance is quieter."""
+    page = visit("?v=1&scene=sec2&f=340", script="""
+      const start = AudioBufferSourceNode.prototype.start;
+      AudioBufferSourceNode.prototype.start = function (...given) { window.heard = this.buffer; return start.apply(this, given); };""")
+    settled(page)
+    assert page.evaluate("window.heard") is None
+    page.set_viewport_size({"width": 1920, "height": 1080})
+    page.get_by_role("button", name="Hear the force at the wall").click()
+    loud = """() => { const data = heard.getChannelData(0); return Math.max(...data) - Math.min(...data); }"""
+    cycles = """() => { const data = heard.getChannelData(0); let n = 0;
+      const middle = (Math.max(...data) + Math.min(...data)) / 2;
+      for (let i = 1; i < data.length; i++) n += data[i - 1] < middle && data[i] >= middle;
+      return n / heard.duration; }"""
+    page.wait_for_function("window.heard")
+    assert abs(page.evaluate(cycles) - 340.0) < 5.0  # one crossing in half a second is 2 Hz
+    strong = page.evaluate(loud)
+    type_into(page, "f", "850")
+    page.wait_for_function(f"() => ({loud})() < {0.6 * strong}")
+    page.get_by_role("button", name="Hear the force at the wall").click()
+    page.evaluate("delete window.heard")
+    type_into(page, "f", "340")
+    settled(page)
+    assert page.evaluate("window.heard") is None

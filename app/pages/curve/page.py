@@ -136,6 +136,8 @@ class Curves:
 
     def visible(self, visible: bool, scene: Scene) -> None:
         """The figure came on the screen or left it."""
+        if visible == self._visible:
+            return
         self._visible = visible
         if visible:
             self.changed(scene)

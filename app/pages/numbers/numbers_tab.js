@@ -1,6 +1,8 @@
-// The Numbers tab: the pictures in words and in tables. The words describe the pictures to a screen reader, too.
+// The Numbers tab: the pictures in words and in tables, and beside pinned ones. The words describe the pictures to a
+// screen reader, too.
 
 import { element, paragraph, table } from "../../parts/dom.js";
+import { compared } from "./compared.js";
 
 const TABLES = {
   forces: ["forces over time", ["time", "drive", "input force", "output force"]],
@@ -37,13 +39,15 @@ function rowsOf(name) {
   return body;
 }
 
-export function numbersTab() {
+export function numbersTab(model) {
+  const pins = compared(model);
   const which = element("select", { ariaLabel: "which table" });
   which.append(...Object.entries(TABLES).map(([name, [title]]) => new Option(title, name)));
   which.value = chosen;
   const words = paragraph();
   const place = element("div", { className: "numbers" });
   const show = () => {
+    pins.show();
     words.textContent = told.summary || "The first picture is being computed.";
     const [title, titles] = TABLES[chosen];
     place.replaceChildren(table(titles, rowsOf(chosen), { ariaLabel: title }));
@@ -53,5 +57,5 @@ export function numbersTab() {
     show();
   });
   show();
-  return { content: [words, element("div", { className: "row" }, which), place], show };
+  return { content: [words, pins.pin, pins.body, element("div", { className: "row" }, which), place], show };
 }

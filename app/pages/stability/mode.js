@@ -62,7 +62,7 @@ export class ModeView {
     this.drawing = new DisturbedChain(this.canvas);
     this.host = element("div", { className: "picture" });
     this.hosts = [this.canvas, this.host]; // what is drawn anew when its size changes
-    this.title = element("h3");
+    this.title = element("h3", { textContent: "mode" });
     this.told = element("span", { className: "soft" });
     this.root = element(
       "section",
@@ -77,7 +77,7 @@ export class ModeView {
   // Which disturbance it is; `rank` is that of the chosen multiplier, 0 the largest.
   showTitle(rank) {
     const leading = this.mode?.size < 1 ? "the slowest to die out" : "the fastest to grow";
-    this.title.textContent = this.mode ? (rank ? "the chosen disturbance" : leading) : "";
+    this.title.textContent = this.mode ? (rank ? "the chosen disturbance" : leading) : "mode";
     this.told.textContent = this.mode ? "exaggerated; starts again with every period of the orbit" : "";
   }
 

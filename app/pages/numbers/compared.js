@@ -1,9 +1,8 @@
-// The Compare tab: up to three pinned pictures, their numbers, and by how much the present picture differs.
+// Up to three pinned pictures in the Numbers tab: their numbers, and by how much the present picture differs.
 
-import { button, element, paragraph } from "../parts/dom.js";
+import { button, element, paragraph } from "../../parts/dom.js";
 
-const INVITES =
-  "Pin a picture, then move a knob: its forces stay as dashed grey lines, its place on the curve as a ring with its name, and what the present picture has more or less stands here. A link keeps the pins.";
+const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey, and the differences stand here.";
 const DASHES = ["╌", "┈", "─ ·"]; // of the lines, in the order of the pins
 
 let told = { pins: [], rows: [] };
@@ -13,7 +12,7 @@ export function compareMessage(message) {
   if (message.type !== "compare") return;
   told = message;
   document.getElementById("pinned").hidden = !told.pins.length;
-  window.granchain.emit("compare-told");
+  window.granchain.emit("numbers-told");
 }
 
 const cell = (textContent, tag = "td") => element(tag, { textContent });
@@ -48,7 +47,8 @@ function lines({ title, now, pins }) {
   return element("tbody", {}, element("tr", {}, name), values);
 }
 
-export function compareTab(model) {
+// The button that pins, and the table of what is pinned.
+export function compared(model) {
   const pin = button("pin this picture", () => model.send_msg({ do: "pin" }), { className: "primary" });
   const body = element("div", { className: "compared" });
   const show = () => {
@@ -58,6 +58,5 @@ export function compareTab(model) {
     const titles = element("tr", {}, cell("now", "th"), ...pins.map((one, i) => head(model, one, i)));
     return body.replaceChildren(element("table", {}, element("thead", {}, titles), ...rows.map(lines)));
   };
-  show();
-  return { content: [element("div", { className: "row" }, pin), body], show };
+  return { pin, body, show };
 }

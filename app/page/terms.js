@@ -1,0 +1,57 @@
+// Terms that explain themselves: the first of each in a piece of text gets its definition, which stands in
+// docs/glossary.md, on hover, on focus and on a touch.
+
+import { element } from "../parts/dom.js";
+
+const TEXTS = "p, h3, dd";
+
+const bubble = element("div", { id: "term", className: "bubble", role: "tooltip", hidden: true });
+document.body.append(bubble);
+
+function explain(term) {
+  bubble.textContent = term.dataset.meaning;
+  bubble.hidden = false;
+  const { left, top, bottom } = term.getBoundingClientRect();
+  const { offsetWidth: wide, offsetHeight: tall } = bubble;
+  bubble.style.left = `${Math.max(8, Math.min(left, innerWidth - wide - 8))}px`;
+  bubble.style.top = `${bottom + tall + 12 < innerHeight ? bottom + 6 : top - tall - 6}px`;
+}
+
+const hide = () => {
+  bubble.hidden = true;
+};
+document.addEventListener("keydown", ({ key }) => key === "Escape" && hide());
+document.addEventListener("scroll", hide, true);
+
+function termOf(words, meaning) {
+  const term = element("dfn", { textContent: words, tabIndex: 0, ariaDescription: meaning });
+  term.dataset.meaning = `${words}: ${meaning}`;
+  for (const begin of ["pointerenter", "focus", "click"]) term.addEventListener(begin, () => explain(term));
+  for (const end of ["pointerleave", "blur"]) term.addEventListener(end, hide);
+  return term;
+}
+
+let pattern = null;
+// The terms as one pattern, with their plurals; the longest come first.
+function terms() {
+  pattern ??= new RegExp(`(?<![\\w-])(${Object.keys(window.granchain.terms).join("|")})(?=e?s?(?![\\w-]))`, "i");
+  return pattern;
+}
+
+function inText(node, seen) {
+  const found = terms().exec(node.data);
+  if (!found) return;
+  const word = found[1].toLowerCase();
+  const after = node.splitText(found.index);
+  const rest = after.splitText(found[1].length);
+  if (!seen.has(word)) after.replaceWith(termOf(found[1], window.granchain.terms[word]));
+  seen.add(word);
+  inText(rest, seen);
+}
+
+export function explainTerms(root) {
+  hide();
+  const seen = new Set();
+  for (const text of root.querySelectorAll(TEXTS))
+    for (const node of [...text.childNodes]) if (node.nodeType === Node.TEXT_NODE) inText(node, seen);
+}

@@ -1,0 +1,16 @@
+// In a frame on a slide: what is shown, and the way to the whole page.
+
+import { element } from "./dom.js";
+
+export function wholePage(title) {
+  const page = window.granchain;
+  const link = element("a", { textContent: "open in granchain ↗", target: "_blank", rel: "noopener" });
+  page.on("shown", ({ scene, f }) => {
+    if (!page.embedded) return;
+    title.textContent = `${scene}, ${f} Hz`;
+    const url = page.address();
+    url.searchParams.delete("embed");
+    link.href = url.href;
+  });
+  return link;
+}

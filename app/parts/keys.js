@@ -1,0 +1,28 @@
+// The keys that work everywhere on the page.
+
+// Whether one types or chooses there.
+const inField = (event) =>
+  event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
+
+// Ctrl-Z undoes and Ctrl-Shift-Z or Ctrl-Y redoes, but for what is being typed.
+function takeStep(event) {
+  const key = event.key.toLowerCase();
+  if (event.composedPath().some((node) => node.dataset?.typing)) return;
+  if (key !== "z" && key !== "y") return;
+  event.preventDefault();
+  if (key === "y" || event.shiftKey) window.granchain.redo();
+  else window.granchain.undo();
+}
+
+export function keyPressed(event, header) {
+  if (event.key === " " && !inField(event) && !window.granchain.lost) {
+    event.preventDefault();
+    header.setPlaying(!header.playing);
+  }
+  if (event.key === "?" && !event.composedPath().some((node) => node.type === "text")) header.popovers.toggleHelp();
+  if ((event.ctrlKey || event.metaKey) && !event.altKey) takeStep(event);
+  if (event.key === "Escape") {
+    header.popovers.close();
+    window.granchain.drawer(false);
+  }
+}

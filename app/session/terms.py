@@ -1,0 +1,40 @@
+"""The terms that explain themselves on the page, with their definitions from docs/glossary.md."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+
+from granchain_core.scene.presets import ASSETS
+
+#: The wheel has the glossary among its assets.
+FILE = next(path for path in (ASSETS / "glossary.md", ASSETS.parent / "docs" / "glossary.md") if path.is_file())
+#: Terms of the glossary that the page's own texts use, longest first so that "anti-resonance" is not "resonance".
+SHOWN = ("quasi-periodic", "anti-resonance", "Floquet multiplier", "Lyapunov exponent", "sonic vacuum", "stop band",
+         "stated error", "output force", "energy residual", "certified method", "live method", "special point",
+         "attractor", "resonance", "multiplier", "transient", "observer", "preload", "overlap", "regime", "strobe",
+         "basin")
+_ROW = re.compile(r"^\| [^|]+ \| ([^|]+) \| ((?:[^|\\]|\\.)+) \|", re.MULTILINE)
+
+
+@cache
+def definitions() -> dict[str, str]:
+    """The definition of every shown term, as plain text."""
+    rows: dict[str, str] = {}
+    for terms, meaning in _ROW.findall(FILE.read_text(encoding="utf-8")):
+        for name in _names(terms):
+            rows.setdefault(name, _plain(meaning))  # the first row that has it
+    return {term: rows[term] for term in SHOWN}
+
+
+def _names(terms: str) -> list[str]:
+    """The terms of a row: "resonance, anti-resonance of a curve" are two, "Floquet multiplier" is also a multiplier."""
+    names = [re.sub(r" of an? .*", "", one.strip()) for one in terms.split(",")]
+    if len(names) > 1 and names[-1].endswith(" force"):  # "input, output force"
+        names = [one if one.endswith(" force") else f"{one} force" for one in names]
+    return [*names, *(one.split()[-1] for one in names if one == "Floquet multiplier")]
+
+
+def _plain(text: str) -> str:
+    text = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"\1", text.replace("\\|", "|").replace("`", ""))
+    return re.sub(r"\s*\((?:model|design)\.md\)", "", text).strip()

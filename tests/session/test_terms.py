@@ -1,0 +1,18 @@
+"""Terms of the page have their definitions from the glossary, in words that stand by themselves."""
+
+from __future__ import annotations
+
+from app.session.terms import SHOWN, definitions
+
+
+def test_every_term_has_a_definition_without_marks() -> None:
+    found = definitions()
+    assert set(found) == set(SHOWN)
+    for term, meaning in found.items():
+        assert len(meaning) > 20 and not {"`", "[", "|"} & set(meaning.replace("[N]", "").replace("[m]", "").replace("|μ|", "")), term
+
+
+def test_a_term_that_contains_another_comes_first() -> None:
+    """The page takes the first that fits: "anti-resonance" would else be "anti-" and a resonance."""
+    for place, term in enumerate(SHOWN):
+        assert not any(term in later for later in SHOWN[place + 1:])
