@@ -34,7 +34,7 @@ from .orbits.branch.axis import KnobAxis
 from .orbits.branch.equations import BranchEquations
 from .orbits.branch.point import record_along
 from .orbits.flow import StroboscopicMap
-from .scene import Scene, scene, scene_names
+from .scene import Scene, scene
 from .scene.effects import effects_of
 from .state import rest
 from .steady.lyapunov import exponents, exponents_in_pairs
@@ -163,13 +163,17 @@ def _compile(job: tuple[Scene, str]) -> str:
     return f"{structure(job[0])}, {job[1]}"
 
 
-def warm_presets(workers: int = 2) -> Iterable[str]:
-    """Compile all pieces of the presets' structures in `workers` processes; yields what has been finished.
+#: Scenes that are compiled where none is named: the paper's chains, with a foundation and without.
+USUAL = ("sec2", "rig")
+
+
+def warm_scenes(names: Iterable[str] = USUAL, workers: int = 2) -> Iterable[str]:
+    """Compile all pieces of these scenes' structures in `workers` processes; yields what has been finished.
 
     A structure's pieces are compiled in one process: they share parts that are compiled once a process.
     """
     seen: dict[str, Scene] = {}
-    for name in scene_names():
+    for name in names:
         seen.setdefault(structure(scene(name)), scene(name))
     with ExitStack() as stack:
         pools = [stack.enter_context(pool(1)) for _ in range(workers)]

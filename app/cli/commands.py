@@ -33,7 +33,7 @@ class _Parser(argparse.ArgumentParser):
 _COMMANDS = {
     "serve": "open the dashboard",
     "scenes": "list the scenes and what to look at",
-    "warm": "compile the kernels of all presets, ahead of time",
+    "warm": "compile the kernels of the paper's scenes, or of those named, ahead of time",
     "run": "run a scene and record it",
     "orbit": "periodic orbit and Floquet multipliers",
     "branch": "branch of periodic orbits and its special points",

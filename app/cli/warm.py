@@ -8,12 +8,13 @@ from .common import say
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Nothing: the command takes no options."""
+    """Add the options of `warm`."""
+    parser.add_argument("scene", nargs="*", help="scenes whose kernels are compiled; the paper's if none is named")
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """Compile the kernels of all presets, ahead of time."""
-    from granchain_core.warm import warm_presets
+    """Compile the kernels of the paper's scenes, or of those named, ahead of time."""
+    from granchain_core.warm import USUAL, warm_scenes
 
-    for done in warm_presets():
+    for done in warm_scenes(arguments.scene or USUAL):
         say("compiled", done)
