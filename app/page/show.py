@@ -39,11 +39,14 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
     """Show the last periods of the live run, with the present at the bottom."""
     frames, run = picture.frames, picture.run
     views.shown = None
+    unit, since = "drive periods", f"drive period {picture.periods:.0f}"
+    if not run.scene.is_driven:
+        unit, since = "1/f", f"{1e3 * picture.periods / run.scene.f:.0f} ms after the start"
     with unlocked():
-        views.trains.left.yaxis.axis_label = "time (drive periods before now)"
+        views.trains.left.yaxis.axis_label = f"time ({unit} before now)"
         _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)
         views.curve.now(run.scene.knobs["f"], frames.largest_output)
-        views.status_line.update_state(regime=f"live, drive period {picture.periods:.0f}", start="", **run_entries(run))
+        views.status_line.update_state(regime=f"live, {since}", start="", **run_entries(run))
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
