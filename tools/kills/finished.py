@@ -83,5 +83,7 @@ def differing(whole: Path, out: Path) -> str:
 
 
 def _same(one: h5py.Dataset, other: h5py.Dataset) -> bool:
-    mine, its = one[()], other[()]
-    return bool(mine.dtype == its.dtype and mine.tobytes() == its.tobytes() if mine.dtype != object else (mine == its).all())
+    mine, its = np.asarray(one[()]), np.asarray(other[()])
+    if mine.dtype == object:
+        return bool((mine == its).all())
+    return mine.dtype == its.dtype and mine.tobytes() == its.tobytes()
