@@ -19,7 +19,8 @@
   const unanswered = new Map();
   let viewFields = []; // the fields of a link that belong to no scene
   const linkReceived = (query, answered, fields = viewFields) => {
-    const acted = known && query !== link;
+    // What answers a request is an act, also where it is the first link, or a more precise one came before it.
+    const acted = answered.some((name) => unanswered.has(name)) || (known && query !== link);
     link = query;
     viewFields = fields;
     for (const name of answered) unanswered.delete(name);

@@ -7,6 +7,7 @@ from typing import Any
 from drawn import source
 from knobs import COMPILED, Visit, type_into
 from playwright.sync_api import Locator, Page, expect
+from started import until
 
 #: The figure of the page, and how many points each method has in it.
 FIGURE = 'Bokeh.documents.find((one) => one.roots()[0].name === "accuracy" && one.roots()[0].below[0].axis_label)'
@@ -69,15 +70,21 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     rows = sheet.locator("tbody tr")
     expect(rows.filter(has_text="rk4-split")).to_contain_text("two changes of one inner contact")
     expect(rows.filter(has_text="dop853").first).to_contain_text("Hairer")
-    # hovering tells the point
-    place = page.evaluate(f"""() => {{
-      const figure = {FIGURE}.roots()[0], view = Bokeh.index.find_one(figure), {{ data }} = {FIGURE}.get_model_by_name("rk4-split");
-      return [view.frame.x_scale.compute(data.ms[0]), view.frame.y_scale.compute(data.error[0])];
-    }}""")
-    box = sheet.locator(".work canvas").first.bounding_box()
-    assert box is not None
-    page.mouse.move(box["x"] + place[0], box["y"] + place[1])
+    # hovering tells the point, wherever the figure has moved to by now
     tip = page.locator(".bk-tooltip-content")  # it stands over the whole page
+
+    def told() -> bool:
+        x, y = page.evaluate(f"""() => {{
+          const figure = {FIGURE}.roots()[0], view = Bokeh.index.find_one(figure), {{ data }} = {FIGURE}.get_model_by_name("rk4-split");
+          return [view.frame.x_scale.compute(data.ms[0]), view.frame.y_scale.compute(data.error[0])];
+        }}""")
+        box = sheet.locator(".work canvas").first.bounding_box()
+        assert box is not None
+        page.mouse.move(box["x"] + x - 30, box["y"] + y)
+        page.mouse.move(box["x"] + x, box["y"] + y)
+        return tip.count() > 0
+
+    until(page, told)
     for words in ("live steps", "error", "s, ", "evaluations", "order 3.9"):
         expect(tip).to_contain_text(words)
 
