@@ -11,22 +11,12 @@ import numpy as np
 from .integrate import Counts
 from .integrate.engine import Engine
 from .kernels.samples import Samples
+from .motion import Motion, motion_columns
 from .regime import Regime
 from .scene import Scene
 from .scene.validity import overlap_warnings
-from .tables import MAXIMA, Column, Labelled, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
+from .tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
 from .tables.provenance import Attribute
-
-_COLUMNS = {  # of a run and of an observation by name: (axes, unit, meaning)
-    "displacement": (("time", "bead"), "m", "bead displacement from its rest position"),
-    "velocity": (("time", "bead"), "m/s", "bead velocity"),
-    "kinetic_energy": (("time", "bead"), "J", "kinetic energy of each bead"),
-    "force": (("time", "contact"), "N", "contact force, elastic and damping; contact 0 is the driver's, N the wall's"),
-    "drive_displacement": (("time",), "m", "displacement of the driver"),
-    "input_force": (("time",), "N", "force on bead 1"),
-    "output_force": (("time",), "N", "force on the wall, elastic and damping"),
-    "output_force_elastic": (("time",), "N", "elastic part of the force on the wall, the paper's F_out"),
-}
 
 
 @dataclass(frozen=True)
@@ -142,7 +132,7 @@ class HasForces(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Run(Labelled):
+class Run(Motion):
     """A recorded motion: T samples of N beads and N + 1 contacts, in SI.
 
     Attributes
@@ -221,26 +211,11 @@ class Run(Labelled):
         return 0.5 * self.scene.masses() * self.velocity**2
 
     @property
-    def input_force(self) -> np.ndarray:
-        """Force of the driver on bead 1 (T,) [N]."""
-        return self.force[:, 0]
-
-    @property
-    def output_force(self) -> np.ndarray:
-        """Total force on the wall, elastic and damping (T,) [N]."""
-        return self.force[:, -1]
-
-    @property
     def overlap(self) -> np.ndarray:
         """Overlap of every contact (T, N+1) [m], negative where there is a gap."""
         rows = len(self.time)
         bodies = np.hstack([self.drive_displacement[:, None], self.displacement, np.zeros((rows, 1))])
         return bodies[:, :-1] - bodies[:, 1:] + self.scene.static_overlap()
-
-    @property
-    def output_force_elastic(self) -> np.ndarray:
-        """Elastic part of the force on the wall, the paper's F_out (T,) [N]."""
-        return elastic_output(self.scene, self.displacement[:, -1])
 
     def tables(self) -> tuple[Table, ...]:
         """One table, `run`: the motion over time, bead and contact, the jumps of forces, and what a run has one of."""
@@ -283,24 +258,12 @@ class Run(Labelled):
 ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
 
 
-def motion_columns(motion: object) -> dict[str, Column]:
-    """The columns over time that a motion has: a run all of them, an observation those without a driver."""
-    return {name: Column(values, axes, unit, meaning) for name, (axes, unit, meaning) in _COLUMNS.items()
-            if (values := getattr(motion, name, None)) is not None}
-
-
 def said_forces(found: HasForces) -> list[str]:
     """The largest forces in words, with their errors."""
     errors = (found.force_errors.output, found.force_errors.elastic, found.force_errors.input)
     forces = (found.max_output_force, found.max_output_force_elastic, found.max_input_force)
     return [f"largest {name} force {force:.6g} N" + (", no error claimed" if e is None else f", relative error {e:.1e}")
             for name, force, e in zip(("output", "elastic output", "input"), forces, errors, strict=True)]
-
-
-def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:
-    """Elastic force on the wall [N] for displacements of the last bead [m]."""
-    overlap = np.maximum(last + scene.static_overlap()[-1], 0.0)
-    return np.asarray(scene.contact_stiffness()[-1] * overlap**1.5)
 
 
 def residual(energy: np.ndarray | None) -> float | None:

@@ -17,11 +17,12 @@ from ..errors import BadInput
 from ..integrate import State
 from ..integrate.caution import EVEN, RUN_FORCES, RUN_FORCES_THAT_JUMP
 from ..integrate.methods import LIVE
-from ..result import ERRORS, Cost, ForceErrors, elastic_output, motion_columns, relative_changes, residual, said_forces
+from ..motion import Motion, motion_columns
+from ..result import ERRORS, Cost, ForceErrors, relative_changes, residual, said_forces
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
-from ..tables import MAXIMA, Column, Labelled, Table, axis, bead_axis, contact_axis, provenance
+from ..tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .pushed_chain import MovedChain
 from .signal import Signal
@@ -33,7 +34,7 @@ _MOST_HALVINGS = 7
 
 
 @dataclass(frozen=True, eq=False)
-class Driven(Labelled):
+class Driven(Motion):
     """The motion of a chain at the T knots of its signal, in SI.
 
     Attributes
@@ -86,21 +87,6 @@ class Driven(Labelled):
     def time(self) -> np.ndarray:
         """The knots (T,) [s]."""
         return self.signal.time
-
-    @property
-    def input_force(self) -> np.ndarray:
-        """Force of the driver on bead 1 (T,) [N]."""
-        return self.force[:, 0]
-
-    @property
-    def output_force(self) -> np.ndarray:
-        """Total force on the wall (T,) [N]."""
-        return self.force[:, -1]
-
-    @property
-    def output_force_elastic(self) -> np.ndarray:
-        """Its elastic part, the paper's F_out (T,) [N]."""
-        return elastic_output(self.scene, self.displacement[:, -1])
 
     @property
     def drive_displacement(self) -> np.ndarray:

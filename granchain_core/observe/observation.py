@@ -21,11 +21,12 @@ from ..errors import BadInput
 from ..integrate import State
 from ..integrate.caution import EVEN, UNEVEN
 from ..integrate.methods import LIVE
-from ..result import Cost, elastic_output, motion_columns
+from ..motion import Motion, elastic_output, motion_columns
+from ..result import Cost
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
-from ..tables import Column, Labelled, Table, axis, bead_axis, contact_axis, provenance
+from ..tables import Column, Table, axis, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
@@ -46,7 +47,7 @@ class Residual:
 
 
 @dataclass(frozen=True, eq=False)
-class Observation(Labelled):
+class Observation(Motion):
     """The motion of an observer at the T samples of its input, in SI.
 
     Attributes
@@ -100,21 +101,6 @@ class Observation(Labelled):
     def time(self) -> np.ndarray:
         """Times of the samples (T,) [s], as in the input."""
         return self.record.time
-
-    @property
-    def input_force(self) -> np.ndarray:
-        """The force on bead 1 (T,) [N]."""
-        return self.force[:, 0]
-
-    @property
-    def output_force(self) -> np.ndarray:
-        """Total force on the wall (T,) [N]."""
-        return self.force[:, -1]
-
-    @property
-    def output_force_elastic(self) -> np.ndarray:
-        """Its elastic part, the paper's F_out (T,) [N]."""
-        return elastic_output(self.scene, self.displacement[:, -1])
 
     @property
     def error_estimate(self) -> float:

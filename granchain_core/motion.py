@@ -1,0 +1,59 @@
+"""The motion of a chain over time, as runs, observations and driven motions have it, and the forces at its two ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .scene import Scene
+from .tables import Column, Labelled
+
+_COLUMNS = {  # by name: (axes, unit, meaning)
+    "displacement": (("time", "bead"), "m", "bead displacement from its rest position"),
+    "velocity": (("time", "bead"), "m/s", "bead velocity"),
+    "kinetic_energy": (("time", "bead"), "J", "kinetic energy of each bead"),
+    "force": (("time", "contact"), "N", "contact force, elastic and damping; contact 0 is the driver's, N the wall's"),
+    "drive_displacement": (("time",), "m", "displacement of the driver"),
+    "input_force": (("time",), "N", "force on bead 1"),
+    "output_force": (("time",), "N", "force on the wall, elastic and damping"),
+    "output_force_elastic": (("time",), "N", "elastic part of the force on the wall, the paper's F_out"),
+}
+
+
+class Motion(Labelled):
+    """A result with the motion of a chain over time, and the forces at its two ends.
+
+    `displacement` (T, N) [m] of the beads, `force` (T, N + 1) [N] of the contacts.
+    """
+
+    if TYPE_CHECKING:
+        displacement: np.ndarray
+        force: np.ndarray
+
+    @property
+    def input_force(self) -> np.ndarray:
+        """Force on bead 1 from the driver, or the one that was given (T,) [N]."""
+        return self.force[:, 0]
+
+    @property
+    def output_force(self) -> np.ndarray:
+        """Total force on the wall, elastic and damping (T,) [N]."""
+        return self.force[:, -1]
+
+    @property
+    def output_force_elastic(self) -> np.ndarray:
+        """Elastic part of the force on the wall, the paper's F_out (T,) [N]."""
+        return elastic_output(self.scene, self.displacement[:, -1])
+
+
+def motion_columns(motion: Motion) -> dict[str, Column]:
+    """The columns over time that a motion has: a run all of them, an observation those without a driver."""
+    return {name: Column(values, axes, unit, meaning) for name, (axes, unit, meaning) in _COLUMNS.items()
+            if (values := getattr(motion, name, None)) is not None}
+
+
+def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:
+    """Elastic force on the wall [N] for displacements of the last bead [m]."""
+    overlap = np.maximum(last + scene.static_overlap()[-1], 0.0)
+    return np.asarray(scene.contact_stiffness()[-1] * overlap**1.5)
