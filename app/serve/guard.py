@@ -16,8 +16,9 @@ from typing import Any
 from bokeh.server.views.session_handler import SessionHandler
 from bokeh.server.views.ws import WSHandler
 from bokeh.util.token import get_session_id
-from tornado.web import HTTPError, RequestHandler
+from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 
+from .compressed import CompressedFiles
 from .meters import METERS
 
 log = logging.getLogger("granchain.requests")
@@ -171,6 +172,7 @@ class GuardedSocket(Guard):
 
 
 def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:
-    """The handler, with a guard before it."""
+    """The handler, with a guard before it; one of files gives them compressed."""
     guard = GuardedSocket if issubclass(handler, WSHandler) else Guard
-    return type(f"Guarded{handler.__name__}", (guard, handler), {"rules": rules})
+    files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
+    return type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})

@@ -11,7 +11,7 @@ from panel.io.server import ComponentResourceHandler
 from tornado.web import HTTPError
 
 from app import scripts
-from app.page.layout import Views
+from app.dashboard.layout import Views
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
 from app.scripts import FILES, address, module
@@ -53,7 +53,7 @@ def test_modules_keep_the_layers_of_the_app(name: str) -> None:
     """Parts import parts, a page its own folder and parts; what puts the dashboard together may import both."""
     mine = FILES[name].relative_to(APP).parent.as_posix()
     theirs = {served(url).resolve().relative_to(APP).parent.as_posix() for url in imports(name)}
-    if mine != "page":
+    if mine != "dashboard":
         assert theirs <= {mine, "parts"}
 
 
@@ -68,7 +68,7 @@ def test_every_component_renders_a_module_of_its_own() -> None:
     assert rendered == {module(name) for name, path in FILES.items() if "render" in EXPORT.findall(path.read_text(encoding="utf-8"))}
 
 
-@pytest.mark.parametrize("path", ["scripts.py", "page/controller.py", "../pyproject.toml", "page/page.html"])
+@pytest.mark.parametrize("path", ["scripts.py", "dashboard/controller.py", "../pyproject.toml", "dashboard/page.html"])
 def test_no_other_file_is_served(path: str) -> None:
     root = address("page.js").removesuffix("parts/page.js")
     with pytest.raises(HTTPError):

@@ -11,7 +11,7 @@ import pytest
 from bokeh.document import Document
 from test_security import Listening
 
-from app.page.controller import Controller
+from app.dashboard.controller import Controller
 from app.serve.queues import PICTURES, VISITORS
 from app.server import Access
 from granchain_core import OverBudget, scene

@@ -1,0 +1,65 @@
+"""Files for the browser, compressed once for all visitors: a page's scripts are 3.4 MB, and 1 MB compressed.
+
+In a lecture hall a hundred laptops fetch them over one wireless network. Tornado would compress them anew for each.
+"""
+
+from __future__ import annotations
+
+import functools
+import gzip
+from pathlib import Path
+from typing import Any
+
+from tornado.web import StaticFileHandler
+
+#: Kinds of files that are smaller when compressed; pictures and fonts are not.
+_KINDS = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map", ".html", ".txt"})
+#: Size from which it is worth it: that of one packet [bytes].
+_LEAST = 1400
+
+
+@functools.lru_cache(maxsize=512)
+def compressed(path: str, modified: int, size: int) -> bytes | None:
+    """The file compressed, None where that saves nothing; `modified` and `size` make a changed file another one."""
+    if size < _LEAST or Path(path).suffix not in _KINDS:
+        return None
+    whole = Path(path).read_bytes()
+    packed = gzip.compress(whole, compresslevel=6, mtime=0)
+    return packed if len(packed) < len(whole) else None
+
+
+class CompressedFiles(StaticFileHandler):
+    """Mixed into a handler of files: gives them compressed to a browser that takes them so and asks for all of them."""
+
+    def _packed(self) -> bytes | None:
+        wanted = self.request.headers.get("Accept-Encoding", "")
+        if "gzip" not in wanted or "Range" in self.request.headers or self.absolute_path is None:
+            return None
+        found = Path(self.absolute_path).stat()
+        return compressed(self.absolute_path, found.st_mtime_ns, found.st_size)
+
+    async def get(self, path: str, include_body: bool = True) -> None:
+        """Replace the content for this answer alone; Tornado takes the file's version from the class's own method."""
+        self.get_content = self._content  # type: ignore[method-assign, assignment]
+        await super().get(path, include_body)
+
+    def _content(self, path: str, start: int | None = None, end: int | None = None) -> Any:
+        packed = self._packed()
+        return type(self).get_content(path, start, end) if packed is None else packed
+
+    def get_content_size(self) -> int:
+        """Bytes that are sent."""
+        packed = self._packed()
+        return super().get_content_size() if packed is None else len(packed)
+
+    def set_extra_headers(self, path: str) -> None:
+        """How it is encoded, and that this depends on the request."""
+        super().set_extra_headers(path)
+        self.set_header("Vary", "Accept-Encoding")
+        if self._packed() is not None:
+            self.set_header("Content-Encoding", "gzip")
+
+    def compute_etag(self) -> str | None:
+        """Another one for the compressed file: it has other bytes."""
+        tag = super().compute_etag()
+        return tag if tag is None or self._packed() is None else f'{tag[:-1]}-gzip"'
