@@ -6,11 +6,14 @@ import argparse
 import sys
 import time
 
-from . import curve, growth, machine, orbits, startup, trajectory
+from granchain_core.kernels import width
+
+from . import curve, growth, machine, memory, orbits, startup, trajectory
 from .case import Case
+from .page import write
 from .peers import PEERS, peer
 
-PARTS = ("trajectory", "curve", "growth", "orbits", "startup")
+PARTS = ("trajectory", "curve", "growth", "orbits", "startup", "memory")
 
 
 def tell(word: str) -> None:
@@ -28,22 +31,27 @@ def heading(core: int | None) -> str:
     """Processor, versions, core and how busy the machine is."""
     known = ", ".join(f"{name} {version}" for name, version in machine.versions().items())
     pinned = "not pinned" if core is None else f"pinned to core {core}"
-    return f"{machine.processor()}, {pinned}, load {machine.load()}\n{known}"
+    return (f"{machine.processor()}, kernels for {width.machine()}, {pinned}, load {machine.load()}\n"
+            f"granchain {machine.commit()}, {known}")
 
 
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__)
-    parser.add_argument("parts", nargs="*", metavar="part", help=f"{', '.join(PARTS)} (startup shows memory too)")
+    parser.add_argument("parts", nargs="*", metavar="part", help=", ".join(PARTS))
     parser.add_argument("--quick", action="store_true", help="about a minute: fewer points and repeats; trajectory and curve if no part is named")
     parser.add_argument("--only", nargs="+", choices=list(PEERS), default=list(PEERS), help="these peers only")
+    parser.add_argument("--write", action="store_true", help="put the tables into docs/benchmarks.md as those of this machine")
     options = parser.parse_args()
-    parts = ["startup" if part == "memory" else part for part in options.parts] or list(PARTS[:2] if options.quick else PARTS)
+    parts = options.parts or list(PARTS[:2] if options.quick else PARTS)
     if wrong := [part for part in parts if part not in PARTS]:
-        parser.error(f"there is no part {wrong[0]}; there are {', '.join(PARTS)} and memory")
+        parser.error(f"there is no part {wrong[0]}; there are {', '.join(PARTS)}")
+    if options.write and (options.parts or options.quick or options.only != list(PEERS)):
+        parser.error("--write replaces this machine's section, so it takes all parts of all peers: leave out the other options")
     began, core = time.perf_counter(), machine.pin()
     names, skipped = present(options.only)
-    print("\n".join([heading(core), *skipped]), flush=True)
+    told = ["\n".join([heading(core), *skipped])]
+    print(told[0], flush=True)
     cases: list[Case] = []
     if {"trajectory", "curve"} & set(parts):
         cases = [case for name in names for case in peer(name).cases()]
@@ -52,7 +60,11 @@ def main() -> None:
             text = _report(part, cases, names, options.quick)
             tell("")
             print(text, flush=True)
-    print(f"\nTaken in {time.perf_counter() - began:.0f} s, load at the end {machine.load()}.")
+            told.append(text)
+    told.append(f"\nTaken in {time.perf_counter() - began:.0f} s, load at the end {machine.load()}.")
+    print(told[-1])
+    if options.write:
+        print(f"written to {write(told)}")
 
 
 def _report(part: str, cases: list[Case], names: list[str], quick: bool) -> str:
@@ -62,6 +74,8 @@ def _report(part: str, cases: list[Case], names: list[str], quick: bool) -> str:
         return curve.report(cases, quick, tell)
     if part == "orbits":
         return orbits.report(quick, tell)
+    if part == "memory":
+        return memory.report(quick, tell)
     return growth.report(quick, tell) if part == "growth" else startup.report(names, quick, tell)
 
 

@@ -11,7 +11,7 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch.run import batch_steps
-from granchain_core.kernels.width import BATCH_LANES
+from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.stop import Stop
 
 from . import problem
@@ -26,14 +26,14 @@ _EVALUATIONS = 4e6
 _LONGEST_C = 100
 
 
-def lanes(beads: int, evaluations: float) -> float:
-    """Contact evaluations a second of eight chains in lanes, from a chain already in motion."""
-    block = Batch(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Stop())
-    steps = max(4, round(evaluations / (4 * BATCH_LANES * (beads + 1))))
-    stirred(block.state.y, beads)
-    batch_steps(block.lanes, block.state, 2)
-    spent = timed(lambda: batch_steps(block.lanes, block.state, steps), 0.1, 7)
-    return 4 * BATCH_LANES * (beads + 1) * steps / spent.median
+def in_batches(beads: int, evaluations: float) -> float:
+    """Contact evaluations a second of the chains of a batch, from a chain already in motion."""
+    batch = Batch(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Stop())
+    steps = max(4, round(evaluations / (4 * BATCH_SIZE * (beads + 1))))
+    stirred(batch.state.y, beads)
+    batch_steps(batch.members, batch.state, 2)
+    spent = timed(lambda: batch_steps(batch.members, batch.state, steps), 0.1, 7)
+    return 4 * BATCH_SIZE * (beads + 1) * steps / spent.median
 
 
 def stirred(y: np.ndarray, beads: int) -> None:
@@ -54,9 +54,9 @@ def along(beads: int, evaluations: float) -> float:
 def in_c(beads: int, evaluations: float) -> float:
     """The same of the C program, on eight equal scenes."""
     period = problem.period_of(problem.FREQUENCY) / c_program.STEP
-    periods = max(1, round(evaluations / (4 * BATCH_LANES * (beads + 1) * period)))
+    periods = max(1, round(evaluations / (4 * BATCH_SIZE * (beads + 1) * period)))
     shape = (1, max(1, (beads + 1) // 3))
-    same = np.full(BATCH_LANES, problem.FREQUENCY)
+    same = np.full(BATCH_SIZE, problem.FREQUENCY)
     c_program.sweep_peaks(same, c_program.STEP, shape, beads, (1, 1))
     peaks = [c_program.sweep_peaks(same, c_program.STEP, shape, beads, (periods, 1)) for _ in range(3)]
     return float(np.median([(p.evaluations or 0) * (beads + 1) / p.seconds for p in peaks]))
@@ -80,14 +80,14 @@ def report(quick: bool, tell: Callable[[str], None]) -> str:
     rows = []
     for beads in BEADS:
         tell(f"N = {beads}")
-        row = [f"{beads}", "", _millions(lanes(beads, evaluations)), _millions(along(beads, evaluations))]
+        row = [f"{beads}", "", _millions(in_batches(beads, evaluations)), _millions(along(beads, evaluations))]
         has_c = not c_program.missing() and beads <= _LONGEST_C
         row.append(_millions(in_c(beads, evaluations)) if has_c else "–")
         has_lsoda = not numbalsoda.missing() and beads <= 1000
         row.append(_millions(lsoda(beads, evaluations / 4)) if has_lsoda else "–")
         rows.append(row)
     return table("Growth with N: millions of contact evaluations a second, one core",
-                 ["N", "", "granchain lanes", "granchain, one chain", "C lanes", "numbalsoda lsoda w"], rows,
+                 ["N", "", "granchain batches", "granchain, one chain", "C lanes", "numbalsoda lsoda w"], rows,
                  [f"C is unrolled over the beads and measured up to N = {_LONGEST_C}; LSODA, which may build a Jacobian "
                   "of (2N)² entries, up to N = 1000. One chain: the time of event splits is in it."])
 

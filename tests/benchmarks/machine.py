@@ -87,6 +87,16 @@ def versions() -> dict[str, str]:
     return found
 
 
+def commit() -> str:
+    """The commit that is measured, with a plus where the tree differs from it."""
+    try:
+        answer = subprocess.run(["git", "describe", "--always", "--dirty=+"], capture_output=True, text=True, check=True,
+                                cwd=Path(__file__).parent)
+        return answer.stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "of an unknown commit"
+
+
 def peak_megabytes() -> float:
     """Largest resident memory of this process so far; not `ru_maxrss`, which a child inherits from its parent."""
     try:

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-from benchmarks import compiled, problem
-from benchmarks.peers import c_program, granchain, peer, scipy
-from benchmarks.trajectory import error_of
+from tests.benchmarks import compiled, page, problem
+from tests.benchmarks.peers import c_program, granchain, peer, scipy
+from tests.benchmarks.trajectory import error_of
 
 #: Frequencies whose motion is periodic after 120 periods, so that rounding does not grow.
 PERIODIC = np.array([340.0, 470.0, 1130.0, 1600.0])
@@ -84,3 +79,13 @@ def test_peaks_are_equal_to_the_certified_ones() -> None:
     assert periodic.all()
     # order 2 at contact changes; the curve calls answers equal at 1e-4
     assert np.allclose(granchain.batch_peaks(PERIODIC, 3).values, certified, rtol=1e-4, atol=0.0)
+
+
+def test_the_page_has_one_section_for_each_machine() -> None:
+    """A machine measured again gets its section anew, in its place; the others stay as they are."""
+    one = page.replaced("# Benchmarks\n\nWords.\n", "## one, 2 cores", "first\n")
+    both = page.replaced(one, "## other, 4 cores", "second")
+    assert both == "# Benchmarks\n\nWords.\n\n## one, 2 cores\n\nfirst\n\n## other, 4 cores\n\nsecond\n"
+    again = page.replaced(both, "## one, 2 cores", "third")
+    assert again == both.replace("first", "third")
+    assert page.replaced(again, "## one, 2 cores", "third") == again

@@ -1,4 +1,4 @@
-"""granchain itself, through its engine for a trajectory and its lanes for a curve."""
+"""granchain itself, through its engine for a trajectory and its batches for a curve."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from granchain_core import Scene, scene
 from granchain_core.errors import NumbersFailed
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.kernels.width import BATCH_LANES
+from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.lower import lower
 from granchain_core.stop import Stop
 
@@ -83,29 +83,29 @@ def _returns(strobes: np.ndarray, near: float = 1e-6) -> bool:
 
 
 def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
-    """Exactly 100 + 20 periods of every point in lanes on this thread: longest first, places filled as they end."""
+    """Exactly 100 + 20 periods of every point in batches on this thread: longest first, places filled as they end."""
     lowered = [lower(_scene(f)) for f in sorted(frequencies)]
     total = problem.PASSED + problem.WATCHED
     values, rest = np.zeros(len(lowered)), np.zeros(2 * lowered[0].bodies)
     began = time.perf_counter()
-    block = Batch(lowered[0].scene, Stop())
+    batch = Batch(lowered[0].scene, Stop())
     waiting, place = iter(range(len(lowered))), {}
 
-    def fill(lane: int) -> None:
+    def fill(member: int) -> None:
         number = next(waiting, None)
         if number is None:
-            place.pop(lane, None)
-            block.put(lane, lowered[-1], rest, refine, NEVER, NEVER)
+            place.pop(member, None)
+            batch.put(member, lowered[-1], rest, refine, NEVER, NEVER)
         else:
-            place[lane] = number
-            block.put(lane, lowered[number], rest, refine, total, NEVER)
+            place[member] = number
+            batch.put(member, lowered[number], rest, refine, total, NEVER)
 
-    for lane in range(BATCH_LANES):
-        fill(lane)
+    for member in range(BATCH_SIZE):
+        fill(member)
     while place:
-        lane, _ = block.run()
-        values[place[lane]] = block.maxima(lane, problem.WATCHED)[2]
-        fill(lane)
+        member, _ = batch.run()
+        values[place[member]] = batch.maxima(member, problem.WATCHED)[2]
+        fill(member)
     seconds = time.perf_counter() - began
     evaluations = 4 * total * round(refine * sum(one.steps_per_period() for one in lowered))
     order = np.argsort(np.argsort(frequencies))
@@ -113,10 +113,10 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
 
 
 def cases() -> list[Case]:
-    """Every method of the engine that is worth it, and the lanes."""
+    """Every method of the engine that is worth it, and the batches."""
     found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(Setting(m, refine=r)), unit="refine")
              for m in FIXED]
     found.append(Case("granchain dop853", "w", rungs(1e-4, 1e-13, 4),
                       lambda t: _recording(Setting("dop853", tolerance=t))))
-    found.append(Case("granchain lanes", "w", peaks=batch_peaks, curve_ladder=(0.5, 0.6, 0.7, 0.85, 1, 1.25, 1.5, 2, 3, 4, 5, 6), unit="refine"))
+    found.append(Case("granchain batches", "w", peaks=batch_peaks, curve_ladder=(0.5, 0.6, 0.7, 0.85, 1, 1.25, 1.5, 2, 3, 4, 5, 6), unit="refine"))
     return found
