@@ -39,7 +39,8 @@ if TYPE_CHECKING:
     from .run.many import Runs, run_many
     from .run.run import run
     from .state import State
-    from .steady.curve.resonance_curve import Curve, CurvePoint, iter_curve, resonance_curve
+    from .steady.curve.curve import Curve, CurvePoint
+    from .steady.curve.resonance_curve import iter_curve, resonance_curve
     from .steady.settling.recorded import Settled, settled, settling
     from .steady.settling.recorded import settled as settle
     from .stop import Stop
@@ -50,7 +51,8 @@ _MODULES = {
     "run.run": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",), "result": ("Cost", "Run"),
     "state": ("State",), "stop": ("Stop",),
     "steady.settling.recorded": ("Settled", "settled", "settling"), "regime": ("Regime",),
-    "steady.curve.resonance_curve": ("Curve", "CurvePoint", "iter_curve", "resonance_curve"),
+    "steady.curve.curve": ("Curve", "CurvePoint"),
+    "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
     "diagram": ("Attractor", "Attractors", "Diagram", "attractors", "diagram"),
     "observe": ("Driven", "Observation", "Signal", "drive", "observe"),

@@ -16,7 +16,7 @@ HERE = Path(__file__).parent
 #: Folders and files of the inner loop, `python -m pytest -m quick`: below 90 s once the kernels are compiled.
 #: Each part of the core has one that fails where that part is wrong; orders, random scenes and browsers are for the whole suite.
 QUICK = (
-    "architecture", "public", "scene", "experiment", "store/test_files.py", "store/test_hdf5_border.py", "page", "session", "integrate", "run/test_peaks.py",
+    "architecture", "public", "scene", "experiment", "store/test_files.py", "store/test_hdf5_border.py", "dashboard", "session", "integrate", "run/test_peaks.py",
     "kernels/equations", "kernels/effects", "kernels/rk4", "kernels/dop853", "kernels/test_absent_effects.py",
     "kernels/simd/test_vector_nan.py", "kernels/batch/test_period_end.py", "physics/test_impact.py",
     "physics/test_work_on_the_way.py", "steady/test_claims.py", "steady/test_places.py", "orbits/test_orbits.py",

@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
+from app.dashboard.scales import FILE
 from app.frames import Extremes, extremes_of, samples_for, settled_frames
-from app.page.scales import FILE
 from app.session.session import slider_range
 from granchain_core import Scene, scene, scene_names, settle
 

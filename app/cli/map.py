@@ -103,7 +103,7 @@ def _drawn(found: Diagram, theme: Any) -> Any:
 def _client(address: str | None) -> Any:
     if address is None:
         return None
-    from granchain_core.diagram.scheduled import connect
+    from granchain_core.scheduler import connect
 
     return connect(address)
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import html
+from typing import Any
 
+from bokeh.document import Document
 from bokeh.embed import file_html
+from bokeh.io.doc import patch_curdoc
 from bokeh.models import LayoutDOM
 from bokeh.resources import INLINE
 
@@ -26,14 +29,24 @@ _PAGE = """{%% block contents %%}
 
 def page_of(figure: LayoutDOM, title: str) -> str:
     """A whole page with a figure of this package, which fills the window; Bokeh's own scripts are in it."""
-    return str(file_html(figure, INLINE, title))
+    return _page(figure, title)
 
 
 def captioned_page(figure: LayoutDOM, title: str, caption: str, theme: Theme) -> str:
     """The same with the title in bold and a caption under the figure."""
     words = f"<b>{html.escape(title)}.</b> {html.escape(caption)}".replace("{", "&#123;")
     template = _PAGE % {"card": theme.card, "ink": theme.ink, "line": _LINE, "caption": words}
-    return str(file_html(figure, INLINE, title, template=template))
+    return _page(figure, title, template=template)
+
+
+def _page(figure: LayoutDOM, title: str, **options: Any) -> str:
+    """The page by Bokeh, which asks for the current document: one of its own, not that of a dashboard in this process.
+
+    Bokeh keeps a weak reference, and one that is left behind by a visitor who is gone would be an error.
+    """
+    own = Document()
+    with patch_curdoc(own):
+        return str(file_html(figure, INLINE, title, **options))
 
 
 def caption_height(title: str, caption: str, width: int) -> int:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from granchain_core import BadInput, Run, Scene, Settled, scene, settle
+from granchain_core import BadInput, Run, Scene, Settled, pulse, run, scene, settle
 from granchain_core.errors import unknown_name
 from granchain_core.scene import ASSETS
 from granchain_core.stop import Stop
@@ -31,18 +31,27 @@ LOOKS = ("chain", "left", "map", "right", "curve")
 TOLERANCE, IRREGULAR = 5e-3, 0.1
 _STORY = ("title", "about", "order", "steps")
 _STEP = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "expect")
-_EXPECT = ("regime", "period", "output", "input")
+_EXPECT = ("regime", "period", "output", "input", "pulse", "speed")
+#: The regime of a motion that nothing drives, as a story calls it.
+UNDRIVEN = "undriven"
+#: Samples in the time 1/f in which a pulse is followed.
+_PULSE_SAMPLES = 4000
 _NUMBER = re.compile(r"\{(?:(\d+)\.)?(\w+)\}")
 
 
 @dataclass(frozen=True)
 class Expect:
-    """What the motion of a step is: regime and period, largest output and input force [N]."""
+    """What the motion of a step is: regime and period, largest output and input force [N].
+
+    Without a drive: the largest force [N] of the first pulse in the middle of the chain, and its speed [m/s] there.
+    """
 
     regime: str
     period: int | None
     output: float
     input: float
+    pulse: float | None = None
+    speed: float | None = None
 
 
 @dataclass(frozen=True)
@@ -113,6 +122,8 @@ def told_words(story: Story, number: int, words: str) -> str:
         numbers = {"output": _force(step.expect.output), "input": _force(step.expect.input),
                    "share": f"{100 * step.expect.output / step.expect.input:.0f} %",
                    "f": f"{step.scene.f:g} Hz"}
+        if step.expect.pulse is not None and step.expect.speed is not None:
+            numbers |= {"pulse": _force(step.expect.pulse), "speed": f"{step.expect.speed:.3g} m/s"}
         if match[2] not in numbers:
             raise unknown_name("number", match[2], tuple(numbers))
         return numbers[match[2]]
@@ -128,17 +139,22 @@ def settled_step(step: Step, stop: Stop | None = None) -> Settled:
     return settle(step.scene, start=start, samples=samples_for(step.scene), stop=stop)
 
 
-def differences(step: Step, run: Run) -> list[str]:
+def differences(step: Step, shown: Run) -> list[str]:
     """What of a run is not as the step tells, in sentences."""
-    found = []
-    allowed = TOLERANCE if step.expect.period else IRREGULAR
-    if (run.regime.name, run.regime.period) != (step.expect.regime, step.expect.period):
-        found.append(f"it is {run.regime.sentence}, not {step.expect.regime} {step.expect.period or ''}".rstrip() + ".")
-    for name, told, computed in (("output", step.expect.output, run.max_output_force),
-                                 ("input", step.expect.input, run.max_input_force)):
-        if abs(computed - told) > allowed * computed:
-            found.append(f"the largest {name} force is {computed:.4g} N, not {told:.4g} N.")
-    return found
+    found, told = [], step.expect
+    regime = shown.regime.name if shown.regime.driven else UNDRIVEN
+    if (regime, shown.regime.period) != (told.regime, told.period):
+        found.append(f"it is {shown.regime.sentence}, not {told.regime} {told.period or ''}".rstrip() + ".")
+    numbers = [("largest output force", "N", told.output, shown.max_output_force),
+               ("largest input force", "N", told.input, shown.max_input_force)]
+    if told.pulse is not None and told.speed is not None:
+        first = pulse(run(step.scene, periods=0, record=1, samples=_PULSE_SAMPLES))
+        middle = len(first.contact) // 2
+        numbers += [("pulse's force", "N", told.pulse, float(first.force[middle])),
+                    ("pulse's speed", "m/s", told.speed, float(first.speed_in_metres[middle]))]
+    allowed = IRREGULAR if regime in ("quasi-periodic", "chaotic") else TOLERANCE
+    return found + [f"the {name} is {computed:.4g} {unit}, not {number:.4g} {unit}."
+                    for name, unit, number, computed in numbers if abs(computed - number) > allowed * computed]
 
 
 def _force(newtons: float) -> str:
@@ -166,14 +182,23 @@ def _step(number: int, data: Any) -> Step:
 
 def _expect(data: dict[str, Any]) -> Expect:
     _known(data, _EXPECT, "expect")
-    regime = _one_of(data, "regime", ("periodic", "quasi-periodic", "chaotic"))
+    regime = _one_of(data, "regime", ("periodic", "quasi-periodic", "chaotic", UNDRIVEN))
     period = data.get("period")
     if (period is None) == (regime == "periodic") or not isinstance(period, (int, type(None))):
         raise BadInput("a periodic motion, and no other, has a period, a whole number of drive periods.")
-    for name in ("output", "input"):
-        if not isinstance(data.get(name), float) or not data[name] > 0.0:
-            raise BadInput(f"expect needs {name}, the largest {name} force in N, as a number with a point.")
-    return Expect(regime, period, data["output"], data["input"])
+    _positive(data, "output", "the largest output force in N")
+    _positive(data, "input", "the largest input force in N")
+    if ("pulse" in data or "speed" in data) != (regime == UNDRIVEN):
+        raise BadInput("a motion without a drive, and no other, has a pulse and its speed.")
+    if regime == UNDRIVEN:
+        _positive(data, "pulse", "the largest force of the pulse in the middle of the chain in N")
+        _positive(data, "speed", "its speed there in m/s")
+    return Expect(regime, period, data["output"], data["input"], data.get("pulse"), data.get("speed"))
+
+
+def _positive(data: Mapping[str, Any], name: str, what: str) -> None:
+    if not isinstance(data.get(name), float) or not data[name] > 0.0:
+        raise BadInput(f"expect needs {name}, {what}, as a number with a point.")
 
 
 def _known(data: Mapping[str, Any], names: Sequence[str], what: str) -> None:

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..diagram.attractors import Attractor, Origin, attractors_from, attractors_table
+from ..diagram.attractor import Attractor, Origin, attractors_table
+from ..diagram.attractors import attractors_from
 from ..errors import BadInput
 from ..integrate import State
 from ..scene import Scene
@@ -71,7 +72,7 @@ class Basins(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Where they come from."""
-        return dict(provenance(self.scene, "rk4 in lanes, orbits by dop853", None))
+        return dict(provenance(self.scene, "rk4 in batches, orbits by dop853", None))
 
     def summary(self) -> list[str]:
         """The plane, and what part of it leads to each attractor."""

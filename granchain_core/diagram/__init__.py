@@ -1,6 +1,7 @@
 """Two knobs at once: regime and largest forces over a grid, its boundaries, and all attractors of one setting."""
 
-from .attractors import Attractor, Attractors, attractors, listing
+from .attractor import Attractor, Attractors, listing
+from .attractors import attractors
 from .boundaries import BoundaryCurve, boundaries
 from .boundary import BoundaryPoint, boundary_curves, boundary_point
 from .cells import Diagram

@@ -119,7 +119,7 @@ class Diagram(Labelled):
         """Both knobs, cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""
         errors = self.cells["error_estimate"]
         known = errors[np.isfinite(errors)]
-        return {**provenance(self.scene, "rk4 in lanes", float(known.max()) if len(known) else None),
+        return {**provenance(self.scene, "rk4 in batches", float(known.max()) if len(known) else None),
                 **amplitude_attribute(self.grid.amplitude), "map_digest": self.grid.digest, "wall_s": self.wall_s,
                 "map_axes": json.dumps([self.grid.y.knob, self.grid.x.knob])}
 

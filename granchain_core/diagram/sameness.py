@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial.distance import cdist
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting, State, certified, live
@@ -143,6 +142,8 @@ def _distance(a: np.ndarray, b: np.ndarray) -> float:
 
 def _to_nearest(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> float:
     """Median relative distance of the states of one section to the nearest of another."""
+    from scipy.spatial.distance import cdist
+
     flat = [(section / scale).reshape(len(section), -1) for section in (a, b)]
     return float(np.median(cdist(*flat, metric="chebyshev").min(axis=1)))
 

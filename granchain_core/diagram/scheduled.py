@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 
 from ..scene import Amplitude, Scene
-from ..scheduler import connect, dealt, results
+from ..scheduler import dealt, results
 from ..stop import Stop
 from .compute import block_cells
 from .grid import Axis, Grid
-
-__all__ = ["CELLS_IN_TASK", "blocks_of", "connect", "describe", "iter_blocks", "work_on"]
 
 #: Cells of one block: some seconds of work, so that sending it costs nothing.
 CELLS_IN_TASK = 256
@@ -33,14 +31,9 @@ def describe(grid: Grid) -> dict[str, Any]:
             "amplitude": None if grid.amplitude is None else grid.amplitude.to_json()}
 
 
-def blocks_of(numbers: Sequence[int], size: int = CELLS_IN_TASK) -> list[list[int]]:
-    """Cell numbers in blocks."""
-    return dealt(numbers, size)
-
-
 def iter_blocks(client: Any, grid: Grid, numbers: Sequence[int],
                 stop: Stop | None = None) -> Iterator[np.ndarray]:
     """Finished blocks (cells,) in the order in which workers return them; blocks no longer wanted are cancelled."""
     described = describe(grid)
-    for _, rows in results(client, work_on, [(described, block) for block in blocks_of(numbers)], stop):
+    for _, rows in results(client, work_on, [(described, block) for block in dealt(numbers, CELLS_IN_TASK)], stop):
         yield np.asarray(rows)

@@ -16,8 +16,9 @@ import numpy as np
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..experiment import Feature, Measured, Series
 from ..scene import Amplitude, Scene
+from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.resonance import peaks_and_valleys
-from ..steady.curve.resonance_curve import Curve, CurvePoint, resonance_curve
+from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.recorded import settled
 from ..stop import Stop
 from .trains import Train, moved

@@ -10,7 +10,6 @@ from math import cos, sin
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from .oracle import Plain
 
@@ -83,6 +82,8 @@ def observed_apart(chain: Plain, start: np.ndarray, periods: int, rtol: float) -
     Both start in `start`. The observer's first bead is pushed by the force that the driver had in the first run, read
     from a record of it.
     """
+    from scipy.integrate import solve_ivp
+
     n, looks = len(chain.masses), 1000
     times = chain.period / looks * np.arange(looks * periods + 1)
     asked: dict[str, Any] = {"rtol": rtol, "atol": 1e-3 * rtol}

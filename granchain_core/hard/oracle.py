@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from ..errors import NumbersFailed
 from ..laws import LAWS
@@ -71,6 +70,8 @@ def solved(chain: Plain, start: np.ndarray, times: np.ndarray, method: str = "DO
 
     Raises `NumbersFailed` where SciPy gives up.
     """
+    from scipy.integrate import solve_ivp
+
     n = len(chain.masses)
     out = np.zeros((len(times), 2 * n))
     out[0], row = start, 1
@@ -110,6 +111,8 @@ def restitution(law: str, strength: float, cut: bool) -> float:
     The force is δ^{3/2} + strength·g(δ)·δ̇ with g = δ^a. Integrated in s = t^{1/4}, in which the motion after the
     onset is smooth; with a cut it ends where the force does, else where the overlap does.
     """
+    from scipy.integrate import solve_ivp
+
     power = LAWS[law].exponent
 
     def force(state: np.ndarray) -> float:

@@ -10,7 +10,8 @@ from ..orbits import periodic_orbit
 from ..orbits.flow import StroboscopicMap
 from ..run.run import run
 from ..scene import scene
-from ..steady.curve.resonance_curve import CurvePoint, iter_curve
+from ..steady.curve.curve import CurvePoint
+from ..steady.curve.resonance_curve import iter_curve
 from ..steady.regime import find_period
 from ..steady.settling.recorded import settled
 from .case import Measurement, Picture, Trace

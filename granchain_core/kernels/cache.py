@@ -20,15 +20,16 @@ import shutil
 import stat
 import tempfile
 import time
-from collections.abc import Callable
+import uuid
 from pathlib import Path
 from typing import Any
 
 import llvmlite.binding
 import numba
 from numba.core import caching
+from numba.core.serialize import dumps
 
-from .width import BATCH_LANES
+from .width import BATCH_SIZE
 
 #: Where what a person should know is said: on stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
@@ -45,7 +46,7 @@ def sources_hash() -> str:
 
     This file is left out: it decides where code is kept, not what it is.
     """
-    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()} {BATCH_LANES}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()} {BATCH_SIZE}".encode())
     for path in sorted(Path(__file__).parent.rglob("*.py")):
         if path != Path(__file__):
             digest.update(path.name.encode())
@@ -146,59 +147,57 @@ CACHE_FOLDER = cache_folder()
 # --- its files ----------------------------------------------------------------------------------------------
 
 
-class _Files(caching.IndexDataCacheFile):
-    """The index of one function and its compiled versions, each in a file with its checksum.
+class _Files:
+    """The compiled versions of one function, each in a file of its own that is named by a hash of its key.
 
-    Several processes may write the same function at once, so that an index may name a file that holds another version:
-    each file therefore also says which version it is.
+    Numba keeps an index beside them. Two processes that compile at once overwrite each other's index, and versions are
+    lost. A file that gets its name when it is complete needs no index; it says itself which version it holds.
     """
 
-    _cache_path: str
-    _index_path: str
-    _version: str
-    _source_stamp: Any
-    _data_path: Callable[[str], str]
-    _dump: Callable[[Any], bytes]
+    def __init__(self, folder: str, name: str, stamp: Any) -> None:
+        self._folder, self._name, self._stamp = Path(folder), name, stamp
+
+    def path(self, key: Any) -> Path:
+        """Where the version of this key is, or would be."""
+        return self._folder / f"{self._name}.{hashlib.sha256(str(key).encode()).hexdigest()[:16]}.nbc"
 
     def save(self, key: Any, data: Any) -> None:
-        """Add one compiled version."""
-        super().save(key, (key, data))
+        """Keep one compiled version."""
+        content = dumps((numba.__version__, self._stamp, key, data))
+        path = self.path(key)
+        unfinished = path.with_suffix(f".{uuid.uuid4().hex[:16]}.tmp")
+        try:
+            # with the rights of any other file: an image is warmed by one user and used by another
+            unfinished.write_bytes(hashlib.sha256(content).digest() + content)
+            unfinished.replace(path)
+        finally:
+            with contextlib.suppress(OSError):
+                unfinished.unlink(missing_ok=True)
 
     def load(self, key: Any) -> Any:
         """One compiled version, None where there is none that is whole."""
-        found = super().load(key)
-        return found[1] if found is not None and found[0] == key else None
-
-    def _load_index(self) -> dict[Any, str]:
         try:
-            version, stamp, names = pickle.loads(self._whole(self._index_path))
+            found = pickle.loads(whole(self.path(key)))
         except FileNotFoundError:
-            return {}
-        return names if (version, stamp) == (self._version, self._source_stamp) else {}
+            return None
+        return found[3] if found[:3] == (numba.__version__, self._stamp, key) else None
 
-    def _save_index(self, overloads: dict[Any, str]) -> None:
-        self._keep(self._index_path, self._dump((self._version, self._source_stamp, overloads)))
+    def flush(self) -> None:
+        """Forget all versions, as `recompile` of a function asks."""
+        for path in self._folder.glob(f"{self._name}.*.nbc"):
+            path.unlink(missing_ok=True)
 
-    def _load_data(self, name: str) -> Any:
-        return pickle.loads(self._whole(self._data_path(name)))
 
-    def _save_data(self, name: str, data: Any) -> None:
-        self._keep(self._data_path(name), self._dump(data))
-
-    def _keep(self, path: str, content: bytes) -> None:
-        with self._open_for_write(path) as file:
-            file.write(hashlib.sha256(content).digest() + content)
-
-    def _whole(self, path: str) -> bytes:
-        """The content of a file; one whose checksum does not fit is dropped, and `FileNotFoundError` raised."""
-        stored = Path(path).read_bytes()
-        digest, content = stored[:_DIGEST], stored[_DIGEST:]
-        if hashlib.sha256(content).digest() == digest:
-            return content
-        say_once(f"Damaged kernels in {Path(self._cache_path).parent} are dropped and compiled again.")
-        with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
-            os.unlink(path)
-        raise FileNotFoundError(path)
+def whole(path: Path) -> bytes:
+    """The content of a file; one whose checksum does not fit is dropped, and `FileNotFoundError` raised."""
+    stored = path.read_bytes()
+    digest, content = stored[:_DIGEST], stored[_DIGEST:]
+    if hashlib.sha256(content).digest() == digest:
+        return content
+    say_once(f"Damaged kernels in {path.parent.parent} are dropped and compiled again.")
+    with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
+        os.unlink(path)
+    raise FileNotFoundError(path)
 
 
 class _Locator(caching.UserProvidedCacheLocator):
@@ -226,7 +225,8 @@ class KernelCache(caching.FunctionCache):
             super().__init__(function)
         finally:
             numba.config.CACHE_DIR = before
-        self._cache_file = _Files(self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
+        files = _Files(self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
+        self._cache_file: Any = files
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """A compiled version from disk, None where it has to be compiled."""

@@ -4,8 +4,8 @@
 * No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`, which let an absent effect's
   neutral elements fold away and sums be vectorised.
 * Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by a hash of the sources
-  in this package but cache.py, of Numba's version, the processor and the lanes: any edit starts an empty one, and with
-  an unchanged tree the second process compiles nothing.
+  in this package but cache.py, of Numba's version, the processor and the size of a batch: any edit starts an empty
+  one, and with an unchanged tree the second process compiles nothing.
 """
 
 from __future__ import annotations

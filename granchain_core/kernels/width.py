@@ -36,7 +36,7 @@ def processor() -> str:
     return numba.config.CPU_NAME or llvmlite.binding.get_host_cpu_name()
 
 
-def batch_lanes(chosen: str | None) -> int:
+def batch_size(chosen: str | None) -> int:
     """Scenes in one vector, `chosen` if that is one of the numbers there are, else what suits the machine.
 
     Raises
@@ -52,9 +52,9 @@ def batch_lanes(chosen: str | None) -> int:
     return int(chosen)
 
 
-BATCH_LANES = batch_lanes(os.environ.get(VARIABLE))
+BATCH_SIZE = batch_size(os.environ.get(VARIABLE))
 
 
 def machine() -> str:
     """The processor and the number of scenes, in words."""
-    return f"{processor()}, {BATCH_LANES} scenes in one vector of a batch"
+    return f"{processor()}, {BATCH_SIZE} scenes in one vector of a batch"

@@ -2,18 +2,20 @@
 
 The derivative of a chain of a thousand beads has four million entries; its product with one direction costs little
 more than the motion. Disturbances shrink in almost all directions, so a Krylov space of a few dozen dimensions
-suffices.
+suffices. SciPy's part for it is imported when the first long chain comes.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, gmres
 
 from ..errors import NumbersFailed
 from .flow import StroboscopicMap
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import LinearOperator
 
 #: Multipliers computed for a long chain.
 LEADING = 24
@@ -29,6 +31,8 @@ _ROUNDS = 5
 
 def derivative_at(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bool = False) -> LinearOperator:
     """The derivative of the map at x as an operator (2N, 2N)."""
+    from scipy.sparse.linalg import LinearOperator
+
     def product(direction: np.ndarray) -> np.ndarray:
         column = np.asarray(direction, dtype=float).reshape(-1, 1)
         return stroboscopic_map(x, observer, directions=column).derivative[:, 0]
@@ -41,6 +45,8 @@ def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarra
 
     Raises `NumbersFailed` where it does not converge: the derivative then has a multiplier close to 1.
     """
+    from scipy.sparse.linalg import LinearOperator, gmres
+
     derivative = derivative_at(stroboscopic_map, x)
     system = LinearOperator(derivative.shape, matvec=lambda d: derivative @ d - d, dtype=float)
     step, status = gmres(system, x - end, rtol=_SOLVED, restart=_RESTART, maxiter=_ROUNDS)
@@ -68,6 +74,8 @@ def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observ
 
     Raises `NumbersFailed` where they do not converge.
     """
+    from scipy.sparse.linalg import ArpackNoConvergence, eigs
+
     # the start is fixed, so that the same chain gives the same digits
     start = np.random.default_rng(0).standard_normal(len(x))
     try:

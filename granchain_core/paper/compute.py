@@ -15,7 +15,8 @@ from ..experiment import Series, stated_features
 from ..observe import figure_11, force_record, observe, twin
 from ..scene import Scene, scene
 from ..state import rest
-from ..steady.curve.resonance_curve import Curve, resonance_curve
+from ..steady.curve.curve import Curve
+from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.recorded import Settled, settled
 from ..stop import Stop
 from .given import Given, behind, moved

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.resonance import peaks_and_valleys
-from ..steady.curve.resonance_curve import Curve, CurvePoint
 
 
 def turning_points(curve: Curve) -> tuple[list[CurvePoint], list[CurvePoint]]:

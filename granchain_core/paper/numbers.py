@@ -15,8 +15,9 @@ from ..observe import figure_11
 from ..orbits import periodic_orbit
 from ..scene import scene
 from ..state import rest
+from ..steady.curve.curve import Curve
 from ..steady.curve.resonance import pushes
-from ..steady.curve.resonance_curve import Curve, resonance_curve
+from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.regime import Regime
 from ..steady.settling.recorded import Settled, settled
 from .compute import SECTION_2, STATES

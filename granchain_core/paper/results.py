@@ -13,7 +13,7 @@ from ..experiment import Feature, Measured, Series, Shaker
 from ..observe import Figure11
 from ..result import Run
 from ..scene import Scene
-from ..steady.curve.resonance_curve import Curve
+from ..steady.curve.curve import Curve
 from ..steady.settling.recorded import Settled
 
 Row = dict[str, Any]

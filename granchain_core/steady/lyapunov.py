@@ -6,7 +6,7 @@ import numpy as np
 
 from ..integrate import Engine
 from ..integrate.batch import NEVER, Batch
-from ..kernels.batch.period_end import STROBES_PER_LANE
+from ..kernels.batch.period_end import STROBES_KEPT
 from ..kernels.forces.largest import new_log
 from ..kernels.rk4.lyapunov import run_two_trajectories
 from ..kernels.samples import Output
@@ -23,7 +23,7 @@ MOST_APART = 2.5
 
 def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, block: int,
                        stop: Stop) -> list[tuple[np.ndarray, ...]]:
-    """`exponents` of scenes side by side in pairs of lanes, each from its scaled state (2(N+2),) at phase 0.
+    """`exponents` of scenes side by side in pairs of members, each from its scaled state (2(N+2),) at phase 0.
 
     Returns for each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its
     last periods (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. The
@@ -48,11 +48,11 @@ def _offset(bodies: int) -> np.ndarray:
     return np.asarray(offset * (_DISTANCE / np.linalg.norm(offset)))
 
 
-def _record(pairs: Batch, lane: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Strobes, last largest forces and last state of a lane's own periods: a lane runs on until the slowest is done."""
-    strobes = pairs.state.strobes[lane, : periods + 1]
-    last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_PER_LANE
-    return strobes[1:, :, 1:-1].copy(), pairs.state.maxima[lane, last, :3].copy(), strobes[-1].ravel().copy()
+def _record(pairs: Batch, member: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Strobes, last largest forces and last state of a member's own periods: it runs on until the slowest is done."""
+    strobes = pairs.state.strobes[member, : periods + 1]
+    last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_KEPT
+    return strobes[1:, :, 1:-1].copy(), pairs.state.maxima[member, last, :3].copy(), strobes[-1].ravel().copy()
 
 
 def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.ndarray]:

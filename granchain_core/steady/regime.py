@@ -8,7 +8,7 @@ settling/regime_decisions.py and batch/settle.py.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -125,10 +125,13 @@ def agree(one: Regime, other: Regime) -> bool:
     return abs(a - b) <= max(3.0 * math.hypot(error_a, error_b), 1e-3)
 
 
-def _windows(strobes: np.ndarray) -> Iterator[np.ndarray]:
-    """For every period the largest changes over it in three windows in a row, (3,); none for a short record."""
-    for n in range(1, LONGEST_PERIOD + 1 if len(strobes) >= SLOW_RECORD else 0):
-        yield changes(strobes, n, 3 * _SLOW_WINDOW).reshape(3, -1).max(axis=1)
+def _windows(strobes: np.ndarray) -> np.ndarray:
+    """For every period the largest changes over it in three windows in a row, (periods, 3); none for a short record."""
+    if len(strobes) < SLOW_RECORD:
+        return np.zeros((0, 3))
+    seen = np.zeros((LONGEST_PERIOD, 3))
+    section.window_changes(np.ascontiguousarray(strobes), _SLOW_WINDOW, np.zeros(2), seen)
+    return seen
 
 
 def slowing(strobes: np.ndarray) -> bool:
@@ -149,7 +152,7 @@ def departing(strobes: np.ndarray) -> bool:
     return _departing(_windows(strobes))
 
 
-def _slowing(seen: Iterable[np.ndarray]) -> bool:
+def _slowing(seen: np.ndarray) -> bool:
     some = False
     for a, b, c in seen:
         if b < _SHRINKS * c:
@@ -158,7 +161,7 @@ def _slowing(seen: Iterable[np.ndarray]) -> bool:
     return some
 
 
-def _departing(seen: Iterable[np.ndarray]) -> bool:
+def _departing(seen: np.ndarray) -> bool:
     some = False
     for a, b, c in seen:
         if c < _SHRINKS * b:
@@ -173,8 +176,8 @@ def _shrinks(first: float, second: float, third: float) -> bool:
 
 def stays(strobes: np.ndarray) -> bool:
     """Whether a record that is long enough shows a motion that neither slows down nor leaves an orbit."""
-    seen = list(_windows(strobes))
-    return bool(seen) and not _slowing(seen) and not _departing(seen)
+    seen = _windows(strobes)
+    return len(seen) > 0 and not _slowing(seen) and not _departing(seen)
 
 
 def returns_near(strobes: np.ndarray) -> bool:

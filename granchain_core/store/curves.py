@@ -20,8 +20,8 @@ from ..regime import NAMES, Regime
 from ..result import ForceErrors
 from ..scene import Amplitude, Scene
 from ..state import rest
+from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.order import STARTS
-from ..steady.curve.resonance_curve import Curve, CurvePoint
 from ..tables import MAXIMA
 from ..tables.words import ERRORS
 from .writing import or_none, write_file, write_result

@@ -11,7 +11,7 @@ import pytest
 from panel.custom import JSComponent
 from source import ROOT, imports_in
 
-import app.page.layout  # noqa: F401  (makes every component known)
+import app.dashboard.layout  # noqa: F401  (makes every component known)
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
 
@@ -101,7 +101,7 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None
         elif module == "app.cli.serve":
             assert name in ("app.server", "app.cli.common", "app.cli.options"), f"{module} imports {name}"
         elif mine in USES:
-            fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "page" else set())
+            fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
             assert theirs in fits | SHARED, f"{module} imports {name}"
 
 

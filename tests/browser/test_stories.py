@@ -8,7 +8,7 @@ from playwright.sync_api import Page, expect
 from room import faults
 from started import until
 
-from app.session.stories import IRREGULAR, TOLERANCE, Story, stories, told_words
+from app.session.stories import IRREGULAR, TOLERANCE, UNDRIVEN, Story, stories, told_words
 
 # Newtons of the largest output force that is drawn at the wall.
 FORCE = """() => {
@@ -23,8 +23,11 @@ def shows(page: Page, story: Story, number: int) -> None:
     step = story.steps[number - 1]
     badge = page.locator("#foot b")
     expect(badge).not_to_contain_text("preview", timeout=20_000)
-    expect(badge).to_contain_text(f"period {step.expect.period}," if step.expect.period else step.expect.regime,
-                                  timeout=30_000)
+    regime = "not driven" if step.expect.regime == UNDRIVEN else step.expect.regime
+    expect(badge).to_contain_text(f"period {step.expect.period}," if step.expect.period else regime, timeout=30_000)
+    curve = page.locator("#curvebar")
+    words = "there is no resonance curve"
+    expect(curve).to_contain_text(words) if regime == "not driven" else expect(curve).not_to_contain_text(words)
     # The line joins samples, and the top may lie between two: at 96 a period up to 0.7 % higher in these scenes.
     allowed = max(TOLERANCE, 7e-3) if step.expect.period else IRREGULAR
     page.wait_for_function(f"([told, allowed]) => Math.abs(({FORCE})() / told - 1) < allowed",

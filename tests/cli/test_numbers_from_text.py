@@ -11,7 +11,7 @@ import pytest
 from tornado.httpclient import AsyncHTTPClient
 
 from app.cli import main
-from app.page import entry
+from app.dashboard import entry
 from app.server import server_at
 from app.session.share import decode
 from granchain_core import BadInput, Scene, run, scene

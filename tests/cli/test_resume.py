@@ -157,7 +157,7 @@ def test_known_points_are_not_computed_again_and_the_others_are_the_same(start: 
     for mine, its in zip(found.points, whole.points, strict=True):
         if start != "rest":
             assert mine.max_output_force == its.max_output_force
-        assert mine.max_output_force == pytest.approx(its.max_output_force, rel=1e-7)  # rounding of the lanes
+        assert mine.max_output_force == pytest.approx(its.max_output_force, rel=1e-7)  # rounding of the batch
 
 
 def pieces(out: Path, resume: bool = False) -> Kept[int]:

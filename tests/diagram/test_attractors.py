@@ -49,7 +49,7 @@ def test_every_start_leads_to_one_attractor_and_shares_add_up(many: list[Attract
 
 
 def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
-    # the live and the certified method know nothing of lanes: they start from the state that is listed
+    # the live and the certified method know nothing of batches: they start from the state that is listed
     for one in (named(many, "rest"), named(many, "down")):
         origin = next(o for o in one.origins if o.name.startswith("random"))
         alone = settled(one.scene, origin.state)

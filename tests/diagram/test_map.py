@@ -20,8 +20,9 @@ from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.diagram import Axis, Diagram, Grid, diagram
 from granchain_core.diagram.blocks import Blocks
 from granchain_core.diagram.cells import REGIMES, empty_cells
-from granchain_core.diagram.scheduled import blocks_of, describe, work_on
+from granchain_core.diagram.scheduled import describe, work_on
 from granchain_core.kept import folder_of
+from granchain_core.scheduler import dealt
 from granchain_core.stop import Stop
 from granchain_core.store.diagrams import load_diagram, save_diagram
 
@@ -45,7 +46,7 @@ def test_every_cell_is_the_curves_point_at_its_amplitude(found: Diagram) -> None
             assert regime is not None
             assert (regime.name, regime.period) == (point.regime.name, point.regime.period)
             cell = found.cells[number]
-            # the same numbers but for the rounding of the lanes: far below the error that is claimed
+            # the same numbers but for the rounding of the batch: far below the error that is claimed
             assert cell["max_output_force"] == pytest.approx(point.max_output_force, rel=1e-7)
             assert np.isnan(cell["error_estimate"]) == (point.error_estimate is None)
 
@@ -71,7 +72,7 @@ def test_an_axis_that_reaches_zero_switches_its_effect_off_there() -> None:
     assert found.cells["max_output_force"][3] == pytest.approx(single.max_output_force, rel=1e-7)
 
 
-def test_scenes_that_lanes_cannot_run_are_settled_one_by_one() -> None:
+def test_scenes_that_batches_cannot_run_are_settled_one_by_one() -> None:
     found = diagram(scene("sec2").evolve(tension="cut"), ("f", [340.0]), ("A0", [5e-7, 6e-7]))
     assert [REGIMES[code] for code in found.cells["regime"]] == ["periodic", "periodic"]
 
@@ -227,9 +228,9 @@ def test_a_block_can_be_sent_to_another_process_and_its_cells_back(found: Diagra
 
 
 def test_blocks_hold_every_cell_once() -> None:
-    blocks = blocks_of(list(range(1000)), 256)
+    blocks = dealt(list(range(1000)), 256)
     assert sorted(n for block in blocks for n in block) == list(range(1000)) and max(map(len, blocks)) <= 256
-    assert blocks_of([]) == []
+    assert dealt([], 256) == []
 
 
 def test_an_axis_may_pass_through_equal_beads() -> None:

@@ -26,9 +26,9 @@ from granchain_core import (
 )
 from granchain_core.diagram import Axis, Grid
 from granchain_core.diagram.cells import empty_cells
-from granchain_core.diagram.scheduled import blocks_of, iter_blocks
+from granchain_core.diagram.scheduled import CELLS_IN_TASK, iter_blocks
 from granchain_core.fit import CurveTarget, Free, virtual_curve
-from granchain_core.scheduler import results
+from granchain_core.scheduler import dealt, results
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)
 WIDE = (("f", np.linspace(300.0, 1700.0, 32)), ("A0", np.geomspace(2e-7, 2e-6, 32)))
@@ -44,11 +44,11 @@ def client() -> Iterator[Any]:
 def test_a_map_is_the_same_bytes_though_a_worker_is_killed_midway(client: Any) -> None:
     threaded = diagram(scene("sec2"), *WIDE)
     grid = Grid(scene("sec2"), *(Axis.of(*one) for one in WIDE))
-    cells, left = empty_cells(grid), len(blocks_of(range(grid.size)))
+    cells, left = empty_cells(grid), len(dealt(range(grid.size), CELLS_IN_TASK))
     victim = next(iter(client.run(os.getpid).values()))
     for rows in iter_blocks(client, grid, range(grid.size)):
         cells[rows["number"]] = rows
-        if left == len(blocks_of(range(grid.size))):
+        if left == len(dealt(range(grid.size), CELLS_IN_TASK)):
             os.kill(victim, signal.SIGKILL)
         left -= 1
     assert left == 0 and victim not in client.run(os.getpid).values()

@@ -20,8 +20,8 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "tests" / "architecture", copy / "tests" / "architecture",
                     ignore=shutil.ignore_patterns("__pycache__"))
-    (copy / "tests" / "page").mkdir()
-    shutil.copy(ROOT / "tests" / "page" / "test_messages.py", copy / "tests" / "page")
+    (copy / "tests" / "dashboard").mkdir()
+    shutil.copy(ROOT / "tests" / "dashboard" / "test_messages.py", copy / "tests" / "dashboard")
     return edited_copy(PAGE, copy)
 
 
@@ -36,7 +36,7 @@ def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
     told = follow(tree, "-c", """
 from types import SimpleNamespace
 from bokeh.document import Document
-from app.page.controller import Controller
+from app.dashboard.controller import Controller
 from app.session.session import Session
 from app.scripts import FILES
 
@@ -61,5 +61,5 @@ print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["
 def test_the_new_page_fits_into_the_house(tree: Path) -> None:
     """Layers, private attributes, docstrings, the map of docs/design.md and the table of messages of docs/dashboard.md."""
     told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
-                  str(Path("tests", "page")), "-k", "transmission or table or map or circle or message")
+                  str(Path("tests", "dashboard")), "-k", "transmission or table or map or circle or message")
     assert " passed" in told and "deselected" in told

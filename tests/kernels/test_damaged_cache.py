@@ -48,12 +48,11 @@ def flipped(content: bytes) -> bytes:
     return bytes(changed)
 
 
-@pytest.mark.parametrize("kind", ["nbi", "nbc"])
 @pytest.mark.parametrize("damage", [lambda _: b"", halved, flipped, lambda _: b"x"], ids=["empty", "halved", "flipped", "short"])
-def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, kind: str, tmp_path: Path) -> None:
+def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, tmp_path: Path) -> None:
     told, said = used(tmp_path)
     assert told["right"] and told["loaded"] == 0 and said == []
-    files = list(tmp_path.rglob(f"*.{kind}"))
+    files = list(tmp_path.rglob("*.nbc"))
     assert len(files) == 1
     files[0].write_bytes(damage(files[0].read_bytes()))
     told, said = used(tmp_path)
@@ -66,37 +65,49 @@ def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage,
 def test_every_flipped_bit_is_seen(tmp_path: Path) -> None:
     """The checksum is compared before anything is unpickled."""
     used(tmp_path)
-    for path in [*tmp_path.rglob("*.nbi"), *tmp_path.rglob("*.nbc")]:
-        whole = path.read_bytes()
-        files = cache._Files(str(path.parent), path.stem, None)
-        assert files._whole(str(path)) == whole[32:]
-        for bit in range(0, 8 * len(whole), max(1, len(whole) // 50)):
-            changed = bytearray(whole)
+    for path in tmp_path.rglob("*.nbc"):
+        content = path.read_bytes()
+        assert cache.whole(path) == content[32:]
+        for bit in range(0, 8 * len(content), max(1, len(content) // 50)):
+            changed = bytearray(content)
             changed[bit // 8] ^= 1 << bit % 8
             path.write_bytes(changed)
             with pytest.raises(FileNotFoundError):
-                files._whole(str(path))
+                cache.whole(path)
             assert not path.exists()
 
 
-def test_an_index_that_names_another_version_is_not_believed(tmp_path: Path) -> None:
-    """Two processes that write at once may leave an index whose file belongs to another signature."""
+def test_a_file_that_holds_another_version_is_not_believed(tmp_path: Path) -> None:
     files = cache._Files(str(tmp_path), "f", "stamp")
     files.save("one", "code of one")
     files.save("two", "code of two")
     assert files.load("one") == "code of one" and files.load("two") == "code of two"
-    (tmp_path / "f.1.nbc").write_bytes((tmp_path / "f.2.nbc").read_bytes())
+    files.path("one").write_bytes(files.path("two").read_bytes())
     assert files.load("one") is None and files.load("two") == "code of two"
+    assert cache._Files(str(tmp_path), "f", "later stamp").load("two") is None
 
 
-def test_a_full_disk_is_said_once_and_the_kernel_runs(tmp_path: Path) -> None:
-    used(tmp_path / "other")  # the folder is made before the disk is full
-    told, said = used(tmp_path / "other", _FULL + PROGRAM)
-    assert told["right"] and told["loaded"] == 1 and said == []  # what is there is used
-    (tmp_path / "new" / f"kernels-{cache.sources_hash()}").mkdir(parents=True)
-    told, said = used(tmp_path / "new", _FULL + PROGRAM)
-    assert told["right"]
-    assert len(said) == 1 and "cannot be kept" in said[0] and "File too large" in said[0]
+def test_processes_that_compile_at_once_lose_nothing_of_each_other(tmp_path: Path) -> None:
+    """What two have found missing and then written, one after the other, is all there; nothing else is left behind."""
+    one, other = (cache._Files(str(tmp_path), "f", "stamp") for _ in range(2))
+    assert one.load("a") is None and other.load("b") is None
+    one.save("a", 1)
+    other.save("b", 2)
+    one.save("c", 3)
+    assert [other.load(key) for key in "abc"] == [1, 2, 3]
+    assert len(list(tmp_path.iterdir())) == 3
+    other.flush()
+    assert one.load("a") is None
+
+
+def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
+    """An image is warmed by root and run by somebody else: files have the rights that the user's umask leaves."""
+    files, before = cache._Files(str(tmp_path), "f", "stamp"), os.umask(0o022)
+    try:
+        files.save("one", "code of one")
+    finally:
+        os.umask(before)
+    assert files.path("one").stat().st_mode & 0o777 == 0o644
 
 
 @pytest.fixture
@@ -148,7 +159,7 @@ def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path: Path) 
     foreign = tmp_path / "kernels-of-mine"
     for folder, days in ((own, 40), (old, 31), (young, 29), (foreign, 400)):
         folder.mkdir()
-        (folder / "a.nbi").write_text("")
+        (folder / "a.nbc").write_text("")
         os.utime(folder, (time.time() - 86400 * days,) * 2)
     used(tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {own.name, young.name, foreign.name}

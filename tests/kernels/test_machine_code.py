@@ -97,7 +97,7 @@ def test_absent_effects_have_no_arrays_in_the_simd_workspaces():
     """None in place of the static overlaps, of the damping and the foundation of a batch, of unequal beads."""
     bare = scene("sec2").evolve(dissipation="none")
     assert Engine(bare, Setting("rk4-split"), 1).stepper.work.simd.preload is None
-    lanes = Batch(bare, Stop()).lanes
-    assert (lanes.dissipation, lanes.foundation, lanes.preload, lanes.unequal) == (None, None, None, None)
-    full = Batch(scene("sec2").evolve(kappa=0.001, F0=1.0), Stop()).lanes
+    values = Batch(bare, Stop()).members
+    assert (values.dissipation, values.foundation, values.preload, values.unequal) == (None, None, None, None)
+    full = Batch(scene("sec2").evolve(kappa=0.001, F0=1.0), Stop()).members
     assert None not in (full.dissipation, full.foundation, full.preload)

@@ -13,7 +13,7 @@ from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.kernels import width
 
 FREQUENCIES = [130.0, 255.0, 340.0, 470.0, 850.0, 1130.0, 1576.0, 2000.0, 2500.0]
-#: In a process of its own, because kernels are compiled for one number of lanes.
+#: In a process of its own, because kernels are compiled for one number of members.
 OTHER = """
 import json, sys
 from granchain_core import resonance_curve, scene
@@ -22,8 +22,8 @@ print(json.dumps([[p.regime.name, p.regime.period, p.max_output_force, p.error_e
 """
 
 
-def test_both_numbers_of_lanes_give_the_same_curve() -> None:
-    other = str(12 - width.BATCH_LANES)
+def test_both_sizes_of_a_batch_give_the_same_curve() -> None:
+    other = str(12 - width.BATCH_SIZE)
     said = subprocess.run([sys.executable, "-c", OTHER, json.dumps(FREQUENCIES)], capture_output=True, text=True,
                           check=True, env={**os.environ, width.VARIABLE: other}).stdout
     here = resonance_curve(scene("sec2"), FREQUENCIES, workers=1).points
@@ -35,11 +35,11 @@ def test_both_numbers_of_lanes_give_the_same_curve() -> None:
         assert mine.max_output_force == pytest.approx(force, rel=mine.error_estimate + error)
 
 
-def test_the_number_of_lanes_is_the_machines_or_the_one_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    for wide, name, lanes in ((True, "icelake-server", 8), (True, "znver4", 4), (False, "znver3", 4)):
+def test_the_size_of_a_batch_is_the_machines_or_the_one_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    for wide, name, members in ((True, "icelake-server", 8), (True, "znver4", 4), (False, "znver3", 4)):
         monkeypatch.setattr(width, "has_avx512", lambda wide=wide: wide)
         monkeypatch.setattr(width, "processor", lambda name=name: name)
-        assert width.batch_lanes(None) == lanes
-    assert width.batch_lanes("4") == 4 and width.batch_lanes("8") == 8
+        assert width.batch_size(None) == members
+    assert width.batch_size("4") == 4 and width.batch_size("8") == 8
     with pytest.raises(BadInput, match="GRANCHAIN_LANES is '7'; it may be 4 or 8"):
-        width.batch_lanes("7")
+        width.batch_size("7")

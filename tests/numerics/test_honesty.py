@@ -77,7 +77,7 @@ def test_computations_with_the_same_steps_are_not_compared():
 
 @pytest.mark.parametrize("base", ["sec2", "rig"])
 def test_the_error_stated_by_a_curve_bounds_the_true_one(base):
-    """Periodic points of the lanes at random drive, A₀, D and k against the certified orbit, every one of them."""
+    """Periodic points of batches at random drive, A₀, D and k against the certified orbit, every one of them."""
     found = list(curve_honesty.points(40, 9, base))
     assert len(found) >= 20
     ratio = np.array([p.error / p.stated for p in found])

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.page.addresses import take_address
+from app.dashboard.addresses import take_address
 from app.session.pins import NAMES, Pin, compared_rows, read_pin, setting_words
 from app.session.session import Session
 from app.session.share import PINS

@@ -53,6 +53,13 @@ def test_a_wrong_number_is_found(tmp_path: Path) -> None:
     assert len(found) == 2 and "not periodic 2" in found[0] and "0.6285 N, not 0.66 N" in found[1]
 
 
+def test_a_wrong_speed_of_a_pulse_is_found(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text((FOLDER / "solitary-wave.toml").read_text().replace("speed = 260.72", "speed = 265.0"))
+    step = read_story(path).steps[0]
+    assert differences(step, settled_step(step).run) == ["the pulse's speed is 260.7 m/s, not 265 m/s."]
+
+
 def test_numbers_stand_in_the_text(tmp_path: Path) -> None:
     path = tmp_path / "one.toml"
     path.write_text(GOOD.replace("It has {output}.", "{output} {input} {share} {f} {1.output}"))
@@ -66,6 +73,8 @@ def test_numbers_stand_in_the_text(tmp_path: Path) -> None:
     ("say =", "sya =", "step 1: Unknown field of a step 'sya'"),
     ("period = 1, ", "", "a periodic motion, and no other, has a period"),
     ("output = 0.6285", "output = 0", "expect needs output"),
+    ("output =", "speed = 260.0, output =", "a motion without a drive, and no other, has a pulse"),
+    ("{output}", "{speed}", "'speed'; the nearest is"),
     ("{output}", "{ouput}", "'ouput'; the nearest is 'output'"),
     ("{output}", "{7.output}", "is of step 7, but there are 1"),
     ("say =", 'look = "stage"\nsay =', "Unknown look 'stage'"),

@@ -18,17 +18,17 @@ FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620
 
 
 def results(frequencies: list[float]) -> dict[float, SteadyState]:
-    """What lanes find at these frequencies of section 2."""
+    """What batches find at these frequencies of section 2."""
     scenes = (scene("sec2").evolve(f=f) for f in frequencies)
     return {found.scene.f: found for found in batch_settle.batch_results(scenes, Stop())}
 
 
 def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
-    """Lanes, which follow slow approaches, and the live method, which runs on until it is there, from rest."""
-    by_lanes = results(FREQUENCIES)
+    """Batches, which follow slow approaches, and the live method, which runs on until it is there, from rest."""
+    by_batch = results(FREQUENCIES)
     for f in FREQUENCIES:
         settling = run_until_settled(scene("sec2").evolve(f=f), None, None)
-        found = by_lanes[f]
+        found = by_batch[f]
         assert found.regime.name == settling.regime.name
         if found.regime.period is None:
             continue
@@ -38,7 +38,7 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
         assert found.maxima[1] == pytest.approx(top, rel=2e-3)
 
 
-def test_what_lanes_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 1640 Hz from rest: one measurement of a zero exponent is not enough, as for a chain by itself."""
     real, measured = batch_settle.exponents_in_pairs, []
     monkeypatch.setattr(batch_settle, "exponents_in_pairs", lambda *words: measured.append(True) or real(*words))
@@ -55,7 +55,7 @@ def test_up_and_down_really_differ_there() -> None:
 
 
 def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
-    """The rig between 134 and 160 Hz: what lanes call periodic is stable, what the live method shows to be so."""
+    """The rig between 134 and 160 Hz: what batches call periodic is stable, what the live method shows to be so."""
     found = [point for point in resonance_curve(scene("rig"), np.linspace(134.0, 160.0, 14)).points
              if point.regime.name == "periodic"]
     for point in found:
@@ -81,7 +81,7 @@ def test_a_draft_claims_no_errors_and_agrees_where_it_is_periodic() -> None:
         assert point.max_output_force == pytest.approx(whole[point.frequency].max_output_force, rel=1e-2)
 
 
-def test_scenes_that_lanes_cannot_run_have_no_draft() -> None:
+def test_scenes_that_batches_cannot_run_have_no_draft() -> None:
     assert draft_curve(scene("sec2").evolve(tension="cut"), np.array([340.0]), Stop()) == []
 
 

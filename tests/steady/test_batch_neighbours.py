@@ -9,13 +9,13 @@ import pytest
 
 from granchain_core import Scene, scene
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.kernels.width import BATCH_LANES
+from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.lower import lower
 from granchain_core.steady.batch.settle import batch_results
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 
-#: Rows of a map: with one frequency all lanes end their periods at once, and several are due for a check together.
+#: Rows of a map: with one frequency all members end their periods at once, and several are due for a check together.
 #: Among them are periodic, quasi-periodic and chaotic motions.
 SCENES = [scene("sec2").evolve(f=f, A0=a) for f in (130.0, 340.0, 700.0, 1130.0) for a in (3e-7, 4e-7, 5e-7, 8e-7)]
 
@@ -45,13 +45,13 @@ def test_a_scene_alone_and_among_others_is_the_same() -> None:
     assert len({found.regime.name for found in together.values()}) > 1
 
 
-def test_lanes_that_are_due_together_are_all_returned_before_one_goes_on() -> None:
+def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> None:
     chain = scene("sec2").evolve(f=1130.0)
     lowered, batch = lower(chain), Batch(chain, Stop())
-    for lane in range(BATCH_LANES):
-        batch.put(lane, lowered, np.zeros(2 * lowered.bodies), 1, return_at=3, earliest=NEVER)
-    assert sorted(batch.run()[0] for _ in range(BATCH_LANES)) == list(range(BATCH_LANES))
-    assert list(batch.state.periods) == [3] * BATCH_LANES
+    for member in range(BATCH_SIZE):
+        batch.put(member, lowered, np.zeros(2 * lowered.bodies), 1, return_at=3, earliest=NEVER)
+    assert sorted(batch.run()[0] for _ in range(BATCH_SIZE)) == list(range(BATCH_SIZE))
+    assert list(batch.state.periods) == [3] * BATCH_SIZE
 
 
 @pytest.mark.parametrize("wrong", [0, 1])
@@ -60,7 +60,7 @@ def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int) -> None:
     lowered, batch = lower(chain), Batch(chain, Stop())
     for pair in (0, 1):
         y = np.full(2 * lowered.bodies, np.nan) if pair == wrong else np.zeros(2 * lowered.bodies)
-        for lane in (2 * pair, 2 * pair + 1):
-            batch.put(lane, lowered, y + 1e-9 * (lane % 2), 1, return_at=4, earliest=NEVER)
+        for member in (2 * pair, 2 * pair + 1):
+            batch.put(member, lowered, y + 1e-9 * (member % 2), 1, return_at=4, earliest=NEVER)
     growth = batch.run_pairs(1e-8, 4)
     assert np.isnan(growth[wrong]).all() and np.isfinite(growth[1 - wrong]).all()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import NumbersFailed, resonance_curve, scene, settled
-from granchain_core.steady.curve.resonance_curve import CurvePoint
+from granchain_core.steady.curve.curve import CurvePoint
 from granchain_core.stop import Stop
 
 

@@ -33,7 +33,7 @@ def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int 
 
 
 def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
-    """Mean and standard error by the one-scene shadow and by the one in lanes."""
+    """Mean and standard error by the one-scene shadow and by the one in a batch."""
     engine = Engine(shown, Setting("rk4-split"), 1)
     engine.start(state)
     lowered = lower(shown)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import run, scene, settled
+from granchain_core.steady import regime as regimes
 
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
@@ -48,3 +49,12 @@ def test_the_founded_rig_at_140_hz_is_chaotic():
 def test_the_rig_without_its_foundation_is_not_periodic(f):
     """κ = 0: irregular everywhere in 20–160 Hz."""
     assert settled(scene("rig").evolve(f=f, k=0.0)).regime.name != "periodic"
+
+
+def test_windows_hold_the_largest_changes_oldest_first() -> None:
+    """Found in one pass over the record, they are those of every change by itself; a short record has none."""
+    strobes = np.random.default_rng(3).standard_normal((regimes.SLOW_RECORD, 2, 3))
+    seen = regimes._windows(strobes)
+    for n, found in enumerate(seen, 1):
+        assert np.array_equal(found, regimes.changes(strobes, n, 3 * regimes._SLOW_WINDOW).reshape(3, -1).max(axis=1))
+    assert len(seen) == regimes.LONGEST_PERIOD and len(regimes._windows(strobes[1:])) == 0

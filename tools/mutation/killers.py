@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 #: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where beads
-#: are not alike; NaN in every lane; what is not finite.
+#: are not alike; NaN in every member; what is not finite.
 MOTION = ("tests/kernels/equations/test_motion.py",)
 UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py",)
 VECTORS = ("tests/kernels/simd/test_vector_nan.py",)
@@ -44,15 +44,15 @@ SIMD_PLAIN = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and chan
 SIMD_LONG = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and changes6")
 
 #: Eight chains at once: their order, their forces, unlike beads, the drive's phase, what they believe.
-LANES = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and sec2")
-LANES_ONE = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and one")
-LANES_KK = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and Kuwabara")
-LANES_PRESSED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and pressed")
-LANES_FOUNDED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and founded")
-LANE_FORCES = ("tests/kernels/batch/test_batch_steps.py", "-k", "largest_forces and sec2")
-UNLIKE_LANES = ("tests/kernels/batch/test_unlike_beads.py", "-k", "unlike_beads")
-LANE_PHASE = ("tests/kernels/batch/test_unlike_beads.py", "-k", "phase")
-LANE_LOOKS = ("tests/kernels/batch/test_period_end.py",)
+BATCH = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and sec2")
+BATCH_ONE = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and one")
+BATCH_KK = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and Kuwabara")
+BATCH_PRESSED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and pressed")
+BATCH_FOUNDED = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and founded")
+BATCH_FORCES = ("tests/kernels/batch/test_batch_steps.py", "-k", "largest_forces and sec2")
+UNLIKE_BATCH = ("tests/kernels/batch/test_unlike_beads.py", "-k", "unlike_beads")
+BATCH_PHASE = ("tests/kernels/batch/test_unlike_beads.py", "-k", "phase")
+BATCH_CHECKS = ("tests/kernels/batch/test_period_end.py",)
 LYAPUNOV = ("tests/steady/test_lyapunov.py", "-k", "chaotic_chain")
 
 #: Tangents: their columns, and their determinant, which does not see a missing saltation.

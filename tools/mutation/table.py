@@ -20,10 +20,10 @@ DEMANDED: dict[str, tuple[str, ...]] = {
     "no saltation": ("no-saltation", "no-saltation-in-second-route", "saltation-at-onset-only"),
     "determinant-only check": ("determinant-only-check", "determinant-only-comparison"),
     "missing last contact": ("missing-last-contact", "motion-without-last-contact", "flow-without-last-contact",
-                             "lane-without-last-contact", "tangent-without-last-contact"),
-    "t += dt": ("t-plus-dt", "lane-t-plus-dt"),
+                             "batch-without-last-contact", "tangent-without-last-contact"),
+    "t += dt": ("t-plus-dt", "batch-t-plus-dt"),
     "absolute coordinates": ("absolute-coordinates",),
-    "`if d > 0` hiding NaN": ("if-d-above-0-hides-nan", "nan-hidden-in-vectors", "nan-hidden-in-lanes"),
+    "`if d > 0` hiding NaN": ("if-d-above-0-hides-nan", "nan-hidden-in-vectors", "nan-hidden-in-batches"),
     "fastmath": ("fastmath", "fastmath-nnan", "fastmath-ninf"),
     "step over a touch": ("step-over-a-touch", "flow-steps-over-a-touch", "wide-steps-over-touch"),
 }

@@ -1,52 +1,52 @@
-"""Mutants of the equations' other copies: lanes, short chains in one vector, long ones in blocks, their events."""
+"""Mutants of the equations' other copies: batches, short chains in one vector, long ones in blocks, their events."""
 
 from __future__ import annotations
 
 from . import killers as k
 from .mutant import Mutant
 
-_LANE, _LANES, _BESIDE = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
+_BATCH_STEP, _BATCH_RUN, _BESIDE = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
 _LOOKS, _WIDE, _RUN, _ALONG = "kernels/batch/period_end.py", "kernels/rk4/short_chain.py", "kernels/rk4/short_chain_steps.py", "kernels/rk4/long_chain.py"
 _MATH = "kernels/simd/functions.py"
 
-IN_LANES = (
-    Mutant("lane-weights", _LANE, "before.u + 2.0 * u2, before.w + 2.0 * w2", "before.u + u2, before.w + u2",
-           "RK4 in lanes with wrong weights", k.LANES),
-    Mutant("lane-foundation-on-neighbour", _LANE, "bead.e - e, bead.u))", "bead.e - e, right))",
-           "the foundation pulls each bead by its neighbour's displacement", k.LANES_FOUNDED),
-    Mutant("lane-without-last-contact", _LANE, "times_stiffness(values.unequal, values.wall, c, values.last, d * r)",
+IN_BATCHES = (
+    Mutant("batch-weights", _BATCH_STEP, "before.u + 2.0 * u2, before.w + 2.0 * w2", "before.u + u2, before.w + u2",
+           "RK4 in batches with wrong weights", k.BATCH),
+    Mutant("batch-foundation-on-neighbour", _BATCH_STEP, "bead.e - e, bead.u))", "bead.e - e, right))",
+           "the foundation pulls each bead by its neighbour's displacement", k.BATCH_FOUNDED),
+    Mutant("batch-without-last-contact", _BATCH_STEP, "times_stiffness(values.unequal, values.wall, c, values.last, d * r)",
            "times_stiffness(values.unequal, 0.0 * values.wall, c, values.last, d * r)",
-           "chains in lanes do not feel the wall", k.LANES),
-    Mutant("lane-damping-of-one-side", _LANE, "batch_velocity(values.law, values.unequal, i, bead.w, bead.G - G)",
-           "batch_velocity(values.law, values.unequal, i, bead.w, bead.G)", "a bead in lanes is damped by one of its contacts", k.LANES),
-    Mutant("lane-output-force", _LANE, "dashpot_force(values.law, last.gap, last.rate)", "0.0 * last.rate",
-           "the largest output force in lanes leaves out the wall's dashpot", k.LANE_FORCES),
-    Mutant("lane-impulse-sign", _BESIDE, "correct_state(values, y, c, m, gate(changed, impulse))",
+           "chains in batches do not feel the wall", k.BATCH),
+    Mutant("batch-damping-of-one-side", _BATCH_STEP, "batch_velocity(values.law, values.unequal, i, bead.w, bead.G - G)",
+           "batch_velocity(values.law, values.unequal, i, bead.w, bead.G)", "a bead in batches is damped by one of its contacts", k.BATCH),
+    Mutant("batch-output-force", _BATCH_STEP, "dashpot_force(values.law, last.gap, last.rate)", "0.0 * last.rate",
+           "the largest output force in batches leaves out the wall's dashpot", k.BATCH_FORCES),
+    Mutant("batch-impulse-sign", _BESIDE, "correct_state(values, y, c, m, gate(changed, impulse))",
            "correct_state(values, y, c, m, gate(changed, blank(gap) - impulse))",
-           "what a step beside an event gives too much is given once more", k.LANES),
-    Mutant("lane-events-not-corrected", _BESIDE, "if positive_mask(changed) != 0:", "if positive_mask(changed) < 0:",
-           "lanes are of order 2", k.LANES),
-    Mutant("lane-path-of-dashpot", _BESIDE, "- 1.0 / (2.0 + exponent(law)) * r * here", "- 0.5 / (2.0 + exponent(law)) * r * here",
-           "what is taken back of a dashpot's path is wrong", k.LANE_LOOKS),
-    Mutant("lane-path-of-tsuji", _BESIDE, "- 1.0 / (2.0 + exponent(law)) * r * here", "- 0.5 * r * here",
-           "what is taken back of the path is wrong for Tsuji's law", k.LANE_LOOKS),
-    Mutant("lane-path-of-kuwabara-kono", _BESIDE, "return primitive_factor(law) * law.coefficient * h * primitive_power(law, speed * h)",
+           "what a step beside an event gives too much is given once more", k.BATCH),
+    Mutant("batch-events-not-corrected", _BESIDE, "if positive_mask(changed) != 0:", "if positive_mask(changed) < 0:",
+           "batches are of order 2", k.BATCH),
+    Mutant("batch-path-of-dashpot", _BESIDE, "- 1.0 / (2.0 + exponent(law)) * r * here", "- 0.5 / (2.0 + exponent(law)) * r * here",
+           "what is taken back of a dashpot's path is wrong", k.BATCH_CHECKS),
+    Mutant("batch-path-of-tsuji", _BESIDE, "- 1.0 / (2.0 + exponent(law)) * r * here", "- 0.5 * r * here",
+           "what is taken back of the path is wrong for Tsuji's law", k.BATCH_CHECKS),
+    Mutant("batch-path-of-kuwabara-kono", _BESIDE, "return primitive_factor(law) * law.coefficient * h * primitive_power(law, speed * h)",
            "return law.coefficient * h * primitive_power(law, speed * h)",
-           "what is taken back of the path is wrong for Kuwabara and Kono's law", k.LANE_LOOKS),
-    Mutant("lane-wall-not-corrected", _BESIDE, "for c in range(values.last + 1):", "for c in range(values.last):",
-           "touches of the wall in lanes are not corrected", k.LANES_ONE),
-    Mutant("lane-t-plus-dt", _LOOKS, "state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0", "state.peaks[0, lane] = 0.0",
-           "the phase in lanes turns on from period to period and is never set right", k.LANE_PHASE),
-    Mutant("lane-orbit-not-disturbed", _LOOKS, "if period > 0 and state.slowest[lane] > 0.0:", "if period > 0 and state.slowest[lane] > 2.0:",
-           "an unstable orbit that extrapolation led to is drawn as periodic", k.LANE_LOOKS),
-    Mutant("lane-disturbance-always-decays", _LOOKS, "if last <= _LEFT * first:", "if last < 1e300:",
-           "an orbit is called stable though the disturbance grew", k.LANE_LOOKS),
-    Mutant("lane-jump-not-proved", _LOOKS, "proved = n > 0 and change < state.change_before_extrapolation[lane]", "proved = True",
-           "an extrapolation that led away is kept", k.LANE_LOOKS),
-    Mutant("lane-shadow-not-pulled-back", _LANES, "* (start / now)", "* 1.0",
-           "the exponent of lanes is that of a distance long since large", k.LYAPUNOV),
-    Mutant("lane-growth-from-zero", _LANES, "= log(now / start)", "= log(now)",
-           "growth in lanes is counted from 1, not from the distance it began with", k.LYAPUNOV),
+           "what is taken back of the path is wrong for Kuwabara and Kono's law", k.BATCH_CHECKS),
+    Mutant("batch-wall-not-corrected", _BESIDE, "for c in range(values.last + 1):", "for c in range(values.last):",
+           "touches of the wall in batches are not corrected", k.BATCH_ONE),
+    Mutant("batch-t-plus-dt", _LOOKS, "state.phase[0, member], state.phase[1, member] = 0.0, 1.0", "state.peaks[0, member] = 0.0",
+           "the phase in batches turns on from period to period and is never set right", k.BATCH_PHASE),
+    Mutant("batch-orbit-not-disturbed", _LOOKS, "if period > 0 and state.slowest[member] > 0.0:", "if period > 0 and state.slowest[member] > 2.0:",
+           "an unstable orbit that extrapolation led to is drawn as periodic", k.BATCH_CHECKS),
+    Mutant("batch-disturbance-always-decays", _LOOKS, "if last <= _LEFT * first:", "if last < 1e300:",
+           "an orbit is called stable though the disturbance grew", k.BATCH_CHECKS),
+    Mutant("batch-jump-not-proved", _LOOKS, "proved = n > 0 and change < state.change_before_extrapolation[member]", "proved = True",
+           "an extrapolation that led away is kept", k.BATCH_CHECKS),
+    Mutant("batch-shadow-not-pulled-back", _BATCH_RUN, "* (start / now)", "* 1.0",
+           "the exponent of batches is that of a distance long since large", k.LYAPUNOV),
+    Mutant("batch-growth-from-zero", _BATCH_RUN, "= log(now / start)", "= log(now)",
+           "growth in batches is counted from 1, not from the distance it began with", k.LYAPUNOV),
 )
 
 IN_ROWS = (
@@ -73,11 +73,11 @@ IN_ROWS = (
     Mutant("nan-hidden-in-vectors", _MATH, 'builder.select(builder.fcmp_ordered("<", args[0], zero), zero, args[0])',
            'builder.select(builder.fcmp_ordered(">", args[0], zero), args[0], zero)',
            "`if d > 0` in every lane: a NaN overlap is an open contact", k.VECTORS),
-    Mutant("nan-hidden-in-lanes", _MATH, 'builder.select(builder.fcmp_ordered("<", args[0], least), least, args[0])',
+    Mutant("nan-hidden-in-batches", _MATH, 'builder.select(builder.fcmp_ordered("<", args[0], least), least, args[0])',
            'builder.select(builder.fcmp_ordered(">", args[0], least), args[0], least)',
-           "a NaN overlap in lanes is an open contact", k.VECTORS),
+           "a NaN overlap in batches is an open contact", k.VECTORS),
     Mutant("nan-hidden-by-gate", _MATH, "return 0.0 if overlap <= 0.0 else value",
            "return value if overlap > 0.0 else 0.0", "a NaN overlap has no damping", k.VECTORS),
 )
 
-VECTORS = IN_LANES + IN_ROWS
+VECTORS = IN_BATCHES + IN_ROWS

@@ -7,6 +7,7 @@ import os
 import random
 import time
 
+from .soak import figures
 from .started import Started
 from .viewer import Viewer, query_of
 
@@ -39,6 +40,7 @@ async def run(server: Started, count: int, minutes: float, bomb: bool, same: boo
     answers, bombs = Answers(), [Viewer(server.address, BOMB) for _ in range(_BOMBS if bomb else 0)]
     for one in bombs:
         asyncio.get_running_loop().create_task(_insist(one))
+    memory = figures(server.number)[0] if server.process else float("nan")
     viewers = [Viewer(server.address) for _ in range(count)]
     began = time.perf_counter()
     await asyncio.gather(*(one.open() for one in viewers))
@@ -50,9 +52,11 @@ async def run(server: Started, count: int, minutes: float, bomb: bool, same: boo
     await asyncio.gather(*(_moves(one, end, random.Random(seed if same else f"{seed} {number}"), answers, same)
                            for number, one in enumerate(viewers)))
     used = (server.processor_time - used) / (60.0 * minutes) if server.process else float("nan")
+    after = figures(server.number)[0] if server.process else float("nan")
     print("viewers | bomb | p50 ms | p95 ms | answered | after a second | opening p50 s | slowest opening s | all open s "
-          "| processors used | load before")
-    print(f"{count} | {'yes' if bomb else 'no'} | {answers.row} | {all_open:.1f} | {used:.2f} | {load:.1f}", flush=True)
+          "| processors used | memory before MB | with all MB | load before")
+    print(f"{count} | {'yes' if bomb else 'no'} | {answers.row} | {all_open:.1f} | {used:.2f} | {memory:.0f} | {after:.0f} "
+          f"| {load:.1f}", flush=True)
     await asyncio.gather(*(one.leave() for one in [*viewers, *bombs]))
 
 

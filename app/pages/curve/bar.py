@@ -24,4 +24,4 @@ class CurveBar(Component):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "chapters": [],
-                                          "kinds": []}, **params)
+                                          "kinds": [], "driven": True}, **params)

@@ -111,6 +111,7 @@ class Curves:
         with self._lock:
             self._buffer = []
         self._asked = without_frequency(scene)
+        self._bar.update_state(driven=scene.is_driven)
         self._quiet.start(self._begin_when_compiled, scene)
 
     @staticmethod

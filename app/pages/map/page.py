@@ -35,7 +35,7 @@ from .view import cells_message, described, head_message
 COLUMNS, ROWS = 60, 40
 #: Random states from which attractors are looked for.
 _RANDOM_STATES = 64
-#: The same for a scene that cannot be computed in SIMD lanes.
+#: The same for a scene that cannot be computed in batches.
 _FEW_RANDOM_STATES = 12
 
 WORDS = StatusWords(kept="the cells computed so far", instead={"waiting": "waiting for the curve …"})

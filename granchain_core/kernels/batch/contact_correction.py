@@ -32,7 +32,7 @@ def momentum_error(r, power, half_power):
 
 @by_slot
 def displacement_error(law, r, half, speed, h):
-    """c v^p h^{p+1} B_p(r) in all lanes; `half` is [r − 1/2]_+. Absent: nothing."""
+    """c v^p h^{p+1} B_p(r) in all members; `half` is [r − 1/2]_+. Absent: nothing."""
     return None
 
 

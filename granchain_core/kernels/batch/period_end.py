@@ -28,7 +28,7 @@ from ..strobes.periodicity import (
 )
 
 #: Fewest strobes kept of each member.
-STROBES_PER_LANE = 432
+STROBES_KEPT = 432
 #: Strobes on which its regime is decided.
 SEEN = 4 * LONGEST_PERIOD + 1
 #: Fewest orbits still to run that justify an extrapolation.
@@ -58,44 +58,44 @@ PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
 
 
 @internal
-def keep_member_strobe(state, lane):
+def keep_member_strobe(state, member):
     """Append the state to the strobes, the oldest half of which goes if they are full; returns whether it is finite."""
     strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
-    if state.kept[lane] == strobes.shape[1]:
+    if state.kept[member] == strobes.shape[1]:
         half = strobes.shape[1] // 2
         for p in range(half):
-            copy(strobes[lane, half + p, 0], strobes[lane, p, 0])
-            copy(strobes[lane, half + p, 1], strobes[lane, p, 1])
-        state.kept[lane] = half
-    finite, place = True, state.kept[lane]
+            copy(strobes[member, half + p, 0], strobes[member, p, 0])
+            copy(strobes[member, half + p, 1], strobes[member, p, 1])
+        state.kept[member] = half
+    finite, place = True, state.kept[member]
     for i in range(m):
-        strobes[lane, place, 0, i], strobes[lane, place, 1, i] = y[i, lane], y[m + i, lane]
-        finite = finite and np.isfinite(y[i, lane]) and np.isfinite(y[m + i, lane])
-    state.kept[lane] += 1
+        strobes[member, place, 0, i], strobes[member, place, 1, i] = y[i, member], y[m + i, member]
+        finite = finite and np.isfinite(y[i, member]) and np.isfinite(y[m + i, member])
+    state.kept[member] += 1
     return finite
 
 
 @internal
-def place_member(state, lane, where):
-    """Put a lane into the state `where` (2, m); its record begins there."""
+def place_member(state, member, where):
+    """Put a member into the state `where` (2, m); its record begins there."""
     m = where.shape[1]
     for i in range(1, m - 1):
-        state.y[i, lane], state.y[m + i, lane] = where[0, i], where[1, i]
+        state.y[i, member], state.y[m + i, member] = where[0, i], where[1, i]
     for c in range(m - 1):
-        state.gaps[c, lane] = 0.0
+        state.gaps[c, member] = 0.0
     for row in range(4):
-        state.ends[row, lane] = 1.0  # counts as closed, so that no closing is recorded here
-    state.kept[lane] = 0
-    keep_member_strobe(state, lane)
+        state.ends[row, member] = 1.0  # counts as closed, so that no closing is recorded here
+    state.kept[member] = 0
+    keep_member_strobe(state, member)
 
 
 @internal
-def extrapolate_lane(state, lane, n, rate, change):
-    """Put a lane into the limit of its last strobes, n periods apart; returns whether that was within reach."""
-    kept = state.kept[lane]
+def extrapolate_member(state, member, n, rate, change):
+    """Put a member into the limit of its last strobes, n periods apart; returns whether that was within reach."""
+    kept = state.kept[member]
     if kept < ORBITS * n + 1 or not 0.0 < rate < 1.0:
         return False
-    limit, record = state.limit, state.strobes[lane, kept - 1 - ORBITS * n : kept]
+    limit, record = state.limit, state.strobes[member, kept - 1 - ORBITS * n : kept]
     reduced_rank(record[::n], state.basis, state.triangle, limit)
     largest_of(record, state.scale)
     reach = FARTHEST_EXTRAPOLATION * change / (1.0 - rate)
@@ -103,75 +103,75 @@ def extrapolate_lane(state, lane, n, rate, change):
         for i in range(limit.shape[1]):
             if not abs(limit[q, i] - record[ORBITS * n, q, i]) <= reach * state.scale[q]:
                 return False
-    place_member(state, lane, limit)
+    place_member(state, member, limit)
     return True
 
 
 @internal
-def check_coarse(state, lane):
-    """Whether a lane's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
-    kept, periods = state.kept[lane], state.periods[lane]
+def check_coarse(state, member):
+    """Whether a member's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
+    kept, periods = state.kept[member], state.periods[member]
     period, rate, distance, n, its_rate, change = find(
-        state.strobes[lane, max(0, kept - SEEN) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
-        state.slowest[lane], state.scale, state.change)
-    state.last_check[lane, 0], state.last_check[lane, 1], state.last_check[lane, 2] = period, rate, distance
-    if period > 0 and state.slowest[lane] > 0.0:
-        disturb(state, lane, period)
+        state.strobes[member, max(0, kept - SEEN) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
+        state.slowest[member], state.scale, state.change)
+    state.last_check[member, 0], state.last_check[member, 1], state.last_check[member, 2] = period, rate, distance
+    if period > 0 and state.slowest[member] > 0.0:
+        disturb(state, member, period)
         return False
     if period > 0:
         return True
-    if state.change_before_extrapolation[lane] > 0.0:
-        proved = n > 0 and change < state.change_before_extrapolation[lane]
-        state.change_before_extrapolation[lane] = 0.0
+    if state.change_before_extrapolation[member] > 0.0:
+        proved = n > 0 and change < state.change_before_extrapolation[member]
+        state.change_before_extrapolation[member] = 0.0
         if not proved:
-            place_member(state, lane, state.before[lane])
-            state.pause[lane] *= 2
-            state.extrapolate_from[lane] = periods + state.pause[lane]
+            place_member(state, member, state.before[member])
+            state.pause[member] *= 2
+            state.extrapolate_from[member] = periods + state.pause[member]
             return False
     left = change * its_rate / (1.0 - its_rate) if n > 0 else 0.0
-    if periods < state.extrapolate_from[lane] or left <= SETTLED_DISTANCE:
+    if periods < state.extrapolate_from[member] or left <= SETTLED_DISTANCE:
         return False
     if log(SETTLED_DISTANCE / left) > _TOO_LONG * log(its_rate):
         return False  # it settles sooner without extrapolation
-    copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
-    copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
-    if extrapolate_lane(state, lane, n, its_rate, change):
-        state.change_before_extrapolation[lane] = change
-        state.slowest[lane] = min(_SLOWEST, max(state.slowest[lane], its_rate ** (1.0 / n)))
-        state.earliest[lane] = periods + window_of(n) + n + 1
-        state.extrapolate_from[lane] = periods + ORBITS * n
+    copy(state.strobes[member, kept - 1, 0], state.before[member, 0])
+    copy(state.strobes[member, kept - 1, 1], state.before[member, 1])
+    if extrapolate_member(state, member, n, its_rate, change):
+        state.change_before_extrapolation[member] = change
+        state.slowest[member] = min(_SLOWEST, max(state.slowest[member], its_rate ** (1.0 / n)))
+        state.earliest[member] = periods + window_of(n) + n + 1
+        state.extrapolate_from[member] = periods + ORBITS * n
     else:
-        state.extrapolate_from[lane] = periods + max(_BETWEEN, kept // 4)
+        state.extrapolate_from[member] = periods + max(_BETWEEN, kept // 4)
     return False
 
 
 @inline_numba
-def disturb(state, lane, period):
-    """Disturb a lane that seems to be on an orbit, keeping the orbit's state and forces."""
-    kept, m = state.kept[lane], state.limit.shape[1]
+def disturb(state, member, period):
+    """Disturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
+    kept, m = state.kept[member], state.limit.shape[1]
     for q in range(2):
-        copy(state.strobes[lane, kept - 1, q], state.before[lane, q])
+        copy(state.strobes[member, kept - 1, q], state.before[member, q])
         for i in range(m):
-            state.limit[q, i] = state.before[lane, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
+            state.limit[q, i] = state.before[member, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
     for q in range(3):
-        state.fine_record[lane, FORCES + q] = largest_top(state, lane, period, q)
-    place_member(state, lane, state.limit)
-    state.testing[lane] = period
-    state.earliest[lane] = state.periods[lane] + _TEST_ORBITS * period
+        state.fine_record[member, FORCES + q] = largest_top(state, member, period, q)
+    place_member(state, member, state.limit)
+    state.testing[member] = period
+    state.earliest[member] = state.periods[member] + _TEST_ORBITS * period
 
 
 @inline_numba
-def decayed(state, lane):
-    """Whether the disturbance of a lane has decayed; the lane is then put back on its orbit, and the decay is kept."""
-    n, m = state.testing[lane], state.limit.shape[1]
-    state.testing[lane] = 0
-    largest_of(state.strobes[lane, : _TEST_ORBITS * n + 1], state.scale)  # other lanes have used it since
+def decayed(state, member):
+    """Whether a member's disturbance has decayed; it is then put back on its orbit, and the decay is kept."""
+    n, m = state.testing[member], state.limit.shape[1]
+    state.testing[member] = 0
+    largest_of(state.strobes[member, : _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
         there, whole = 0.0, 0.0
         for q in range(2):
             for i in range(m):
-                offset = (state.strobes[lane, k * n, q, i] - state.before[lane, q, i]) / state.scale[q]
+                offset = (state.strobes[member, k * n, q, i] - state.before[member, q, i]) / state.scale[q]
                 there, whole = max(there, abs(offset)), whole + offset**2
         quarter = 4 * k // (_TEST_ORBITS + 1)
         first = max(first, there) if quarter == 0 else first
@@ -179,81 +179,81 @@ def decayed(state, lane):
         late += whole if quarter == 3 else 0.0
         last = there
     if last <= _LEFT * first:
-        place_member(state, lane, state.before[lane])
+        place_member(state, member, state.before[member])
         rate = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
-        state.last_check[lane, 1] = max(state.last_check[lane, 1], min(rate, _NEARLY_ONE))
+        state.last_check[member, 1] = max(state.last_check[member, 1], min(rate, _NEARLY_ONE))
         return True
-    state.slowest[lane], state.change_before_extrapolation[lane] = 0.0, 0.0
-    state.last_check[lane, 0] = 0.0  # the orbit that was found is none for this lane
-    state.extrapolate_from[lane] = state.periods[lane] + _NO_MORE
+    state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
+    state.last_check[member, 0] = 0.0  # the orbit that was found is none for this member
+    state.extrapolate_from[member] = state.periods[member] + _NO_MORE
     return False
 
 
 @internal
-def largest_top(state, lane, n, q):
-    """The largest force of kind q in a lane's last n periods."""
+def largest_top(state, member, n, q):
+    """The largest force of kind q in a member's last n periods."""
     largest = 0.0
     for p in range(n):
-        largest = max(largest, state.maxima[lane, (state.periods[lane] - p) % STROBES_PER_LANE, q])
+        largest = max(largest, state.maxima[member, (state.periods[member] - p) % STROBES_KEPT, q])
     return largest
 
 
 @inline_numba
-def check_fine(state, lane):
+def check_fine(state, member):
     """Whether the coarse orbit's error has decayed in a fine member; if not, its transient is extrapolated.
 
     If changes are not smaller after an extrapolation, it is undone and the member continues without.
     """
-    fine, kept, seen = state.fine_record[lane], state.kept[lane], state.last_check[lane]
+    fine, kept, seen = state.fine_record[member], state.kept[member], state.last_check[member]
     n, rate = int(fine[PERIOD]), fine[RATE]
-    record = state.strobes[lane, kept - 1 - n : kept]
+    record = state.strobes[member, kept - 1 - n : kept]
     largest_of(record, state.scale)
     change = change_between(record, state.scale, n, 0)
     seen[0], seen[1], seen[2] = n, rate, change * rate / (1.0 - rate)
-    proved = change < state.change_before_extrapolation[lane] or state.change_before_extrapolation[lane] == 0.0
-    state.change_before_extrapolation[lane] = 0.0
+    proved = change < state.change_before_extrapolation[member] or state.change_before_extrapolation[member] == 0.0
+    state.change_before_extrapolation[member] = 0.0
     if not proved:
-        place_member(state, lane, state.before[lane])
-        state.earliest[lane], fine[ROUNDS] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND]), _MOST_ROUNDS
+        place_member(state, member, state.before[member])
+        state.earliest[member], fine[ROUNDS] = state.periods[member] + n * int(fine[ORBITS_A_ROUND]), _MOST_ROUNDS
         return False
     moved = 0.0
     for q in range(1, 3):
-        largest = largest_top(state, lane, n, q)
+        largest = largest_top(state, member, n, q)
         moved = max(moved, abs(largest - fine[FORCES + q]) / largest if largest > 0.0 else 0.0)
     if seen[2] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved) or fine[ROUNDS] >= _MOST_ROUNDS:
         return True
     fine[ROUNDS] += 1.0
-    copy(state.strobes[lane, kept - 1, 0], state.before[lane, 0])
-    copy(state.strobes[lane, kept - 1, 1], state.before[lane, 1])
-    if extrapolate_lane(state, lane, n, rate, change):
-        state.change_before_extrapolation[lane] = change
-    state.earliest[lane] = state.periods[lane] + n * int(fine[ORBITS_A_ROUND])
+    copy(state.strobes[member, kept - 1, 0], state.before[member, 0])
+    copy(state.strobes[member, kept - 1, 1], state.before[member, 1])
+    if extrapolate_member(state, member, n, rate, change):
+        state.change_before_extrapolation[member] = change
+    state.earliest[member] = state.periods[member] + n * int(fine[ORBITS_A_ROUND])
     return False
 
 
 @internal
-def end_period(state, lane):
+def end_period(state, member):
     """Keep a member's strobe and largest forces, restart its phase exactly; returns whether it is due for a check."""
-    state.periods[lane] += 1
-    periods = state.periods[lane]
-    finite = keep_member_strobe(state, lane)
-    maxima = state.maxima[lane, periods % STROBES_PER_LANE]
+    state.periods[member] += 1
+    periods = state.periods[member]
+    finite = keep_member_strobe(state, member)
+    maxima = state.maxima[member, periods % STROBES_KEPT]
     for q in range(3):
-        maxima[q] = state.peaks[ROWS * q, lane]
-        state.peaks[ROWS * q, lane] = 0.0
+        maxima[q] = state.peaks[ROWS * q, member]
+        state.peaks[ROWS * q, member] = 0.0
     for q in range(2):
-        maxima[3 + q] = state.peaks[MEMORY + q, lane]
+        maxima[3 + q] = state.peaks[MEMORY + q, member]
         maxima[q] = max(maxima[q], maxima[3 + q])
-        state.peaks[MEMORY + q, lane] = 0.0
-    state.phase[0, lane], state.phase[1, lane] = 0.0, 1.0
-    state.left[lane] = state.steps[lane]
+        state.peaks[MEMORY + q, member] = 0.0
+    state.phase[0, member], state.phase[1, member] = 0.0, 1.0
+    state.left[member] = state.steps[member]
     if not finite:
         return True
-    if periods >= state.earliest[lane]:
-        state.earliest[lane] = periods + max(3, state.kept[lane] // 6)
-        if state.testing[lane] > 0:
-            if decayed(state, lane):
+    if periods >= state.earliest[member]:
+        state.earliest[member] = periods + max(3, state.kept[member] // 6)
+        if state.testing[member] > 0:
+            if decayed(state, member):
                 return True
-        elif check_fine(state, lane) if state.fine_record[lane, PERIOD] > 0.0 else check_coarse(state, lane):
+        elif check_fine(state, member) if state.fine_record[member, PERIOD] > 0.0 else check_coarse(state, member):
             return True
-    return periods >= state.return_at[lane] and state.testing[lane] == 0
+    return periods >= state.return_at[member] and state.testing[member] == 0

@@ -2,7 +2,7 @@
 
 All members share the effects and N; every value may differ, the step and the number of steps in a period too. Each
 member is checked at the end of its own periods. One that may have settled, or that is due for a check,
-ends the kernel, so that its lane can be filled with the next scene.
+ends the kernel, so that the next scene can take its place.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..effects.dissipation import batch_values
-from ..effects.foundation import lane_foundation
+from ..effects.foundation import batch_foundation
 from ..effects.preload import batch_overlap
 from ..jit import inline_numba, kernel
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import load_batch, store
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
-from ..width import BATCH_LANES
+from ..width import BATCH_SIZE
 from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_batch_ends
@@ -28,8 +28,8 @@ from .step import Values, batch_step, watch_batch_ends
 NOT_IN_USE = -1
 
 
-class Lanes(NamedTuple):
-    """Values of the lanes' scenes: the wall's stiffness, slots with (1, L) or (rows, L) arrays or None, step data.
+class Members(NamedTuple):
+    """Values of the members' scenes: the wall's stiffness, slots with (1, L) or (rows, L) arrays or None, step data.
 
     `turn` is cos and sin of half a step's phase, `beta` the scaled drive rate, `h` the step.
     """
@@ -101,14 +101,14 @@ class BatchState(NamedTuple):
 
 
 @kernel
-def batch_steps(lanes, state, count):
-    """Take `count` steps in all lanes."""
+def batch_steps(members, state, count):
+    """Take `count` steps in all members."""
     y, before = state.y, flush_subnormals()
     last = y.shape[0] // 2 - 2
-    values = Values(load_batch(lanes.wall, 0), batch_values(lanes.dissipation), lane_foundation(lanes.foundation),
-                    lanes.preload, lanes.unequal, last)
-    h, beta = load_batch(lanes.h, 0), load_batch(lanes.beta, 0)
-    c, s = load_batch(lanes.turn, 0), load_batch(lanes.turn, 1)
+    values = Values(load_batch(members.wall, 0), batch_values(members.dissipation),
+                    batch_foundation(members.foundation), members.preload, members.unequal, last)
+    h, beta = load_batch(members.h, 0), load_batch(members.beta, 0)
+    c, s = load_batch(members.turn, 0), load_batch(members.turn, 1)
     sine, cosine = load_batch(state.phase, 0), load_batch(state.phase, 1)
     for _ in range(count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
@@ -125,40 +125,40 @@ def batch_steps(lanes, state, count):
 
 
 @kernel
-def run_batch(lanes, state, stop):
-    """Run until a lane is due for a check; returns (status, lane). Of several, each is returned before any goes on."""
+def run_batch(members, state, stop):
+    """Run until a member is due for a check; returns (status, member). Of several, each comes before any goes on."""
     while True:
-        for lane in range(BATCH_LANES):
-            if state.due[lane] != 0:
-                state.due[lane] = 0
-                return (DONE if np.isfinite(state.y[1, lane]) else NOT_FINITE), lane
+        for member in range(BATCH_SIZE):
+            if state.due[member] != 0:
+                state.due[member] = 0
+                return (DONE if np.isfinite(state.y[1, member]) else NOT_FINITE), member
         if stop[0] != 0:
             return CANCELLED, -1
         count = STEPS_BETWEEN_STOP_CHECKS
-        for lane in range(BATCH_LANES):
-            count = min(count, state.left[lane])
-        batch_steps(lanes, state, count)
-        for lane in range(BATCH_LANES):
-            state.left[lane] -= count
-            if state.left[lane] == 0 and end_period(state, lane):
-                state.due[lane] = 1
+        for member in range(BATCH_SIZE):
+            count = min(count, state.left[member])
+        batch_steps(members, state, count)
+        for member in range(BATCH_SIZE):
+            state.left[member] -= count
+            if state.left[member] == 0 and end_period(state, member):
+                state.due[member] = 1
 
 
 @inline_numba
-def renormalise(state, m, start, growth, lane):
-    """Record how much a pair of lanes has parted in a period, and reset the second to the distance `start`."""
+def renormalise(state, m, start, growth, member):
+    """Record how much a pair of members has parted in a period, and reset the second to the distance `start`."""
     y, total = state.y, 0.0
     for i in range(2 * m):
-        total += (y[i, lane + 1] - y[i, lane]) ** 2
+        total += (y[i, member + 1] - y[i, member]) ** 2
     now = max(sqrt(total), 1e-300)
-    growth[lane // 2, state.periods[lane] - 1] = log(now / start)
+    growth[member // 2, state.periods[member] - 1] = log(now / start)
     for i in range(2 * m):
-        y[i, lane + 1] = y[i, lane] + (y[i, lane + 1] - y[i, lane]) * (start / now)
+        y[i, member + 1] = y[i, member] + (y[i, member + 1] - y[i, member]) * (start / now)
 
 
 @kernel
-def run_pairs(lanes, state, start, growth, stop):
-    """Run lanes in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
+def run_pairs(members, state, start, growth, stop):
+    """Run members in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
 
     growth (pairs, P) holds the logarithm of each period's growth, NaN for a pair that did not stay finite; only pairs
     whose `return_at` is P count, the others are not in use.
@@ -166,23 +166,23 @@ def run_pairs(lanes, state, start, growth, stop):
     m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
     while busy:
         count = STEPS_BETWEEN_STOP_CHECKS
-        for lane in range(BATCH_LANES):
-            count = min(count, state.left[lane])
-        batch_steps(lanes, state, count)
+        for member in range(BATCH_SIZE):
+            count = min(count, state.left[member])
+        batch_steps(members, state, count)
         busy = False
-        for lane in range(0, BATCH_LANES, 2):
-            counted = state.periods[lane] < periods and state.return_at[lane] == periods
-            for one in range(lane, lane + 2):
+        for member in range(0, BATCH_SIZE, 2):
+            counted = state.periods[member] < periods and state.return_at[member] == periods
+            for one in range(member, member + 2):
                 state.left[one] -= count
                 if state.left[one] == 0:
                     end_period(state, one)
-            if counted and state.left[lane] == state.steps[lane]:
-                if np.isfinite(state.y[1, lane]) and np.isfinite(state.y[1, lane + 1]):
-                    renormalise(state, m, start, growth, lane)
+            if counted and state.left[member] == state.steps[member]:
+                if np.isfinite(state.y[1, member]) and np.isfinite(state.y[1, member + 1]):
+                    renormalise(state, m, start, growth, member)
                 else:
-                    growth[lane // 2] = np.nan
-                    state.return_at[lane], counted = NOT_IN_USE, False
-            busy = busy or (counted and state.periods[lane] < periods)
+                    growth[member // 2] = np.nan
+                    state.return_at[member], counted = NOT_IN_USE, False
+            busy = busy or (counted and state.periods[member] < periods)
         if stop[0] != 0:
             return CANCELLED
     return DONE

@@ -8,7 +8,7 @@ from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, s
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..forces.crossings import Approach, brief_touch, closing_rate
-from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_lanes
+from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_batch
 from ..jit import by_slot, inline_llvm
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
 from ..simd.vector import blank, load_batch, positive_mask, store
@@ -16,7 +16,7 @@ from .unequal import over_mass, times_stiffness
 
 
 class Values(NamedTuple):
-    """Values of the lanes' scenes, in registers where it is one number a scene."""
+    """Values of the members' scenes, in registers where it is one number a scene."""
 
     wall: Any
     law: Any
@@ -27,7 +27,7 @@ class Values(NamedTuple):
 
 
 class Bead(NamedTuple):
-    """One bead of one Runge–Kutta stage in all lanes: state, elastic force and shape of the contact on its left."""
+    """One bead of one Runge–Kutta stage in all members: state, elastic force and shape of the contact on its left."""
 
     u: Any
     w: Any
@@ -73,7 +73,7 @@ def bead_slope(values, root_of, bead, i, right, right_w):
 
 @by_slot
 def batch_velocity(law, unequal, i, w, difference):
-    """v = w + (G_{i-1} − G_i)/m of bead i in all lanes, from the difference of shapes."""
+    """v = w + (G_{i-1} − G_i)/m of bead i in all members, from the difference of shapes."""
     return w
 
 
@@ -148,11 +148,11 @@ def batch_step(values, y, h, u0, middle, end):
 
 @inline_llvm
 def watch_batch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
-    """Follow input force, output force and its elastic part in all lanes, where a step began."""
+    """Follow input force, output force and its elastic part in all members, where a step began."""
     first, last = Approach(gap_first, v0 - ends.v_first), Approach(gap_last, ends.v_last)
-    watch_lanes(peaks, INPUT, ends.pushed + dashpot_force(values.law, first.gap, first.rate))
-    watch_lanes(peaks, OUTPUT, ends.passed + dashpot_force(values.law, last.gap, last.rate))
-    watch_lanes(peaks, OUTPUT_ELASTIC, ends.passed)
+    watch_batch(peaks, INPUT, ends.pushed + dashpot_force(values.law, first.gap, first.rate))
+    watch_batch(peaks, OUTPUT, ends.passed + dashpot_force(values.law, last.gap, last.rate))
+    watch_batch(peaks, OUTPUT_ELASTIC, ends.passed)
     watch_jumps(values.law, values, h, first, last, before, peaks)
 
 

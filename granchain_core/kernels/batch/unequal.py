@@ -1,8 +1,8 @@
 """Beads or contacts that differ from the first bead: dimers, impurities, soft beads.
 
 Equation   m_i and K_c in units of the first bead's
-Values     inverse_mass (N+2, L) and stiffness (N+1, L) in all L lanes
-Absent     all beads are alike: the wall's stiffness is the only factor in lanes
+Values     inverse_mass (N+2, L) and stiffness (N+1, L) for all L members
+Absent     all beads are alike: the wall's stiffness is the only factor in a batch
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ Values     coefficient: λ in scaled units, at an overlap of one length unit whe
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
 Terms      damping, dashpot_force, damping_slope, primitive, shape = G/λ, velocity and its inverse shifted (absent:
            v = w); keep_primitive, put_primitive and put_prescribed_primitive write into the array of G, batch_values
-           reads the lanes of a batch
+           reads the values of a batch
 """
 
 from __future__ import annotations
@@ -228,11 +228,11 @@ def _(law, inverse_mass, v, G, i):
 
 @by_slot
 def batch_values(law):
-    """The law with the values of all lanes, read from its (1, lanes) arrays."""
+    """The law with the values of all members of a batch, read from its (1, L) arrays."""
     return None
 
 
-def _read_by_lane(slot):
+def _read_for_batch(slot):
     """Code of `batch_values` for a law: a compiled function can only make slots of a class named in its source."""
 
     @batch_values.of(slot)
@@ -241,4 +241,4 @@ def _read_by_lane(slot):
 
 
 for _law in LAWS:
-    _read_by_lane(_law)
+    _read_for_batch(_law)

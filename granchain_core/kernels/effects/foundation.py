@@ -43,12 +43,12 @@ def _(foundation, u):
 
 
 @by_slot
-def lane_foundation(foundation):
-    """The foundation with the stiffness of all lanes, read from its (1, lanes) array."""
+def batch_foundation(foundation):
+    """The foundation with the stiffness of all members of a batch, read from its (1, L) array."""
     return None
 
 
-@lane_foundation.of(Foundation)
+@batch_foundation.of(Foundation)
 def _(foundation):
     return Foundation(load_batch(foundation.stiffness, 0))
 

@@ -34,7 +34,7 @@ def _(preload, y, c):
 
 @by_slot
 def batch_overlap(preload, left, right, c):
-    """δ_c in all lanes from the displacements on its two sides."""
+    """δ_c in all members of a batch from the displacements on its two sides."""
     return left - right
 
 

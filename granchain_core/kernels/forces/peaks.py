@@ -64,8 +64,8 @@ def next_period(peaks):
 
 
 @inline_llvm
-def watch_lanes(peaks, row, value):
-    """Follow one force in all lanes; its memory starts at row `row` of a (rows, lanes) array."""
+def watch_batch(peaks, row, value):
+    """Follow one force in all members; its memory starts at row `row` of a (rows, members) array."""
     d, c = load_batch(peaks, row + 1), load_batch(peaks, row + 2)
     b, a = load_batch(peaks, row + 3), load_batch(peaks, row + 4)
     largest = larger(load_batch(peaks, row), value)

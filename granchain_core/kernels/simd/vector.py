@@ -22,7 +22,7 @@ from numba.extending import (
 )
 
 from ..jit import FAST_MATH
-from ..width import BATCH_LANES
+from ..width import BATCH_SIZE
 
 #: Numbers in a vector along a chain or of tangents.
 LANES = 8
@@ -124,7 +124,7 @@ def loader(lanes):
 
 load, load16, load32 = (loader(lanes) for lanes in (LANES, 16, 32))
 #: Reads one row of the arrays of a batch.
-load_batch = loader(BATCH_LANES)
+load_batch = loader(BATCH_SIZE)
 
 
 @intrinsic

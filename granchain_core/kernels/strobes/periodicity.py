@@ -181,3 +181,20 @@ def record_changes(strobes, n, scale, out):
     """The last out.size changes over n periods of a record, oldest first."""
     largest_of(strobes, scale)
     changes_before(strobes, scale, n, strobes.shape[0] - 1, out)
+
+
+@kernel
+def window_changes(strobes, window, scale, out):
+    """Largest changes of a record over 1, 2, … periods in the last windows of `window` states, into `out` (periods, W).
+
+    The oldest window comes first. `scale` (2,) is a workspace.
+    """
+    largest_of(strobes, scale)
+    last, windows = strobes.shape[0] - 1, out.shape[1]
+    for n in range(1, out.shape[0] + 1):
+        for k in range(windows):
+            now, largest = last - (windows - k) * window, 0.0
+            for _ in range(window):
+                now += 1
+                largest = max(largest, change_between(strobes, scale, now, now - n))
+            out[n - 1, k] = largest

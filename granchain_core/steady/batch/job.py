@@ -67,13 +67,13 @@ class Job:
         """Whether the budget of steps allows another measurement."""
         return self.run + EXAMINED_AFTER < self.affordable_periods
 
-    def fine_result(self, block: Batch, lane: int) -> SteadyState:
+    def fine_result(self, batch: Batch, member: int) -> SteadyState:
         """The result of the finer run. Raises `Cancelled`."""
         assert self.coarse is not None
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
-        y, distance = block.state.y[:, lane], float(block.state.last_check[lane, 2])
-        maxima, jumps = block.maxima(lane, regime.period), block.jumps(lane, regime.period)
+        y, distance = batch.state.y[:, member], float(batch.state.last_check[member, 2])
+        maxima, jumps = batch.maxima(member, regime.period), batch.jumps(member, regime.period)
         farther = max(distance, regime.distance)
         left = force_distances(farther, self.lowered, maxima, y)
         # each of the two runs has come to its own orbit: the change is the difference of these orbits
@@ -81,7 +81,7 @@ class Job:
                                     least=typical_error(live(FINER)) / (1.0 - regime.contraction))
         at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
         if at_jump.any():
-            located, apart = self._located_maxima(y, regime, farther, block.stop)
+            located, apart = self._located_maxima(y, regime, farther, batch.stop)
             maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, apart, errors)
         maxima = maxima * self.lowered.scales.force
         return SteadyState(self.scene, maxima, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
@@ -91,8 +91,8 @@ class Job:
                       stop: Stop) -> tuple[np.ndarray, np.ndarray]:
         """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
-        Lanes step across events, so the jumps they see have an error of the order of the step. A second orbit with
-        half the step shows how much the forces still change on the way from the lanes' orbit to this method's, and how
+        A batch steps across events, so the jumps it sees have an error of the order of the step. A second orbit with
+        half the step shows how much the forces still change on the way from the batch's orbit to this method's, and how
         much they depend on the step at a jump, where the order is uneven.
         """
         assert regime.period is not None
@@ -104,60 +104,61 @@ class Job:
         return finer.largest_forces(regime.period), errors_between(finer, first, regime.contraction, distance)
 
 
-def draft_result(job: Job, block: Batch, lane: int) -> SteadyState:
+def draft_result(job: Job, batch: Batch, member: int) -> SteadyState:
     """The result of the coarse run alone."""
-    run = int(block.state.periods[lane])
-    period = block.state.last_check[lane, 0]
+    run = int(batch.state.periods[member])
+    period = batch.state.last_check[member, 0]
     if period <= 0:
-        return unsettled(job, block, lane, run)
-    regime = _periodic(block, lane, run)
-    maxima = block.settled_maxima(lane, int(period)) * job.lowered.scales.force
-    return SteadyState(job.scene, maxima, regime, None, job.lowered.unscaled(block.state.y[:, lane]), number=job.number)
+        return unsettled(job, batch, member, run)
+    regime = _periodic(batch, member, run)
+    maxima = batch.settled_maxima(member, int(period)) * job.lowered.scales.force
+    state = job.lowered.unscaled(batch.state.y[:, member])
+    return SteadyState(job.scene, maxima, regime, None, state, number=job.number)
 
 
-def outcome_of_coarse_run(job: Job, block: Batch, lane: int) -> SteadyState | Job | None:
-    """The job for the finer run or for the Lyapunov exponent, the end of its budget, or None where the lane goes on."""
-    here = int(block.state.periods[lane])
+def outcome_of_coarse_run(job: Job, batch: Batch, member: int) -> SteadyState | Job | None:
+    """The job for the finer run or the Lyapunov exponent, the end of its budget, or None where the member goes on."""
+    here = int(batch.state.periods[member])
     run = job.run + here
-    period = block.state.last_check[lane, 0]
+    period = batch.state.last_check[member, 0]
     if period > 0:
-        regime = _periodic(block, lane, run)
-        settled = (regime, block.settled_maxima(lane, int(period)))
-        return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, settled, number=job.number)
+        regime = _periodic(batch, member, run)
+        settled = (regime, batch.settled_maxima(member, int(period)))
+        return Job(job.scene, job.lowered, batch.state.y[:, member].copy(), run, settled, number=job.number)
     if run >= job.affordable_periods:
-        return unsettled(job, block, lane, run)
-    record = block.strobes(lane)
+        return unsettled(job, batch, member, run)
+    record = batch.strobes(member)
     if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not shrinking(record)):
-        return _in_doubt(job, block, lane, run, record.copy())
-    block.state.return_at[lane] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
+        return _in_doubt(job, batch, member, run, record.copy())
+    batch.state.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)
     return None
 
 
-def _periodic(block: Batch, lane: int, run: int) -> Regime:
-    """The periodic regime of a coarse lane; `followed` where extrapolations led to it."""
-    period, rate, distance = block.state.last_check[lane]
+def _periodic(batch: Batch, member: int, run: int) -> Regime:
+    """The periodic regime of a coarse member; `followed` where extrapolations led to it."""
+    period, rate, distance = batch.state.last_check[member]
     return Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run,
-                  followed=bool(block.state.slowest[lane] > 0.0))
+                  followed=bool(batch.state.slowest[member] > 0.0))
 
 
-def _in_doubt(job: Job, block: Batch, lane: int, run: int, record: np.ndarray) -> Job:
+def _in_doubt(job: Job, batch: Batch, member: int, run: int, record: np.ndarray) -> Job:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
-    maxima = block.maxima(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
-    return Job(job.scene, job.lowered, block.state.y[:, lane].copy(), run, in_doubt=True, record=record, maxima=maxima,
-               number=job.number)
+    maxima = batch.maxima(member, _IRREGULAR_PERIODS) * job.lowered.scales.force
+    y = batch.state.y[:, member].copy()
+    return Job(job.scene, job.lowered, y, run, in_doubt=True, record=record, maxima=maxima, number=job.number)
 
 
-def unsettled(job: Job, block: Batch, lane: int, run: int) -> SteadyState:
-    """The result of a lane whose budget of steps is spent."""
-    maxima = block.maxima(lane, _IRREGULAR_PERIODS) * job.lowered.scales.force
-    state = job.lowered.unscaled(block.state.y[:, lane])
+def unsettled(job: Job, batch: Batch, member: int, run: int) -> SteadyState:
+    """The result of a member whose budget of steps is spent."""
+    maxima = batch.maxima(member, _IRREGULAR_PERIODS) * job.lowered.scales.force
+    state = job.lowered.unscaled(batch.state.y[:, member])
     return SteadyState(job.scene, maxima, Regime.unsettled(run), None, state,
                       number=job.number)
 
 
 def failed(job: Job) -> SteadyState:
-    """A lane whose numbers stopped being finite."""
+    """A member whose numbers stopped being finite."""
     sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping or ask for higher accuracy."
     return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(0), None, rest(job.scene), sentence,
                        "not-finite", job.number)

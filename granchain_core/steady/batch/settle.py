@@ -1,12 +1,12 @@
 """Many steady states in batches: settle with coarse steps, then with fine ones; the difference is the error.
 
-Every scene starts in a lane with coarse steps. Once its regime is decided, the next scene takes its lane.
+Every scene becomes a member of a batch, with coarse steps. Once its regime is decided, the next takes its place.
 
 Coarse run: `check_coarse` (kernels/batch/period_end.py) bounds the distance to the orbit; an orbit that was reached by
 extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run, a third of the step:
 `check_fine`, until that bound is small or six extrapolations are spent; what is left goes into the stated error, with
 the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, twice, as many at a
-time as there are pairs of lanes. What is still undecided is marked `doubtful` and settled alone (settling/alone.py).
+time as there are pairs of members. What is still undecided is marked `doubtful` and settled alone (settling/alone.py).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...integrate.batch import NEVER, Batch
-from ...kernels.width import BATCH_LANES
+from ...kernels.width import BATCH_SIZE
 from ...lower import lower
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
@@ -37,14 +37,14 @@ _SLOW = 0.998
 #: Largest |μ|, by one-sided differences, that settles it.
 _SURE = 0.995
 #: Scenes whose exponents are found at once.
-_PAIRS = BATCH_LANES // 2
+_PAIRS = BATCH_SIZE // 2
 
 
-class _Lanes:
-    """A block of lanes with the jobs in them, those waiting for a lane and those whose regime is in doubt."""
+class _JobsInBatch:
+    """A batch with the jobs of its members, those waiting for a place and those whose regime is in doubt."""
 
     def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
-        self.block = Batch(first.scene, stop)
+        self.batch = Batch(first.scene, stop)
         self.draft = draft
         self.stop = stop
         self.waiting = [_new_job(first)]
@@ -53,53 +53,53 @@ class _Lanes:
         self.doubtful: list[Job] = []
 
     def fill(self) -> None:
-        """Put jobs into all free lanes."""
-        for lane in range(BATCH_LANES):
-            if lane not in self.jobs:
+        """Put jobs into all free places."""
+        for member in range(BATCH_SIZE):
+            if member not in self.jobs:
                 job = self.waiting.pop() if self.waiting else _job_or_none(self.starts)
                 if job is not None:
-                    self.jobs[lane] = job
-                    self._start(lane, job)
+                    self.jobs[member] = job
+                    self._start(member, job)
 
-    def _start(self, lane: int, job: Job) -> None:
+    def _start(self, member: int, job: Job) -> None:
         """The coarse run is checked once it may have settled, the finer one once the difference has decayed."""
         if job.coarse is None:
             look = min(_DRAFT if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
-            self.block.put(lane, job.lowered, job.y, 1, look)
+            self.batch.put(member, job.lowered, job.y, 1, look)
             return
         regime, maxima = job.coarse
         assert regime.period is not None
         rate = max(1e-3, regime.contraction)
-        self.block.put_fine(lane, job.lowered, job.y, FINER, regime.period, rate, maxima)
+        self.batch.put_fine(member, job.lowered, job.y, FINER, regime.period, rate, maxima)
 
     def step(self) -> SteadyState | None:
-        """Run until a lane is due for a check, and check it."""
-        lane, finite = self.block.run()
-        job = self.jobs[lane]
+        """Run until a member is due for a check, and check it."""
+        member, finite = self.batch.run()
+        job = self.jobs[member]
         if not finite:
-            self._free(lane)
+            self._free(member)
             return failed(job)
         if self.draft:
-            result = draft_result(job, self.block, lane)
-            self._free(lane)
+            result = draft_result(job, self.batch, member)
+            self._free(member)
             return result
         coarse = job.coarse is None
-        outcome = outcome_of_coarse_run(job, self.block, lane) if coarse else job.fine_result(self.block, lane)
+        outcome = outcome_of_coarse_run(job, self.batch, member) if coarse else job.fine_result(self.batch, member)
         if outcome is None:
             return None
-        self._free(lane)
+        self._free(member)
         if isinstance(outcome, SteadyState):
             return confirmed(outcome, self.stop)
         (self.doubtful if outcome.in_doubt else self.waiting).append(outcome)
         return None
 
-    def _free(self, lane: int) -> None:
-        """Leave a lane at rest, without checks, until it is filled again."""
-        job = self.jobs.pop(lane)
-        self.block.put(lane, job.lowered, np.zeros_like(job.y), 1, NEVER, NEVER)
+    def _free(self, member: int) -> None:
+        """Leave a place at rest, without checks, until it is filled again."""
+        job = self.jobs.pop(member)
+        self.batch.put(member, job.lowered, np.zeros_like(job.y), 1, NEVER, NEVER)
 
     def undecided(self) -> list[Job]:
-        """Doubtful jobs of similar steps a period, one for each pair of lanes; fewer only if nothing else is to do."""
+        """Doubtful jobs of similar steps a period, one for a pair of members; fewer only if nothing else is to do."""
         jobs = sorted(self.doubtful, key=_steps)
         for i in range(len(jobs) - _PAIRS + 1):
             if _steps(jobs[i + _PAIRS - 1]) <= MOST_APART * _steps(jobs[i]):
@@ -144,7 +144,7 @@ def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> I
 def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
     """Steady states that starts of one structure and one N lead to, in the order in which they are decided.
 
-    To the last bit, results do not depend on which starts share the lanes. A draft ends with the coarse run
+    To the last bit, results do not depend on which starts share a batch. A draft ends with the coarse run
     and after few periods: without errors, and motions that are not periodic by then are called unsettled. Raises
     `Cancelled`.
     """
@@ -152,16 +152,16 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
     if first is None:
         return
     refuse_undriven(first.scene)
-    lanes = _Lanes(first, starts, stop, draft)
+    jobs = _JobsInBatch(first, starts, stop, draft)
     while True:
-        lanes.fill()
-        undecided = lanes.undecided()
+        jobs.fill()
+        undecided = jobs.undecided()
         if undecided:
-            yield from lanes.decide(undecided)
-        elif not lanes.jobs:
+            yield from jobs.decide(undecided)
+        elif not jobs.jobs:
             return
         else:
-            result = lanes.step()
+            result = jobs.step()
             if result is not None:
                 yield result
 

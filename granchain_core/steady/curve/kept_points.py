@@ -14,7 +14,7 @@ from ...kept import Kept, digest_of
 from ...result import ForceErrors
 from ...scene import Amplitude, Scene
 from ..regime import Regime
-from .resonance_curve import CurvePoint
+from .curve import CurvePoint
 
 _NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_input_force")
 

@@ -10,7 +10,7 @@ import pytest
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.kernels.width import BATCH_LANES
+from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.lower import lower
 from granchain_core.state import rest
 from granchain_core.stop import Stop
@@ -31,29 +31,29 @@ def scenes_of(case: str):
     return [scene("sec2").evolve(f=f, **CHAINS[case]) for f in FREQUENCIES]
 
 
-def put(block: Batch, lane: int, one, refine: float) -> None:
+def put(batch: Batch, member: int, one, refine: float) -> None:
     """Start a scene from rest; it is looked at after its periods."""
     lowered = lower(one)
-    block.put(lane, lowered, lowered.scaled(rest(one)), refine, return_at=PERIODS, earliest=NEVER)
+    batch.put(member, lowered, lowered.scaled(rest(one)), refine, return_at=PERIODS, earliest=NEVER)
 
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
     """Displacements at the strobes (8, PERIODS + 1, N) and largest forces of all periods (8, 3), batch after batch."""
-    parts = [run_batch(scenes[i : i + BATCH_LANES], refine) for i in range(0, len(scenes), BATCH_LANES)]
+    parts = [run_batch(scenes[i : i + BATCH_SIZE], refine) for i in range(0, len(scenes), BATCH_SIZE)]
     return np.concatenate([strobes for strobes, _ in parts]), np.concatenate([maxima for _, maxima in parts])
 
 
 def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
-    """The same of no more scenes than there are lanes."""
-    block = Batch(scenes[0], Stop())
-    for lane, one in enumerate(scenes):
-        put(block, lane, one, refine)
+    """The same of no more scenes than a batch has members."""
+    batch = Batch(scenes[0], Stop())
+    for member, one in enumerate(scenes):
+        put(batch, member, one, refine)
     strobes, maxima = {}, {}
     while len(strobes) < len(scenes):
-        lane, finite = block.run()
+        member, finite = batch.run()
         assert finite
-        strobes[lane], maxima[lane] = block.strobes(lane)[: PERIODS + 1, 0].copy(), block.maxima(lane, PERIODS)
-        block.state.return_at[lane] = NEVER
+        strobes[member], maxima[member] = batch.strobes(member)[: PERIODS + 1, 0].copy(), batch.maxima(member, PERIODS)
+        batch.state.return_at[member] = NEVER
     return np.array([strobes[i] for i in range(len(scenes))]), np.array([maxima[i] for i in range(len(scenes))])
 
 
@@ -69,17 +69,17 @@ def true(case: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 @functools.cache
 def errors(case: str) -> np.ndarray:
-    """(refinements, 8): largest displacement error of each lane over its largest displacement."""
+    """(refinements, 8): largest displacement error of each member over its largest displacement."""
     exact = true(case)[0]
     largest = np.abs(exact).max(axis=(1, 2))
     return np.array([np.abs(run_all(scenes_of(case), r)[0] - exact).max(axis=(1, 2)) / largest for r in REFINED])
 
 
 @pytest.mark.parametrize("case", CHAINS)
-def test_lanes_converge_with_order_three_over_a_decade_of_steps(case):
+def test_batches_converge_with_order_three_over_a_decade_of_steps(case):
     """The kink of opening and closing contacts is corrected to order 3; where no contact opens RK4 keeps its 4.
 
-    Fit through the geometric mean of the eight lanes. The kink's next term falls with the power 5/2 for one contact and
+    Fit through the geometric mean of the eight members. The kink's next term falls with the power 5/2 for one contact and
     is seen with the smallest steps: within 0.3 of 3 from below. Where contacts seldom change the 4 is still seen.
     """
     order = -np.polyfit(np.log(REFINED), np.log(errors(case)).mean(axis=1), 1)[0]
@@ -91,7 +91,7 @@ def test_lanes_converge_with_order_three_over_a_decade_of_steps(case):
 
 
 @pytest.mark.parametrize("case", CHAINS)
-def test_lanes_are_as_near_as_a_curve_needs(case):
+def test_batches_are_as_near_as_a_curve_needs(case):
     """1e-4 at the live step (one free bead, which the driver hits at any phase, amplifies that tenfold) and, by
     order 3, a thousand times nearer at a twelfth of it."""
     found = errors(case).max(axis=1)
@@ -100,7 +100,7 @@ def test_lanes_are_as_near_as_a_curve_needs(case):
 
 
 @pytest.mark.parametrize("case", CHAINS)
-def test_lanes_follow_the_largest_forces(case):
+def test_batches_follow_the_largest_forces(case):
     """Forces are seen where a step begins, so a period's last instant is the next one's first: where the run ends with
     a large force it is not seen yet, elsewhere nothing is lost.
 
@@ -115,16 +115,16 @@ def test_lanes_follow_the_largest_forces(case):
 
 
 @pytest.mark.parametrize("case", ["sec2", "Kuwabara–Kono"])
-def test_a_lane_does_not_know_of_the_others(case):
-    """Alone, in other company, and in another lane a scene gives the same numbers to the last bit."""
+def test_a_member_does_not_know_of_the_others(case):
+    """Alone, in other company, and in another member a scene gives the same numbers to the last bit."""
     scenes = scenes_of(case)
     together = run_all(scenes, 1.0)[0]
     turned = run_all(scenes[3:] + scenes[:3], 1.0)[0]
     assert (np.roll(turned, 3, axis=0) == together).all()
     same = run_all([scenes[3]] * 8, 1.0)[0]
     assert (same == together[3]).all()
-    block = Batch(scenes[0], Stop())
-    last = BATCH_LANES - 1
-    put(block, last, scenes[3], 1.0)
-    assert block.run() == (last, True)
-    assert (block.strobes(last)[: PERIODS + 1, 0] == together[3]).all()
+    batch = Batch(scenes[0], Stop())
+    last = BATCH_SIZE - 1
+    put(batch, last, scenes[3], 1.0)
+    assert batch.run() == (last, True)
+    assert (batch.strobes(last)[: PERIODS + 1, 0] == together[3]).all()

@@ -23,26 +23,26 @@ def dimer(f: float) -> Scene:
     return replace(base, pattern=(steel, replace(steel, mass=0.4 * steel.mass, young=2.0 * steel.young)))
 
 
-def test_unlike_beads_in_lanes() -> None:
-    """Strobes of three periods from rest, to the 2e-7 that lanes of order 3 reach at a twelfth of the live step."""
+def test_unlike_beads_in_a_batch() -> None:
+    """Strobes of three periods from rest, to the 2e-7 that a batch of order 3 reaches at a twelfth of the live step."""
     scenes = [dimer(f) for f in (400.0, 900.0, 1500.0)]
-    block = Batch(scenes[0], Stop())
-    assert block.lanes.unequal is not None
-    for lane, one in enumerate(scenes):
-        block.put(lane, lower(one), lower(one).scaled(rest(one)), 12.0, return_at=PERIODS, earliest=NEVER)
+    batch = Batch(scenes[0], Stop())
+    assert batch.members.unequal is not None
+    for member, one in enumerate(scenes):
+        batch.put(member, lower(one), lower(one).scaled(rest(one)), 12.0, return_at=PERIODS, earliest=NEVER)
     for _ in scenes:
-        lane, finite = block.run()
+        member, finite = batch.run()
         assert finite
-        true = Engine(scenes[lane], Setting("dop853", tolerance=1e-11), 1).periods(PERIODS, watch=False)[0][:, 0]
-        found = block.strobes(lane)[: PERIODS + 1, 0]
+        true = Engine(scenes[member], Setting("dop853", tolerance=1e-11), 1).periods(PERIODS, watch=False)[0][:, 0]
+        found = batch.strobes(member)[: PERIODS + 1, 0]
         assert np.abs(found - true).max() < 1e-6 * np.abs(true).max()
-        block.state.return_at[lane] = NEVER
+        batch.state.return_at[member] = NEVER
 
 
-def test_the_drive_phase_in_lanes_is_set_right_every_period() -> None:
+def test_the_drive_phase_in_a_batch_is_set_right_every_period() -> None:
     """Sine and cosine are turned from step to step; at the end of a period they are 0 and 1, not what turning left."""
     one = scene("sec2").evolve(N=1, f=1130.0)
-    block = Batch(one, Stop())
-    block.put(3, lower(one), lower(one).scaled(rest(one)), 1.0, return_at=200, earliest=NEVER)
-    assert block.run() == (3, True)
-    assert tuple(block.state.phase[:, 3]) == (0.0, 1.0)
+    batch = Batch(one, Stop())
+    batch.put(3, lower(one), lower(one).scaled(rest(one)), 1.0, return_at=200, earliest=NEVER)
+    assert batch.run() == (3, True)
+    assert tuple(batch.state.phase[:, 3]) == (0.0, 1.0)

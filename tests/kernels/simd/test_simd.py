@@ -11,7 +11,7 @@ from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.lower import lower
 from granchain_core.state import rest
 from granchain_core.steady.batch.settle import batch_results
-from granchain_core.steady.curve.resonance_curve import CurvePoint
+from granchain_core.steady.curve.curve import CurvePoint
 from granchain_core.steady.settling.alone import steady_state
 from granchain_core.stop import Stop
 
@@ -40,7 +40,7 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
     assert (fast.counts.array == slow.counts.array).all()
 
 
-def test_a_curve_by_lanes_is_what_each_frequency_gives_by_itself() -> None:
+def test_a_curve_in_batches_is_what_each_frequency_gives_by_itself() -> None:
     frequencies = np.array([340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0])
     for point in iter_curve(scene("sec2"), frequencies):
         alone = CurvePoint.of(steady_state(scene("sec2").evolve(f=point.frequency), None, Stop()))
@@ -48,23 +48,23 @@ def test_a_curve_by_lanes_is_what_each_frequency_gives_by_itself() -> None:
         assert point.error_estimate is not None and alone.error_estimate is not None
         allowed = point.error_estimate + alone.error_estimate
         assert point.max_output_force == pytest.approx(alone.max_output_force, rel=allowed)
-        assert allowed < 2e-3  # the coarse lane steps differ from the finer ones by some 1e-4
+        assert allowed < 2e-3  # the coarse member steps differ from the finer ones by some 1e-4
 
 
-def test_a_lane_that_is_not_finite_does_not_lose_the_others() -> None:
-    # Far more damping than the lane's explicit step can follow is refused by a smaller step, so poison one instead.
+def test_a_member_that_is_not_finite_does_not_lose_the_others() -> None:
+    # Far more damping than the member's explicit step can follow is refused by a smaller step, so poison one instead.
     scenes = [scene("sec2").evolve(f=f) for f in (1000.0, 1130.0)]
     block = Batch(scenes[0], Stop())
-    for lane, one in enumerate(scenes):
+    for member, one in enumerate(scenes):
         y = lower(one).scaled(rest(one))
-        block.put(lane, lower(one), y * (np.nan if lane == 0 else 1.0), 1, return_at=5, earliest=5)
+        block.put(member, lower(one), y * (np.nan if member == 0 else 1.0), 1, return_at=5, earliest=5)
     block.state.y[1, 0] = np.nan
-    lane, finite = block.run()
-    assert lane == 0 and not finite
+    member, finite = block.run()
+    assert member == 0 and not finite
     assert np.isfinite(block.state.y[:, 1]).all()
 
 
-def test_a_scene_with_a_tension_cut_is_not_given_to_lanes() -> None:
+def test_a_scene_with_a_tension_cut_is_not_given_to_batches() -> None:
     cut: Scene = scene("sec2").evolve(tension="cut")
     assert not can_share_batch(cut) and can_share_batch(scene("sec2"))
     points = list(iter_curve(cut, [340.0, 400.0]))
@@ -72,7 +72,7 @@ def test_a_scene_with_a_tension_cut_is_not_given_to_lanes() -> None:
     assert all(p.max_output_force > 0.0 for p in points)
 
 
-def test_raising_the_stop_flag_ends_the_lanes() -> None:
+def test_raising_the_stop_flag_ends_a_batch() -> None:
     from granchain_core import Cancelled
 
     stop = Stop()

@@ -17,8 +17,8 @@ from bokeh.events import Tap
 from host import FakeHost
 
 from app import server
-from app.page import links_and_files, main_picture, measurement
-from app.page.controller import Controller
+from app.dashboard import links_and_files, main_picture, measurement
+from app.dashboard.controller import Controller
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
 from app.serve.meters import METERS

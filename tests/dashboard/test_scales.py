@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
+from app.dashboard.scales import FILE, Scales
 from app.frames import extremes_of, samples_for, settled_frames
-from app.page.scales import FILE, Scales
 from app.parts.chain import energy_labels, frames_message
 from app.session.session import Session
 from granchain_core import Scene, scene, scene_names, settle

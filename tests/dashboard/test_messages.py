@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bokeh.document import Document
 
-from app.page.controller import Controller
+from app.dashboard.controller import Controller
 from app.scripts import FILES
 from app.session.session import Session
 

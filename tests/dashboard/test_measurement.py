@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from test_controller import Dashboard
 
-from app.page.measurement import SAMPLES
+from app.dashboard.measurement import SAMPLES
 from app.pictures.measured import measured_columns
 from granchain_core import CurvePoint
 from granchain_core.experiment import Measured, compared, read_data

@@ -1,0 +1,158 @@
+"""Steady states that coexist, with the starts that lead to each, as results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..integrate import State
+from ..orbits import Orbit
+from ..regime import Regime
+from ..result import ForceErrors
+from ..scene import Scene
+from ..tables import (
+    MAXIMA,
+    Column,
+    Labelled,
+    Table,
+    axis,
+    bead_axis,
+    error_columns,
+    force_columns,
+    provenance,
+    regime_columns,
+)
+from ..tables.provenance import Attribute
+from ..tables.shown import as_text
+from ..tables.words import evidence_columns, state_columns
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """One start: "rest", "up", "down" or "random 17", and the state it is at phase 0."""
+
+    name: str
+    state: State
+
+
+@dataclass(eq=False)
+class Attractor:
+    """A steady state with the starts that lead to it.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    regime : Regime
+        What kind of motion it is.
+    max_input_force, max_output_force, max_output_force_elastic : float
+        Largest forces [N].
+    force_errors : ForceErrors
+        Their relative errors; None where the motion is not periodic.
+    state : State
+        Where it is at drive phase 0.
+    orbit : Orbit or None
+        The certified orbit with its multipliers; None where the motion is not periodic or Newton's method did not
+        reach it.
+    origins : list of Origin
+        The starts that end here: "rest", "up", "down", "random 17".
+    share, share_error : float
+        Part of the random states that end here, and its standard error.
+
+    Examples
+    --------
+    >>> from granchain_core import attractors, scene
+    >>> only, = attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=2)
+    >>> only.stable, [origin.name for origin in only.origins][:3]
+    (True, ['rest', 'up', 'down'])
+    """
+
+    scene: Scene
+    regime: Regime
+    max_input_force: float
+    max_output_force: float
+    max_output_force_elastic: float
+    force_errors: ForceErrors
+    state: State
+    orbit: Orbit | None = None
+    origins: list[Origin] = field(default_factory=list)
+    share: float = 0.0
+    share_error: float = 0.0
+
+    @property
+    def error_estimate(self) -> float | None:
+        """Relative error of the output force; None where none is claimed."""
+        return self.force_errors.output
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the multipliers of its orbit are all inside the unit circle; None where they are not known."""
+        return None if self.orbit is None else self.orbit.stable
+
+
+class Attractors(list[Attractor], Labelled):
+    """The steady states that were found: a list, the largest share of random states first.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+
+    Examples
+    --------
+    >>> from granchain_core import attractors, scene
+    >>> found = attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=2)
+    >>> len(found), found.summary()[1].split(",")[0]
+    (1, '1: period 1')
+    """
+
+    scene: Scene
+
+    def __init__(self, chain: Scene, found: Iterable[Attractor] = ()) -> None:
+        super().__init__(found)
+        self.scene = chain
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `attractors`: regime, largest forces with errors, share, starts, and state of each."""
+        return (attractors_table(self.scene, self),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Where they come from."""
+        errors = [one.error_estimate for one in self if one.error_estimate is not None]
+        return dict(provenance(self.scene, "rk4 in batches, orbits by dop853", max(errors) if errors else None))
+
+    def summary(self) -> list[str]:
+        """How many, and a line for each."""
+        return [f"{len(self)} found", *(f"{i}: {said}" for i, said in enumerate(listing(self), 1))]
+
+    def __repr__(self) -> str:
+        return as_text(self.heading(), self.summary())
+
+
+def attractors_table(scene: Scene, found: Sequence[Attractor]) -> Table:
+    """Steady states as a table."""
+    along = ("attractor",)
+    forces = np.array([[getattr(one, name) for name in MAXIMA] for one in found]).reshape(-1, 3)
+    errors = np.array([one.force_errors.row for one in found]).reshape(-1, 3)
+    stable = np.array([-1 if one.stable is None else int(one.stable) for one in found], dtype=np.int8)
+    starts = np.array([", ".join(origin.name for origin in one.origins) for one in found], dtype=object)
+    states = np.array([[one.state.displacement, one.state.velocity] for one in found]).reshape(-1, 2, scene.N)
+    return Table("attractors", {
+        **axis("attractor", np.arange(1, len(found) + 1), "1", "number of the steady state"), **bead_axis(scene.N)}, {
+        **force_columns(forces, along), **error_columns(errors, along),
+        **regime_columns([one.regime for one in found], "attractor"),
+        **evidence_columns([one.regime for one in found], "attractor"),
+        "stable": Column(stable, along, "1", "1 if no multiplier of its orbit is outside, 0 if one is, -1 unknown"),
+        "share": Column(np.array([one.share for one in found]), along, "1", "part of the random states that end here"),
+        "share_error": Column(np.array([one.share_error for one in found]), along, "1", "standard error of the share"),
+        "starts": Column(starts, along, "", "starts that end here"),
+        **state_columns(states[:, 0], states[:, 1], ("attractor", "bead"))})
+
+
+def listing(attractors_found: Sequence[Attractor]) -> Iterator[str]:
+    """The attractors in words, one line each."""
+    for one in attractors_found:
+        yield (f"{one.regime.sentence}; {one.max_output_force:.4g} N, {100 * one.share:.0f} ± "
+               f"{100 * one.share_error:.0f} % of random states; {len(one.origins)} starts")

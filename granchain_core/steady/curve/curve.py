@@ -1,0 +1,156 @@
+"""A resonance curve and its points, as results."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...integrate import State
+from ...integrate.batch import can_share_batch
+from ...integrate.methods import CERTIFIED, LIVE
+from ...regime import Regime
+from ...result import ForceErrors, said_forces
+from ...scene import Amplitude, Scene
+from ...tables import (
+    MAXIMA,
+    Column,
+    Labelled,
+    Table,
+    amplitude_attribute,
+    axis,
+    error_columns,
+    force_columns,
+    provenance,
+    regime_columns,
+)
+from ...tables.provenance import Attribute
+from ..steady_state import SteadyState
+
+
+@dataclass(frozen=True, eq=False)
+class CurvePoint:
+    """The steady state at one frequency.
+
+    Attributes
+    ----------
+    frequency : float
+        [Hz]
+    max_output_force, max_output_force_elastic, max_input_force : float
+        Largest forces [N]; where the motion is not periodic, those of the last periods. NaN where the numbers failed.
+    regime : Regime
+        What kind of motion it is.
+    force_errors : ForceErrors
+        Relative errors of the three; None where the motion is not periodic.
+    state : State
+        Where the chain is at drive phase 0.
+    failure : str
+        A sentence where the numbers failed.
+    status : str
+        "done", or the failure's name.
+
+    Examples
+    --------
+    >>> from granchain_core import resonance_curve, scene
+    >>> point = resonance_curve(scene("sec2").evolve(N=2), [2000.0]).points[0]
+    >>> point.status, point.regime.period, point.error_estimate < 1e-3
+    ('done', 1, True)
+    """
+
+    frequency: float
+    max_output_force: float
+    max_output_force_elastic: float
+    max_input_force: float
+    regime: Regime
+    force_errors: ForceErrors
+    state: State
+    failure: str = ""
+    status: str = "done"
+
+    @classmethod
+    def of(cls, found: SteadyState) -> CurvePoint:
+        """The point of a steady state."""
+        input_force, output_force, elastic = map(float, found.maxima)
+        return cls(found.scene.f, output_force, elastic, input_force, found.regime, found.force_errors, found.state,
+                   found.failure, found.status)
+
+    @property
+    def error_estimate(self) -> float | None:
+        """Relative error of the output force; None where none is claimed."""
+        return self.force_errors.output
+
+
+@dataclass(eq=False)
+class Curve(Labelled):
+    """A resonance curve in ascending frequency.
+
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    start : str
+        One of `STARTS` (order.py).
+    points : list of CurvePoint
+        One for each frequency.
+    wall_s : float
+        Wall-clock time [s].
+    amplitude : Amplitude or None
+        The drive amplitude over the frequency, where it is not that of the scene.
+
+    Examples
+    --------
+    >>> from granchain_core import resonance_curve, scene
+    >>> curve = resonance_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0])
+    >>> curve.column("max_input_force").shape
+    (2,)
+    """
+
+    scene: Scene
+    start: str
+    points: list[CurvePoint] = field(default_factory=list)
+    wall_s: float = 0.0
+    amplitude: Amplitude | None = None
+
+    @property
+    def drive_amplitude(self) -> np.ndarray:
+        """A0 at every point [m]."""
+        return np.array([self.scene.A0 if self.amplitude is None else self.amplitude.at(p.frequency)
+                         for p in self.points])
+
+    def column(self, name: str) -> np.ndarray:
+        """One attribute of all points as an array."""
+        return np.array([getattr(p, name) for p in self.points])
+
+    def tables(self) -> tuple[Table, ...]:
+        """One table, `curve`: largest forces with errors, regime, period and status over the frequency."""
+        along = ("frequency",)
+        forces = np.array([[getattr(p, name) for name in MAXIMA] for p in self.points]).reshape(-1, 3)
+        errors = np.array([p.force_errors.row for p in self.points]).reshape(-1, 3)
+        drive = {} if self.amplitude is None else {
+            "drive_amplitude": Column(self.drive_amplitude, along, "m", "drive amplitude A0")}
+        outcomes = np.array([p.status for p in self.points], dtype=object)
+        return (Table("curve", axis("frequency", self.column("frequency"), "Hz", "drive frequency"), {
+            **drive, **force_columns(forces, along), **error_columns(errors, along),
+            **regime_columns([p.regime for p in self.points], "frequency"),
+            "status": Column(outcomes, along, "", "done, or how the numbers failed")}),)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """Start and cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""
+        single = f"{LIVE} or {CERTIFIED} point by point"
+        method = f"rk4 in batches, {single}" if can_share_batch(self.scene) else single
+        reached = [p.error_estimate for p in self.points if p.error_estimate is not None]
+        return {**provenance(self.scene, method, max(reached) if reached else None), "start": self.start,
+                "wall_s": self.wall_s, **amplitude_attribute(self.amplitude)}
+
+    def summary(self) -> list[str]:
+        """The highest point, and what kinds of motion there are."""
+        known = [p for p in self.points if math.isfinite(p.max_output_force)]
+        if not known:
+            return [f"{len(self.points)} points, none with a force"]
+        top = max(known, key=lambda p: p.max_output_force)
+        counts = Counter(f"period {p.regime.period}" if p.regime.period else p.regime.name for p in self.points)
+        return [f"{len(self.points)} points, {self.points[0].frequency:g} to {self.points[-1].frequency:g} Hz, "
+                f"start: {self.start}", f"highest at {top.frequency:g} Hz ({top.regime.sentence})", *said_forces(top),
+                ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))]
