@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 from started import dashboard, launch
 
-# Three workers with a browser and a server each share two processors: what is waited for comes, but not within five seconds.
-expect.set_options(timeout=30_000)
+# Three workers with a browser and a server each share two processors: what is waited for comes, but not within Playwright's five seconds.
+expect.set_options(timeout=60_000)
 
 
 @pytest.fixture(scope="session")
@@ -41,6 +41,7 @@ def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
 
     def open_page(query: str = "", url: str = address, script: str = "", **options: Any) -> Page:
         context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **options})
+        context.set_default_timeout(60_000)
         contexts.append(context)
         page = context.new_page()
         page.on("console", lambda message: (message.type == "error" or "initial ranges" in message.text)

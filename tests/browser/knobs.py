@@ -31,4 +31,4 @@ def type_into(page: Page, name: str, text: str) -> None:
 def settled(page: Page) -> None:
     """Wait until the certified picture is on the screen."""
     page.wait_for_timeout(200)
-    expect(page.locator("#foot b")).not_to_contain_text("preview", timeout=20_000)
+    expect(page.locator("#foot b")).not_to_contain_text("preview")

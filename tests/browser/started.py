@@ -12,6 +12,7 @@ import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from playwright.sync_api import Browser, Page, Playwright
 
@@ -23,12 +24,25 @@ CHROMIUM_OPTIONS = [
 ]
 
 
-def until(page: Page, holds: Callable[[], bool], seconds: float = 20.0) -> None:
+def until(page: Page, holds: Callable[[], bool], seconds: float = 60.0) -> None:
     """Wait until something holds that the browser alone cannot tell."""
     end = time.monotonic() + seconds
     while not holds():
         assert time.monotonic() < end, "did not come"
         page.wait_for_timeout(50)
+
+
+def at_rest(page: Page, count: str, still: int = 700) -> Any:
+    """Wait until a JavaScript expression has kept its value for `still` milliseconds, and return that value.
+
+    What was under way when the page was told to stop may still arrive; what goes on for good fails here.
+    """
+    page.wait_for_function(f"""(still) => {{
+      const now = performance.now(), value = JSON.stringify({count});
+      if (value !== window.valueBefore) [window.valueBefore, window.valueSince] = [value, now];
+      return now - window.valueSince > still;
+    }}""", arg=still, polling=50)
+    return page.evaluate(count)
 
 
 def free_port() -> int:

@@ -8,7 +8,7 @@ import pytest
 from drawn import place, source, tooltips
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
-from started import until
+from started import at_rest, until
 
 #: A short chain whose branch is followed in seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
@@ -38,18 +38,16 @@ def followed(page: Page) -> Locator:
 
 def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     page = visit()
-    expect(page.get_by_role("button", name="asked")).to_contain_text("reached", timeout=20_000)
+    expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
     sheet = followed(page)
     expect(sheet).to_contain_text("now at")
     page.wait_for_function(f"{SPECIAL}.length > 1 && {ORBITS}.stable.includes(0)", timeout=60_000)
     sheet.get_by_role("button", name="stop").click()
-    expect(sheet).to_contain_text("stopped; the orbits found so far are kept", timeout=1500)
-    arms = page.evaluate(f"{ORBITS}.arm")
-    page.wait_for_timeout(700)
-    assert page.evaluate(f"{ORBITS}.arm") == arms
+    expect(sheet).to_contain_text("stopped; the orbits found so far are kept")
+    arms = at_rest(page, f"{ORBITS}.arm")
     assert min(arms.count(arm) for arm in (0, 1)) > 1 and set(arms) == {0, 1}
     sheet.get_by_role("button", name="continue").click()
-    page.wait_for_function(f"{ORBITS}?.arm.filter((arm) => arm === 0).length > {arms.count(0) + 5}", timeout=20_000)
+    page.wait_for_function(f"{ORBITS}?.arm.filter((arm) => arm === 0).length > {arms.count(0) + 5}")
     sheet.get_by_role("button", name="stop").click()
     # the figure holds what the page has been sent piece by piece, and so does the small one in its tab
     for kind in ("stable", "unstable"):
@@ -72,7 +70,7 @@ def test_a_figure_grows_without_being_made_anew(visit: Visit) -> None:
 
 def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=250")
-    expect(page.get_by_role("button", name="asked")).to_contain_text("reached", timeout=20_000)
+    expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
     sheet = opened(page)
     sheet.get_by_label("period of the orbits").select_option("1")
     sheet.get_by_role("button", name="follow from here").click()
@@ -104,7 +102,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
         page.wait_for_timeout(600)  # two clicks within 300 ms are a double click to Bokeh, wherever they are
         page.mouse.click(*at("orbits", row))
         expect(sheet.locator(".chosen")).to_contain_text(words)
-        expect(page.locator("#foot")).to_contain_text(regime, timeout=15_000)
+        expect(page.locator("#foot")).to_contain_text(regime)
         shown = field(page, "f").input_value()
         assert float(shown) == pytest.approx(frequency, rel=1e-5)  # six figures are written
 
@@ -120,7 +118,7 @@ LONELY = """(stable) => {
 
 def test_moved_knobs_grey_the_branch_and_say_so(visit: Visit) -> None:
     page = visit(SHORT)
-    expect(page.get_by_role("button", name="asked")).to_contain_text("reached", timeout=20_000)
+    expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
     sheet = followed(page)
     sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where the branch is complete already
     damping = field(page, "D")

@@ -85,4 +85,4 @@ def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
     page.get_by_role("button", name="Play or pause").click()
     page.get_by_title("Larger, over the curve").click()
     page.locator('[data-knob="D"] input[type="range"]').press("ArrowRight")
-    expect(activity(tab, "resonance curve, from rest")).to_contain_text("not on the screen", timeout=5000)
+    expect(activity(tab, "resonance curve, from rest")).to_contain_text("not on the screen")

@@ -26,7 +26,7 @@ WebSocket.prototype.send = function (frame) {
 def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) -> None:
     """Its parts ask before; what Panel is told to change before is lost. So the answers wait for it."""
     page = visit(script=SAYS_LATE_THAT_IT_IS_READY)
-    expect(field(page, "f")).to_have_value("340", timeout=5_000)
+    expect(field(page, "f")).to_have_value("340")
     settled(page)
     expect(page.locator("#bar select").first).to_have_value("sec2")
 

@@ -57,7 +57,7 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     assert picture["titles"] == ["velocity over the first bead's", "scaled time"]
     box = one.locator(".drawn canvas").first.bounding_box()
     assert box is not None and box["width"] > 300 and box["height"] > 250
-    expect(one.get_by_role("button", name="run")).to_have_text("run again", timeout=20_000)
+    expect(one.get_by_role("button", name="run")).to_have_text("run again")
     expect(sheet).to_contain_text("1 of 16 cases run")
     # what was found is told in its tab and stays
     page.keyboard.press("Escape")
@@ -68,10 +68,10 @@ def test_run_all_is_stopped_at_once(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
     sheet.get_by_role("button", name="run all").click()
-    expect(card(sheet, LONG)).to_contain_text("computing", timeout=20_000)
+    expect(card(sheet, LONG)).to_contain_text("computing")
     expect(card(sheet, QUICK)).to_contain_text("waiting for its turn …")
     sheet.get_by_role("button", name="stop", exact=True).click()
-    expect(card(sheet, QUICK)).to_contain_text("stopped", timeout=1500)
+    expect(card(sheet, QUICK)).to_contain_text("stopped")
     expect(card(sheet, LONG)).to_contain_text("stopped")
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
 

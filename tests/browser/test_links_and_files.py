@@ -71,7 +71,7 @@ def test_another_scene_can_be_opened(visit: Visit) -> None:
     page = visit()
     page.locator("select.scene").select_option("fig3b")
     expect(field(page, "f")).to_have_value("1130")
-    expect(page.locator("#foot b")).to_contain_text("period 3", timeout=20_000)
+    expect(page.locator("#foot b")).to_contain_text("period 3")
 
 
 def test_measured_data_is_read_strictly(visit: Visit) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
-from started import until
+from started import at_rest, until
 
 #: What the page drew last: period and distance.
 LAST = "granchain.observer?.history.at(-1)"
@@ -64,15 +64,12 @@ def test_a_new_start_is_seen_and_nobody_looking_stops_it(visit: Visit) -> None:
     expect(sheet).to_contain_text("it synchronises", timeout=COMPILED)
     page.wait_for_function(f"{LAST}[1] < 3e-3", timeout=60_000)
     sheet.get_by_role("button", name="from rest").click()
-    page.wait_for_function(f"{LAST}[1] > 0.05", timeout=20_000)
+    page.wait_for_function(f"{LAST}[1] > 0.05")
     page.keyboard.press("Escape")
     expect(sheet).to_be_hidden()
     # in its tab it goes on, in small
     before = page.evaluate(f"{LAST}[0]")
-    page.wait_for_function(f"{LAST}[0] > {before} + 2", timeout=20_000)
+    page.wait_for_function(f"{LAST}[0] > {before} + 2")
     # on another tab nothing is computed
     page.get_by_role("tab", name="regimes").click()
-    page.wait_for_timeout(700)
-    stopped = page.evaluate(f"{LAST}[0]")
-    page.wait_for_timeout(1000)
-    assert page.evaluate(f"{LAST}[0]") == stopped
+    at_rest(page, f"{LAST}[0]", still=1000)

@@ -54,7 +54,7 @@ def test_a_figure_is_given_up_when_the_page_is_left(visit: Visit) -> None:
     expect(sheet.get_by_role("button", name="stop")).to_be_visible()
     page.keyboard.press("Escape")
     page.locator("#tabs").get_by_role("button", name="open the page").click()
-    expect(sheet.locator(".status")).to_have_text("stopped", timeout=3000)
+    expect(sheet.locator(".status")).to_have_text("stopped")
     expect(sheet.locator(".picture")).to_be_hidden()
     chosen(sheet, "1")
     expect(sheet.get_by_role("img", name="Figure 1")).to_be_visible()

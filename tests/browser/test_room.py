@@ -86,8 +86,8 @@ def test_the_titles_of_the_axes_are_whole(visit: Visit, look: str) -> None:
         if look == "light":
             page.wait_for_function(f"([input, output]) => (({TITLES})()[1][0].startsWith(input)"
                                    f" && ({TITLES})()[2][0].startsWith(output))", arg=list(words))
-        page.wait_for_function(f"({TITLES})().every(([title, room]) => title && room >= 0)", timeout=10_000)
-        page.wait_for_function(f"({BEADS})() > 0", timeout=10_000)  # the step follows the width
+        page.wait_for_function(f"({TITLES})().every(([title, room]) => title && room >= 0)")
+        page.wait_for_function(f"({BEADS})() > 0")  # the step follows the width
 
 
 def test_the_titles_follow_the_window(visit: Visit) -> None:

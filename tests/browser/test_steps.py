@@ -72,11 +72,11 @@ def test_a_step_back_brings_the_motion_and_not_only_the_knobs(visit: Visit) -> N
     step(page, "f=400")
     page.keyboard.press("Control+z")
     expect(field(page, "f")).to_have_value("880")
-    expect(page.locator("#foot b")).to_contain_text("period 1,", timeout=20_000)
+    expect(page.locator("#foot b")).to_contain_text("period 1,")
     expect(page.locator("#foot #start")).to_have_text("from previous state")
     page.reload()
     page.wait_for_function("window.painted.length > 0")
-    expect(page.locator("#foot b")).to_contain_text("period 1,", timeout=20_000)
+    expect(page.locator("#foot b")).to_contain_text("period 1,")
 
 
 def test_a_pin_stays_while_knobs_move_and_comes_back_with_the_link(visit: Visit) -> None:

@@ -22,7 +22,7 @@ def shows(page: Page, story: Story, number: int) -> None:
     """The badge and the pictures are those of the step."""
     step = story.steps[number - 1]
     badge = page.locator("#foot b")
-    expect(badge).not_to_contain_text("preview", timeout=20_000)
+    expect(badge).not_to_contain_text("preview")
     regime = "not driven" if step.expect.regime == UNDRIVEN else step.expect.regime
     expect(badge).to_contain_text(f"period {step.expect.period}," if step.expect.period else regime, timeout=30_000)
     curve = page.locator("#curvebar")
@@ -31,7 +31,7 @@ def shows(page: Page, story: Story, number: int) -> None:
     # The line joins samples, and the top may lie between two: at 96 a period up to 0.7 % higher in these scenes.
     allowed = max(TOLERANCE, 7e-3) if step.expect.period else IRREGULAR
     page.wait_for_function(f"([told, allowed]) => Math.abs(({FORCE})() / told - 1) < allowed",
-                           arg=[step.expect.output, allowed + 1e-3], timeout=20_000)
+                           arg=[step.expect.output, allowed + 1e-3])
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["laptop", "phone"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
+from started import at_rest
 
 from app.parts.figure_style import BOTTOM, GAP, TOP
 
@@ -108,10 +109,7 @@ def test_live_stops_when_paused_and_steps_by_one_period(visit: Visit) -> None:
     page.get_by_role("button", name="The run goes on").click()
     page.wait_for_function("painted.filter((event) => event.live).length > 10")
     page.get_by_role("button", name="Play or pause").click()
-    page.wait_for_timeout(500)
-    count = page.evaluate("painted.length")
-    page.wait_for_timeout(400)  # nothing to wait for: that nothing comes is the point
-    assert page.evaluate("painted.length") == count
+    count = at_rest(page, "painted.length")
     page.get_by_role("button", name="Forward one drive period").click()
     page.wait_for_function(f"painted.length > {count}")
 
