@@ -16,7 +16,7 @@ from granchain_core.experiment.measured import MOST_BYTES
 
 from ..pages.curve.bar import CurveBar
 from ..pages.curve.view import Curve
-from ..parts.chain import PALETTE, Chain
+from ..parts.chain import Chain
 from ..parts.component import text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
@@ -26,6 +26,7 @@ from ..parts.knobs import Knobs
 from ..parts.status_line import StatusLine
 from ..parts.trains import WIDEST_TITLES, Trains
 from ..pictures.curve import KEY
+from ..pictures.energies import ENERGY_COLOURS
 from ..pictures.regimes import REGIMES, SYMBOLS
 from ..pictures.theme import Theme, style_sheet
 from ..session.session import Session
@@ -48,7 +49,7 @@ class Views:
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
         self.equation = Equation(received)
-        self.chain = Chain(received, state={"palette": PALETTE, "titles": WIDEST_TITLES}, sizing_mode="stretch_both")
+        self.chain = Chain(received, state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES}, sizing_mode="stretch_both")
         self.trains = Trains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = Curve(choose)

@@ -6,7 +6,6 @@ import time
 from typing import Any
 
 import numpy as np
-from bokeh.palettes import Inferno256
 
 from granchain_core import Scene
 
@@ -21,9 +20,6 @@ class Chain(Component):
 
     _esm = module("chain.js")
     _stylesheets = [text("chain.css")]  # noqa: RUF012  (Panel's own class attribute)
-
-
-PALETTE = list(Inferno256)
 
 
 def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool, live: bool,
@@ -58,7 +54,7 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, f
 def energy_labels(high: float) -> list[str]:
     """What stands at the beginning, in the middle and at the end of the colour bar up to `high` [J].
 
-    Colours follow the square root of the energy, so a quarter of it is in the middle.
+    The bar is even in the square root of the energy, so a quarter of it is in the middle.
     """
     factor, letter = prefixed(high)
     return ["0", f"{high / 4 / factor:.3g}", f"{high / factor:.3g} {letter}J"]

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper, Range1d, SingleIntervalTicker
+from bokeh.models import ColumnDataSource, HoverTool, Range1d, SingleIntervalTicker
 from bokeh.plotting import figure
 
 from ..format import prefixed
 from ..frames import Frames
-from .chain import PALETTE
+from ..pictures.energies import energy_mapper
 from .figure_style import GAP, quiet_axis, quiet_figure
-
-#: The palette by the square root of the energy, which is proportional to the speed: weak motion stays visible beside
-#: strong. Steps of the root are fine where the palette is dark.
-_BY_ROOT = [PALETTE[round(255 * np.sqrt(step / 1023))] for step in range(1024)]
 
 
 class EnergyMap:
@@ -21,7 +17,7 @@ class EnergyMap:
 
     def __init__(self, time: Range1d) -> None:
         self._source = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")})
-        self._mapper = LinearColorMapper(palette=_BY_ROOT, low=0.0, high=1.0)
+        self._mapper = energy_mapper(1.0)
         self._beads, self._narrow = 1, False
         self.figure = self._build(time)
 

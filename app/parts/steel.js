@@ -3,9 +3,8 @@
 const STEPS = 48; // of energy that one can tell apart
 const GLOWS = 0.3; // the square root of the share of the scale's top from which on a bead has a halo
 
-// The colour of an energy that is this part of the scale's top. The square root (which is proportional to the speed)
-// leaves weak motion visible beside strong; the map and its colour bar use the same (app/parts/energy.py).
-export const colourOf = (palette, share) => palette[Math.round(255 * Math.sqrt(Math.max(0, Math.min(1, share))))];
+// The colour of an energy that is this part of the scale's top, from the list of app/pictures/energies.py.
+export const colourOf = (palette, share) => palette[Math.round((palette.length - 1) * Math.max(0, Math.min(1, share)))];
 
 const channels = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
 const mixed = (a, b, part) => {
@@ -40,7 +39,7 @@ export class Steel {
     const g = picture.getContext("2d");
     g.scale(side / (2 * half), side / (2 * half));
     g.translate(half, half);
-    const hot = this.palette ? this.palette[Math.round(255 * glow)] : ink.steel;
+    const hot = this.palette ? colourOf(this.palette, glow ** 2) : ink.steel;
     if (glow > GLOWS) this.halo(g, radius, glow, hot);
     const body = Math.min(1, 1.7 * glow); // how much of the steel's own colour the energy replaces
     const shade = g.createRadialGradient(-0.35 * radius, -0.4 * radius, 0.05 * radius, 0, 0, radius);

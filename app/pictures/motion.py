@@ -9,22 +9,20 @@ import numpy as np
 from bokeh.layouts import row
 from bokeh.models import (
     BasicTicker,
-    ColorBar,
     ColumnDataSource,
     HoverTool,
     LayoutDOM,
     LinearAxis,
-    LinearColorMapper,
     Range1d,
     SingleIntervalTicker,
 )
-from bokeh.palettes import Inferno256
 from bokeh.plotting import figure
 
 from granchain_core import Run
 
 from ..format import prefixed
 from ..frames import with_jumps
+from .energies import energy_bar, energy_mapper
 from .theme import Theme, dress, frame, in_theme
 
 #: Most rows of the picture of energies, and most points of a line.
@@ -94,7 +92,7 @@ def drive_panel(run: Run, index: np.ndarray, seconds: np.ndarray, time: Range1d,
 
 
 def energy_panel(run: Run, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
-    """Kinetic energy over bead and time, between the ends of the range `time`."""
+    """Kinetic energy over bead and time, between the ends of the range `time`, in the colours of the page."""
     factor, unit = units.energy
     values = np.asarray(run.kinetic_energy[index] / factor, dtype=np.float32)
     beads = values.shape[1]
@@ -104,14 +102,11 @@ def energy_panel(run: Run, index: np.ndarray, time: Range1d, units: Units, theme
     plot.xaxis.axis_label = "bead"
     plot.xaxis[0].ticker = SingleIntervalTicker(interval=max(1, round(beads / 6)) if beads > 8 else 1,
                                                 num_minor_ticks=0)
-    colours = LinearColorMapper(palette=list(Inferno256), low=0.0, high=float(values.max()) or 1.0)
+    colours = energy_mapper(float(values.max()) or 1.0)
     image = plot.image([values], x=0.5, y=time.end, dw=beads, dh=time.start - time.end, color_mapper=colours)
     plot.add_tools(HoverTool(renderers=[image], tooltips=[
         ("bead", "$x{0}"), ("time", f"$y{{0.000}} {units.time[1]}"), ("kinetic energy", f"@image{{0.0000}} {unit}")]))
-    bar = ColorBar(color_mapper=colours, width=12, padding=6, ticker=BasicTicker(desired_num_ticks=5),
-                   background_fill_color=theme.card, major_label_text_color=theme.ink,
-                   major_label_text_font_size=f"{theme.small - 2}px", bar_line_color=None)
-    plot.add_layout(bar, "right")
+    plot.add_layout(energy_bar(colours, theme), "right")
     period = run.regime.period
     plot.title.text = (f"{run.scene.f:g} Hz, {f'period {period}' if period else run.regime.name}: "
                        f"kinetic energy ({unit})")

@@ -11,9 +11,10 @@ import numpy as np
 from granchain_core import Scene, scene
 
 from ...format import prefixed
-from ...parts.chain import PALETTE, chain_series, drawn_chain
+from ...parts.chain import chain_series, drawn_chain
 from ...parts.component import text
 from ...parts.figure_part import FigurePart, page_and_small
+from ...pictures.energies import ENERGY_COLOURS
 from ...pictures.observer import observer, prediction
 from ...pictures.theme import Theme
 from ...scripts import module
@@ -53,7 +54,7 @@ class Observer(FigurePart):
 
 def first_state() -> dict[str, Any]:
     """The state of the page before anything is computed."""
-    return {"palette": PALETTE, "kappa": 0.0, "nudge": NUDGE, "paper_kappa": scene("fig11-founded").kappa,
+    return {"palette": ENERGY_COLOURS, "kappa": 0.0, "nudge": NUDGE, "paper_kappa": scene("fig11-founded").kappa,
             "progress": "", "sentence": ""}
 
 

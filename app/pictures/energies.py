@@ -1,0 +1,27 @@
+"""The colours of kinetic energy: one list for the page, its chain, files and notebooks, and the bar that tells it."""
+
+from __future__ import annotations
+
+import math
+
+from bokeh.models import BasicTicker, ColorBar, LinearColorMapper
+from bokeh.palettes import Inferno256
+
+from .theme import Theme
+
+_STEPS = 1024
+#: Colours of energies from 0 to the largest, evenly spaced. They follow the square root of the energy, which is
+#: proportional to the speed: weak motion stays visible next to strong. Steps of the root are fine where it is dark.
+ENERGY_COLOURS = [Inferno256[round(255 * math.sqrt(step / (_STEPS - 1)))] for step in range(_STEPS)]
+
+
+def energy_mapper(high: float) -> LinearColorMapper:
+    """Colours of energies from 0 to `high`."""
+    return LinearColorMapper(palette=ENERGY_COLOURS, low=0.0, high=high)
+
+
+def energy_bar(mapper: LinearColorMapper, theme: Theme) -> ColorBar:
+    """The colour bar, with the energies on its axis."""
+    return ColorBar(color_mapper=mapper, width=12, padding=6, ticker=BasicTicker(desired_num_ticks=5),
+                    background_fill_color=theme.card, major_label_text_color=theme.ink,
+                    major_label_text_font_size=f"{theme.small - 2}px", bar_line_color=None, name="energies")
