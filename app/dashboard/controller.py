@@ -22,8 +22,8 @@ from ..session.activities import Activity, account_activity, picture_activities
 from ..session.hooks import Actions, all_actions
 from ..session.live import LiveRun
 from ..session.message_checks import is_number, quoted
-from ..session.session import SPEEDS, Session, presets, slider_range
-from ..session.share import EXTRAS
+from ..session.session import Session, presets, slider_range
+from ..session.share import EXTRAS, SPEEDS
 from .addresses import take_address
 from .display_choices import DisplayChoices
 from .layout import Views
@@ -224,7 +224,7 @@ class Controller:
         session = self.session
         self.views.header.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
-            speeds=list(SPEEDS), speed=session.speed, playing=session.playing, account=session.account,
+            speeds=sorted(SPEEDS), speed=session.speed, playing=session.playing, account=session.account,
             query=session.link, view_fields=list(EXTRAS))
 
     def _tell_pages(self) -> None:

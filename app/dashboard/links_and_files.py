@@ -45,7 +45,10 @@ class LinksAndFiles:
         self._measurement.close()
 
     def _share(self, _: dict[str, Any]) -> None:
+        """Send the link; pins without room in it are told."""
         self._views.header.send(type="link", query=self._host.session.link)
+        if sentence := self._host.session.pins_left_out:
+            raise BadInput(sentence)
 
     def _save(self, message: dict[str, Any]) -> None:
         what = message.get("what", "hdf5")

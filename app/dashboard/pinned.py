@@ -89,6 +89,8 @@ class Pinned:
             self._curves[without_frequency(session.scene)] = self._views.curve.points("rest")
         session.pins = (*session.pins, pin)
         self._changed()
+        if sentence := session.pins_left_out:
+            raise BadInput(sentence)
 
     def _remove(self, message: dict[str, Any]) -> None:
         gone = listed("pin", self._session.pins, message.get("number"))

@@ -43,7 +43,7 @@ class Shared(Generic[Item]):
 
     def __init__(self, queue: Queue, memory: int, size: Callable[[Item], int],
                  kept: Callable[[list[Item]], list[Item]] = lambda items: items, turns: bool = True) -> None:
-        self._queue, self._memory, self._size, self._kept, self._turns = queue, memory, size, kept, turns
+        self._queue, self.memory, self._size, self._kept, self._turns = queue, memory, size, kept, turns
         self._lock = threading.Lock()
         self._under_way: dict[Hashable, _Computation[Item]] = {}
         self._finished: OrderedDict[Hashable, tuple[list[Item], int]] = OrderedDict()
@@ -145,13 +145,13 @@ class Shared(Generic[Item]):
     def _keep(self, key: Hashable, items: list[Item]) -> None:
         """With the lock held: keep them, and drop the oldest while there is too much."""
         size = sum(map(self._size, items))
-        if size > self._memory:
+        if size > self.memory:
             return
         if key in self._finished:  # computed a second time, because its last visitor left just before the end
             self.used -= self._finished.pop(key)[1]
         self._finished[key] = items, size
         self.used += size
-        while self.used > self._memory:
+        while self.used > self.memory:
             self.used -= self._finished.popitem(last=False)[1][1]
 
 

@@ -15,12 +15,11 @@ from granchain_core.scene import Bead
 from ..serve.turns import Account
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
-from .share import EXTRAS, START, encode
+from .share import EXTRAS, SPEEDS, START, encode, pins_in
 from .starts import start_text
 from .switches import ACCOUNT, changes
 
 MODES, STARTS = EXTRAS["mode"], EXTRAS["start"]
-SPEEDS = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 20.0, 100.0)
 
 
 @dataclass
@@ -58,6 +57,16 @@ class Session:
                 "speed": f"{self.speed:g}", "account": "on" if self.account else "off"}
         began = self.started_from if self.mode == "settled" else None
         return encode(self.scene, view, {START: start_text(began), "story": self.story, **pin_texts(self.pins)})
+
+    @property
+    def pins_left_out(self) -> str:
+        """A sentence where the link has no room for all pins; empty where it has."""
+        kept = pins_in(self.link)
+        left = len(self.pins) - kept
+        if not left:
+            return ""
+        return (f"The link has room for {kept} of {len(self.pins)} pins, because the states in which long chains begin "
+                f"take much of it: {'the last is' if left == 1 else 'the others are'} not in the link.")
 
     def change(self, name: str, value: object) -> None:
         """Turn knob `name` to `value`."""
@@ -107,9 +116,10 @@ class Session:
         self.scale = _one_of("scale", scale, EXTRAS["scale"])
 
     def set_speed(self, speed: object) -> None:
-        """Drive periods shown in a second, limited to what a page can show."""
-        if not is_number(speed) or not 0.01 <= speed <= 1000.0:
-            raise BadInput("speed must be from 0.01 to 1000 drive periods a second; 1 is a good start.")
+        """Set the drive periods shown in a second to one of `SPEEDS`."""
+        if not is_number(speed) or speed not in SPEEDS:
+            raise BadInput(f"speed {quoted(speed)} is not one of {', '.join(f'{one:g}' for one in sorted(SPEEDS))} drive "
+                           "periods a second.")
         self.speed = float(speed)
 
     def previous_state(self) -> State | None:

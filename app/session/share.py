@@ -16,7 +16,7 @@ from granchain_core.errors import unknown_name
 from granchain_core.quantities import QUANTITIES
 
 VERSION = "1"
-#: What may be drawn beside the pictures: curves from rest and by sweeps, and the paper's stated features.
+#: What the curve's figure may draw: curves from rest and by sweeps, and the paper's stated features.
 CURVES = ("rest", "up", "down", "features")
 
 
@@ -26,6 +26,8 @@ def joined(names: Iterable[str]) -> str:
     return ".".join(name for name in CURVES if name in chosen) or "none"
 
 
+#: Drive periods that the page can show in a second; the first is the default.
+SPEEDS = (1.0, 0.1, 0.25, 0.5, 2.0, 5.0, 20.0, 100.0)
 #: View settings a link may carry; the first value is the default. "look" is the theme; at "auto" the browser chooses.
 #: "curves" has every choice of them; without it a scene shows its own.
 EXTRAS: dict[str, tuple[str, ...]] = {
@@ -34,17 +36,22 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "scale": ("same", "fit"),
     "curves": ("auto", *sorted({joined(some) for size in range(5) for some in combinations(CURVES, size)})),
     "look": ("auto", "light", "dark", "projector"),
-    "speed": ("1", "0.1", "0.25", "0.5", "2", "5", "20", "100"),
+    "speed": tuple(f"{speed:g}" for speed in SPEEDS),
     "account": ("off", "on"),
 }
 #: Where the motion began, and the pinned pictures: texts that `starts.py` and `pins.py` read.
 START = "from"
 PINS = ("pin", "pin2", "pin3")
-_LONGEST = 4500
+#: Most characters of a link, and how many of them are left to what the browser adds: tab, page, look, embed.
+LONGEST = 4500
+_OF_THE_BROWSER = 100
 
 
 def encode(shown: Scene, extras: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
-    """The query string (without "?") that brings back this scene and view; `texts` has `START`, `PINS` and "story"."""
+    """The query string (without "?") that brings back this scene and view; `texts` has `START`, `PINS` and "story".
+
+    Pins for which there is no room are left out, the last one first (`pins_in`).
+    """
     fields: dict[str, Any] = {"v": VERSION, "scene": shown.name}
     for name, value in shown.differences().items():
         fields[name] = value if isinstance(value, str) else repr(value)
@@ -52,17 +59,28 @@ def encode(shown: Scene, extras: Mapping[str, str], texts: Mapping[str, str] | N
         if name in EXTRAS and value in EXTRAS[name] and value != EXTRAS[name][0]:
             fields[name] = value
     fields.update({name: text for name, text in (texts or {}).items() if text})
-    return urlencode(fields)
+    query = urlencode(fields)
+    for name in reversed(PINS):
+        if len(query) + _OF_THE_BROWSER <= LONGEST:
+            break
+        if fields.pop(name, None):
+            query = urlencode(fields)
+    return query
+
+
+def pins_in(query: str) -> int:
+    """How many pins a link has."""
+    return sum(name in PINS for name, _ in parse_qsl(query))
 
 
 def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple[Scene, dict[str, str], list[str]]:
     """Scene, view settings, and one sentence for every field that was refused; `START` and `PINS` come as they are.
 
-    `more` has view settings beside those of `EXTRAS` with their values: what only the page itself knows.
+    `more` has further view settings with their values, which only the page itself knows.
     """
     known = {**EXTRAS, **(more or {})}
-    if len(query) > _LONGEST:
-        return scene(scene_names()[0]), {}, [f"The link is longer than {_LONGEST} characters and was not read."]
+    if len(query) > LONGEST:
+        return scene(scene_names()[0]), {}, [f"The link is longer than {LONGEST} characters and was not read."]
     refused: list[str] = []
     fields = _fields(query, refused)
     if fields.pop("v", VERSION) != VERSION:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.session.share import EXTRAS, decode, encode, joined
-from granchain_core import scene, scene_names
+from app.dashboard.addresses import take_address
+from app.session.pins import NAMES, Pin
+from app.session.session import Session
+from app.session.share import EXTRAS, LONGEST, SPEEDS, decode, encode, joined, pins_in
+from app.session.starts import MOST_BEADS
+from granchain_core import BadInput, State, scene, scene_names
 
 
 @given(name=st.sampled_from(scene_names()), f=st.floats(0.1, 1e6), amplitude=st.floats(1e-12, 1e-4),
@@ -117,7 +122,52 @@ def test_no_query_string_breaks_the_page(query: str) -> None:
 
 
 def test_a_link_of_unreasonable_length_is_not_read() -> None:
-    assert "longer than" in decode("f=" + "1" * 5000)[2][0]
+    assert "longer than" in decode("f=" + "1" * LONGEST)[2][0]
+
+
+@given(name=st.sampled_from(scene_names()), beads=st.integers(1, MOST_BEADS), f=st.floats(0.1, 1e6),
+       amplitude=st.floats(1e-12, 1e-4), damping=st.floats(0.0, 1e6), stiffness=st.floats(0.0, 1e10),
+       pins=st.integers(0, len(NAMES)), started=st.integers(0, 15), seed=st.integers(0, 1000))
+def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, amplitude: float, damping: float,
+                                             stiffness: float, pins: int, started: int, seed: int) -> None:
+    """With every field, of the longest chains whose states a link has, and with what the browser adds to it."""
+    shown = scene(name).evolve(f=f, A0=amplitude, D=damping, k=stiffness, N=beads, dissipation="kuwabara-kono",
+                               tension="cut", accuracy=1.2345678901234567e-7, F0=1.2345678901234567)
+    rng = np.random.default_rng(seed)
+    states = [State(1e-6 * rng.standard_normal(beads), 1e-2 * rng.standard_normal(beads), 0.12345678901234567)
+              if started >> place & 1 else None for place in range(1 + pins)]
+    left = Session(shown, start="previous", scale="fit", speed=0.25, account=True, curves="rest.up.down.features",
+                   started_from=states[0], story="coexisting.2", pins=tuple(Pin(shown, one) for one in states[1:]))
+    back = Session()
+    start, refused = take_address(back, left.link + "&tab=stability&page=stability&look=projector&embed=1")
+    assert refused == [] and back.scene == shown
+    assert (start is None) == (states[0] is None)
+    assert len(back.pins) == pins_in(left.link) and (len(back.pins) == pins) == (left.pins_left_out == "")
+
+
+def test_pins_without_room_are_left_out_with_a_sentence() -> None:
+    rng = np.random.default_rng(3)
+    long = scene("sec2").evolve(N=MOST_BEADS)
+    start = State(rng.standard_normal(MOST_BEADS) * 1e-6, rng.standard_normal(MOST_BEADS) * 1e-2)
+    full = Session(long, started_from=start, pins=(Pin(long, start),) * 3)
+    knobs = {"f": 123.45678901234567, "A0": 1.2345678901234567e-7, "D": 12.345678901234567, "k": 12345.678901234567,
+             "F0": 1.2345678901234567, "accuracy": 1.2345678901234567e-7, "taper": 1.0123456789012345,
+             "dimer": 0.34567890123456789, "striker": 1.0123456789012345, "site": 12, "impurity": 0.23456789012345678,
+             "dissipation": "kuwabara-kono", "tension": "cut", "wall": 1.2345678901234567}
+    fuller = Session(long.evolve(**knobs), started_from=start, pins=(Pin(long.evolve(**knobs), start),) * 3)
+    assert (full.pins_left_out == "") == (pins_in(full.link) == 3)
+    assert pins_in(fuller.link) == 2 and fuller.pins_left_out.startswith("The link has room for 2 of 3 pins")
+
+
+@pytest.mark.parametrize("wrong", [True, None, "5", 3.0, 0.0, float("nan"), [1]])
+def test_a_speed_is_one_of_the_list(wrong: object) -> None:
+    session = Session()
+    for speed in SPEEDS:
+        session.set_speed(speed)
+        assert decode(session.link)[1].get("speed", "1") == f"{session.speed:g}"
+    with pytest.raises(BadInput, match=r"is not one of 0\.1, 0\.25, 0\.5, 1, 2, 5, 20, 100 drive periods"):
+        session.set_speed(wrong)
+    assert session.speed == SPEEDS[-1]
 
 
 def test_every_choice_of_curves_comes_back_and_no_other() -> None:
