@@ -28,8 +28,22 @@ def compressed(path: str, modified: int, size: int) -> bytes | None:
     return packed if len(packed) < len(whole) else None
 
 
+#: Files by handler and path of the address.
+_resolved: dict[tuple[type, str], str] = {}
+
+
 class CompressedFiles(StaticFileHandler):
     """Mixed into a handler of files: gives them compressed to a browser that takes them so and asks for all of them."""
+
+    def parse_url_path(self, url_path: str) -> str:
+        """The file of an address, remembered: Panel resolves every module of a component to answer for one."""
+        key = type(self), url_path
+        found = _resolved.get(key)
+        if found is None:
+            found = super().parse_url_path(url_path)
+            if Path(found).is_absolute():  # by Panel's handler, which has a list of what may be served
+                _resolved[key] = found
+        return found
 
     def _packed(self) -> bytes | None:
         wanted = self.request.headers.get("Accept-Encoding", "")

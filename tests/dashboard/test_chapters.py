@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from host import FakeHost
 
+from app.pages.curve import chapters as chapters_module
 from app.pages.curve.chapters import Chapters, extreme_chapter, extreme_points, stop_band
 from granchain_core import CurvePoint, resonance_curve, scene, settle
 from granchain_core.steady.curve.resonance import STOPS, pushes
@@ -60,3 +61,18 @@ def test_a_motion_that_is_not_periodic_has_no_name(curve: list[CurvePoint]) -> N
 def test_a_valley_without_a_push_in_every_period_has_no_name(curve: list[CurvePoint]) -> None:
     third = min(curve, key=lambda p: abs(p.frequency - 1130.0))
     assert extreme_chapter("valley", third, SEC2) is None
+
+
+def test_what_one_visitor_has_named_is_not_computed_for_the_next(curve: list[CurvePoint], monkeypatch: pytest.MonkeyPatch) -> None:
+    """A class looks at one curve: its extrema are settled once."""
+    scene_of_its_own = SEC2.evolve(D=SEC2.D * 1.0001)  # nobody has asked for its chapters before
+    settled_at: list[float] = []
+    monkeypatch.setattr(chapters_module, "extreme_chapter", lambda kind, point, *_: settled_at.append(point.frequency))
+    for _ in range(2):
+        shown: list[list[dict]] = []
+        host = FakeHost()
+        chapters = Chapters(host, shown.append)  # type: ignore[arg-type]
+        chapters.name(curve, scene_of_its_own)
+        host.work_off(lambda shown=shown: bool(shown), 60.0)
+        assert [one["kind"] for one in shown[0]] == ["band"]  # nothing else has a name here
+    assert settled_at == [point.frequency for _, point in extreme_points(curve)]

@@ -8,17 +8,23 @@ The stop band begins after the last peak, where less than 15 % of the input forc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from granchain_core import CurvePoint, Scene, settle
 from granchain_core.steady.curve.resonance import STOPS, Place, peaks_and_valleys, place_words, pushes
+from granchain_core.stop import Stop
 
 from ...frames import samples_for
-from ...serve.queues import ANALYSES
+from ...serve.queues import ANALYSES, SWEEPS
+from ...serve.shared import Shared
+from ...serve.turns import Account, Turn
 from ...session.host import Host
+from ...session.session import without_frequency
 from ...session.task import Job, Task
 
 #: Fewer points are no band.
@@ -42,10 +48,10 @@ def stop_band(points: Sequence[CurvePoint]) -> tuple[CurvePoint, CurvePoint] | N
     return (band[0], band[-1]) if len(band) >= _BAND else None
 
 
-def extreme_chapter(kind: str, point: CurvePoint, scene: Scene) -> dict[str, Any] | None:
-    """The chapter of an extremum, from the motion there; None where that has no name."""
+def extreme_chapter(kind: str, point: CurvePoint, scene: Scene, stop: Stop | None = None) -> dict[str, Any] | None:
+    """The chapter of an extremum, from the motion there; None where that has no name. Raises `Cancelled`."""
     at = scene.evolve(f=round(point.frequency, 1))
-    pushed = pushes(settle(at, samples=samples_for(at)).run)
+    pushed = pushes(settle(at, samples=samples_for(at), stop=stop).run)
     if pushed is None or (kind == "valley" and pushed != (1, 1)):
         return None
     words = place_words(pushed, Place(kind, point.frequency, point.regime.period))
@@ -59,6 +65,17 @@ def band_chapter(band: tuple[CurvePoint, CurvePoint]) -> dict[str, Any]:
     return {"kind": "band", "name": "stop band", "words": f"stop band from {first.frequency:.0f} Hz",
             "f": round(0.5 * (first.frequency + last.frequency), 1), "force": max(first.max_output_force,
                                                                                   last.max_output_force)}
+
+
+def _extreme_chapters(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
+                      stop: Turn) -> Iterator[dict[str, Any] | None]:
+    """The chapter of one extremum after the other. Raises `Cancelled`."""
+    for kind, point in extremes:
+        yield extreme_chapter(kind, point, scene, stop)
+
+
+#: Chapters of all visitors: a class that looks at one curve settles its dozen extrema once, which takes a second.
+CHAPTERS_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda one: 1000, turns=False)
 
 
 class Chapters:
@@ -80,12 +97,14 @@ class Chapters:
         def work(job: Job) -> None:
             band = stop_band(points)
             found = [] if band is None else [band_chapter(band)]
-            for kind, point in extreme_points(points):
-                job.give_way(lambda: self._host.busy)
-                if job.stop:
-                    return
-                chapter = extreme_chapter(kind, point, scene)
-                found += [chapter] if chapter else []
+            extremes = extreme_points(points)
+            key = without_frequency(scene), tuple((kind, point.frequency) for kind, point in extremes)
+            with closing(CHAPTERS_SHARED.follow(key, partial(_extreme_chapters, extremes, scene), job.stop,
+                                                Account())) as chapters:
+                for chapter in chapters:
+                    job.give_way(lambda: self._host.busy)
+                    job.stop.check()
+                    found += [chapter] if chapter else []
             job.next_tick(self._show, sorted(found, key=lambda one: float(one["f"])))
 
         self._task.start(work)
