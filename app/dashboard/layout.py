@@ -49,7 +49,8 @@ class Views:
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
         self.equation = Equation(received)
-        self.chain = Chain(received, state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES}, sizing_mode="stretch_both")
+        self.chain = Chain(received, sizing_mode="stretch_both",
+                           state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES})
         self.trains = Trains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = Curve(choose)

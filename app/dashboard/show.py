@@ -23,7 +23,7 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
     factor, letter = prefixed(float(frames.time[-1]))
     with unlocked():
         views.trains.left.yaxis.axis_label = f"time ({letter}s)"
-        _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s")
+        _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s", final=picture.final)
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
         views.shown = picture
         views.status_line.update_state(**settled_entries(picture, views.curve.place(picture.run)))
@@ -50,10 +50,10 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
-          live: bool = False, running: bool = False) -> None:
+          live: bool = False, running: bool = False, final: bool = False) -> None:
     views.time.update(start=float(time[-1]), end=float(time[0]))
     high = views.scales.of(frames, scene)
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
     views.trains.update(frames, time, high)
     views.energy.update(frames, time, unit, high.kinetic_energy)
-    views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, live, running))
+    views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, live, running, final))

@@ -125,7 +125,8 @@ class Chain {
     this.showScale(frames);
     this.crosshair.roll();
     if (this.sound.on) this.sound.play(frames);
-    window.granchain.shown = { scene: frames.scene, f: frames.f };
+    const { scene, f, knobs, number, live, final } = frames;
+    window.granchain.shown = { scene, f, knobs, number, live, final };
     window.granchain.emit("shown", window.granchain.shown);
     const { beads } = this.drawing;
     this.drawing.load(frames);

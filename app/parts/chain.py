@@ -12,6 +12,7 @@ from granchain_core import Scene
 from ..format import prefixed
 from ..frames import Extremes, Frames
 from ..scripts import module
+from ..session.share import encode
 from .component import Component, text
 
 
@@ -23,20 +24,23 @@ class Chain(Component):
 
 
 def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool, live: bool,
-                   running: bool) -> dict[str, Any]:
+                   running: bool, final: bool) -> dict[str, Any]:
     """What the browser needs to draw the chain at every instant; a running chain only has a now.
 
-    `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own.
+    `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own. No better
+    picture of these knobs follows a `final` one.
     """
     rows = slice(-1, None) if running else slice(None)
     return {
         "type": "frames",
         "number": number,
         "live": live,
+        "final": final,
         "rows": 1 if running else frames.rows,
         "samples": frames.samples,
         "scene": scene.name,
         "f": scene.f,
+        "knobs": encode(scene, {}),
         **drawn_chain(scene),
         "energy_high": scale.kinetic_energy,
         "energy_labels": energy_labels(scale.kinetic_energy),

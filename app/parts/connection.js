@@ -55,6 +55,18 @@
     return url;
   };
 
+  // The scene and its knobs as the address has them, with what the server has not answered yet.
+  const knobsAsked = () => {
+    const query = address().searchParams;
+    for (const name of [...query.keys()]) if (!["v", "scene", ...page.knobNames].includes(name)) query.delete(name);
+    return query.toString();
+  };
+  // Whether the picture on the screen is that of the knobs, and no better one follows; a live run has none.
+  const isSettled = () => {
+    const { knobs, final } = page.shown ?? {};
+    return known && !unanswered.size && Boolean(final) && new URLSearchParams(knobs).toString() === knobsAsked();
+  };
+
   // Where the visitor is: the tab below the curve and the page over the pictures, empty for the first tab and for none.
   const wherever = new URLSearchParams(location.search);
   const place = { tab: wherever.get("tab") ?? "", page: wherever.get("page") ?? "" };
@@ -268,5 +280,5 @@
     });
   }
   Object.assign(page, { lost: false, kept: {}, again, requested, linkReceived, answerReceived, connect, address });
-  Object.assign(page, { place, placed, linkRefined, went, undo, redo, steps, go: () => {} });
+  Object.assign(page, { place, placed, linkRefined, went, undo, redo, steps, isSettled, go: () => {} });
 })();

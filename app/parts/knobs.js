@@ -64,6 +64,7 @@ class Knobs {
       if (spec.name === "kappa") this.root.append(this.aside);
     }
     this.root.append(more);
+    window.granchain.knobNames = [...this.knobs.keys()];
     this.show(this.model.state);
   }
 

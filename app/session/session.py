@@ -118,8 +118,8 @@ class Session:
     def set_speed(self, speed: object) -> None:
         """Set the drive periods shown in a second to one of `SPEEDS`."""
         if not is_number(speed) or speed not in SPEEDS:
-            raise BadInput(f"speed {quoted(speed)} is not one of {', '.join(f'{one:g}' for one in sorted(SPEEDS))} drive "
-                           "periods a second.")
+            known = ", ".join(f"{one:g}" for one in sorted(SPEEDS))
+            raise BadInput(f"speed {quoted(speed)} is not one of {known} drive periods a second.")
         self.speed = float(speed)
 
     def previous_state(self) -> State | None:

@@ -1,11 +1,16 @@
-"""One dashboard and one Chromium for all browser tests; every test opens a page of its own."""
+"""One dashboard and one Chromium for all browser tests; every test opens a page of its own.
+
+A test that fails leaves what its pages showed and said in a folder that its report names (evidence.py).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
+from evidence import WATCHED, folder_of, leave, watch
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 from started import dashboard, launch
 
@@ -13,10 +18,26 @@ from started import dashboard, launch
 expect.set_options(timeout=60_000)
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """While its pages are still open: leave the evidence of a test that has failed."""
+    report = yield
+    if report.failed and item.stash.get(WATCHED, None):
+        folder = folder_of(item)
+        report.sections.append(("What the browser showed and said", f"{leave(item.stash[WATCHED], folder)}, in {folder}"))
+    return report
+
+
 @pytest.fixture(scope="session")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of the dashboard that all tests share."""
+    return tmp_path_factory.mktemp("dashboard") / "log"
+
+
+@pytest.fixture(scope="session")
+def address(log: Path) -> Iterator[str]:
     """The address of the running dashboard."""
-    with dashboard(tmp_path_factory.mktemp("dashboard") / "log") as url:
+    with dashboard(log) as url:
         yield url
 
 
@@ -30,7 +51,7 @@ def chromium() -> Iterator[Browser]:
 
 
 @pytest.fixture
-def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
+def visit(chromium: Browser, address: str, log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
     """Opens the dashboard; at the end no page may have complained or asked another host for anything.
 
     The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
@@ -44,6 +65,7 @@ def visit(chromium: Browser, address: str) -> Iterator[Callable[..., Page]]:
         context.set_default_timeout(60_000)
         contexts.append(context)
         page = context.new_page()
+        watch(request.node, page, log)
         page.on("console", lambda message: (message.type == "error" or "initial ranges" in message.text)
                 and complaints.append(message.text))  # the latter: a figure that was drawn before it had points
         page.on("pageerror", lambda error: complaints.append(str(error)))
@@ -67,6 +89,8 @@ window.painted = [];
 document.addEventListener("DOMContentLoaded", () => {
   if (window.granchain) granchain.on("painted", (event) => window.painted.push(event));
 });
+// The messages that the page has sent, by their "do", so that a test can tell that something was not asked for.
+window.sent = [];
 // Resolves when what was drawn last is on the screen.
 window.shown = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))));
 window.canvasIn = (id) => {
@@ -90,6 +114,9 @@ window.pixels = (id) => {
 // What a visitor's own script could do: another value in the next message of a knob.
 const send = WebSocket.prototype.send;
 WebSocket.prototype.send = function (data) {
+  if (typeof data === "string")
+    for (const [, name, rest] of data.matchAll(/\\["do","([\\w-]+)"\\]((?:,\\["value",[^\\]]*\\])?)/g))
+      window.sent.push(rest ? `${name} ${rest.slice(10, -1)}` : name);
   if (window.forged !== undefined && typeof data === "string" && data.includes('["do","set"]'))
     data = data.replace(/\\["value",[^\\]]*\\]/, `["value",${window.forged}]`);
   send.call(this, data);

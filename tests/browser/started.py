@@ -11,10 +11,14 @@ import time
 import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 from playwright.sync_api import Browser, Page, Playwright
+
+#: A number for every call of `at_rest`: what an earlier call has seen says nothing of this one.
+_CALLS = count()
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -32,17 +36,17 @@ def until(page: Page, holds: Callable[[], bool], seconds: float = 60.0) -> None:
         page.wait_for_timeout(50)
 
 
-def at_rest(page: Page, count: str, still: int = 700) -> Any:
+def at_rest(page: Page, value: str, still: int = 700) -> Any:
     """Wait until a JavaScript expression has kept its value for `still` milliseconds, and return that value.
 
     What was under way when the page was told to stop may still arrive; what goes on for good fails here.
     """
-    page.wait_for_function(f"""(still) => {{
-      const now = performance.now(), value = JSON.stringify({count});
-      if (value !== window.valueBefore) [window.valueBefore, window.valueSince] = [value, now];
-      return now - window.valueSince > still;
-    }}""", arg=still, polling=50)
-    return page.evaluate(count)
+    page.wait_for_function(f"""([still, call]) => {{
+      const now = performance.now(), value = JSON.stringify({value});
+      if (window.resting?.call !== call || window.resting.value !== value) window.resting = {{ call, value, since: now }};
+      return now - window.resting.since > still;
+    }}""", arg=[still, next(_CALLS)], polling=50)
+    return page.evaluate(value)
 
 
 def free_port() -> int:
@@ -70,18 +74,18 @@ class Server:
     process: subprocess.Popen[bytes]
 
     def __init__(self, log: Path, **environment: str) -> None:
-        self._log, self._environment = log, environment
+        self.log, self._environment = log, environment
         self._port = free_port()
         self.address = f"http://127.0.0.1:{self._port}/"
 
     def start(self) -> None:
         """Start it and wait until it answers."""
         code = f"from app.server import serve; serve(port={self._port})"
-        with self._log.open("ab") as output:
+        with self.log.open("ab") as output:
             self.process = subprocess.Popen([sys.executable, "-c", code], cwd=ROOT, stdout=output, stderr=output,
                                             env={**os.environ, **self._environment})
         try:
-            _wait_until_alive(self.process, self.address, self._log)
+            _wait_until_alive(self.process, self.address, self.log)
         except BaseException:
             self.kill()
             raise
@@ -106,10 +110,14 @@ def _wait_until_alive(process: subprocess.Popen[bytes], address: str, log: Path)
 
 
 def launch(playwright: Playwright) -> Browser:
-    """The system's Chromium, or the one playwright installed; without one this fails, it never skips."""
+    """The system's Chromium, or the one playwright installed; without one this fails, it never skips.
+
+    With `GRANCHAIN_HEADED=1` in the environment its window is shown.
+    """
+    headed = bool(os.environ.get("GRANCHAIN_HEADED"))
     names = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
-    system = next((path for name in names if (path := shutil.which(name))), None)
+    system = next((path for name in names[headed:] if (path := shutil.which(name))), None)
     if system is None and not Path(playwright.chromium.executable_path).exists():
         raise RuntimeError("The browser tests need Chromium: install the system's chromium package, "
                            "or run `playwright install chromium`.")
-    return playwright.chromium.launch(executable_path=system, args=CHROMIUM_OPTIONS)
+    return playwright.chromium.launch(executable_path=system, args=CHROMIUM_OPTIONS, headless=not headed)

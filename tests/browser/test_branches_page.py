@@ -41,7 +41,7 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
     sheet = followed(page)
     expect(sheet).to_contain_text("now at")
-    page.wait_for_function(f"{SPECIAL}.length > 1 && {ORBITS}.stable.includes(0)", timeout=60_000)
+    page.wait_for_function(f"{SPECIAL}.length > 1 && {ORBITS}.stable.includes(0)")
     sheet.get_by_role("button", name="stop").click()
     expect(sheet).to_contain_text("stopped; the orbits found so far are kept")
     arms = at_rest(page, f"{ORBITS}.arm")

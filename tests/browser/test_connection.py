@@ -7,13 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from knobs import field, knob, type_into
+from evidence import watch
+from knobs import COMPILED, field, knob, type_into
 from playwright.sync_api import Browser, Page, expect
 from started import Server
-
-#: How long the page may look alive after its socket is closed [ms]; a silent server is noticed after 1.6 s, and later
-#: by as much as the page itself is held up, since a delay of its own does not count as silence.
-SOON, SILENT = 2_000, 4_000
 
 
 @pytest.fixture
@@ -26,14 +23,16 @@ def server(tmp_path: Path) -> Iterator[Server]:
 
 
 @pytest.fixture
-def page(chromium: Browser, server: Server) -> Iterator[Page]:
+def page(chromium: Browser, server: Server, request: pytest.FixtureRequest) -> Iterator[Page]:
     """Its page, paused at 1130 Hz with another damping, its pictures drawn."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800})
+    context.set_default_timeout(60_000)
     page = context.new_page()
+    watch(request.node, page, server.log)
     page.add_init_script(FIRST)
     page.goto(f"{server.address}?v=1&scene=sec2&f=1130&D=90&start=previous")
     expect(page.locator("#lost")).to_be_hidden()
-    page.wait_for_function(BELONGS, arg=1130, timeout=60_000)
+    page.wait_for_function(BELONGS, arg=1130, timeout=COMPILED)
     yield page
     context.close()
 
@@ -61,9 +60,12 @@ def value(page: Page, name: str = "f") -> str:
     return knob(page, name)
 
 
-def looks_lost(page: Page, within: int = SOON) -> None:
-    """A sentence, grey pictures, and no knob or button that takes anything."""
-    page.wait_for_selector("#page.lost", timeout=within)
+def looks_lost(page: Page) -> None:
+    """A sentence, grey pictures, and no knob or button that takes anything.
+
+    How soon: a silent server is noticed after `PING_TIMEOUT` of connection.js, counted while the page itself runs.
+    """
+    page.wait_for_selector("#page.lost")
     expect(page.get_by_role("alert").filter(has_text="Connection lost – trying again")).to_be_visible()
     for part in ("stage", "curves"):
         assert "grayscale(1)" in page.evaluate(f"getComputedStyle(document.getElementById('{part}')).filter")
@@ -75,7 +77,7 @@ def starts_again(server: Server, page: Page) -> None:
     """The server is started on its old port; the page opens itself anew, nobody else does."""
     page.evaluate("window.before = true")
     server.start()
-    page.wait_for_function("window.granchain && !window.before", timeout=30_000)
+    page.wait_for_function("window.granchain && !window.before")
 
 
 def drag_slider(page: Page) -> None:
@@ -90,7 +92,7 @@ def drag_slider(page: Page) -> None:
 
 def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Server, page: Page) -> None:
     type_into(page, "f", "700")
-    page.wait_for_function(BELONGS, arg=700, timeout=30_000)
+    page.wait_for_function(BELONGS, arg=700)
     page.get_by_role("button", name="Play or pause").click()
     page.get_by_role("button", name="More controls").click()
     page.locator("select.speed").select_option("5")
@@ -108,28 +110,28 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
     starts_again(server, page)
     width, look, sentence = page.evaluate("window.first")
     assert (width, "grayscale(1)" in look, "restoring your settings" in sentence) == (1280, True, True)
-    page.wait_for_function(BELONGS, arg=700, timeout=60_000)
+    page.wait_for_function(BELONGS, arg=700)
     expect(page.locator("#last-pictures")).to_have_count(0)
     assert (value(page), value(page, "D")) == ("700", "90")
     expect(page.locator("select.start")).to_have_value("previous")
     expect(page.locator("select.speed")).to_have_value("5")
     expect(page.get_by_role("button", name="Play or pause")).to_contain_text("play")
     expect(page.get_by_role("alert").filter(has_text="the chain has started again from rest and your uploaded data are gone.")).to_be_visible()
-    expect(page.locator("#lost")).to_be_hidden(timeout=30_000)
+    expect(page.locator("#lost")).to_be_hidden()
     type_into(page, "f", "340")
-    page.wait_for_function(BELONGS, arg=340, timeout=30_000)
+    page.wait_for_function(BELONGS, arg=340)
 
 
 def test_a_silent_server_is_seen_and_the_same_page_goes_on(server: Server, page: Page) -> None:
     page.evaluate("window.same = true")
     server.process.send_signal(signal.SIGSTOP)
-    looks_lost(page, SILENT)
+    looks_lost(page)
     drag_slider(page)
     server.process.send_signal(signal.SIGCONT)
     expect(page.locator("#lost")).to_be_hidden()
     assert page.locator("[data-knob] input:disabled").count() == 0 and value(page) == "1130"
     type_into(page, "f", "700")
-    page.wait_for_function(BELONGS, arg=700, timeout=30_000)
+    page.wait_for_function(BELONGS, arg=700)
     assert page.evaluate("window.same")
 
 
@@ -137,9 +139,9 @@ def test_a_socket_that_stays_silent_while_the_server_answers_is_given_up(page: P
     """As behind a proxy that forgot it: neither side learns that it is closed."""
     page.evaluate("window.before = true")
     page.evaluate("granchain.answerReceived = () => {}")
-    looks_lost(page, SILENT)
-    page.wait_for_function("window.granchain && !window.before", timeout=30_000)
-    page.wait_for_function(BELONGS, arg=1130, timeout=60_000)
+    looks_lost(page)
+    page.wait_for_function("window.granchain && !window.before")
+    page.wait_for_function(BELONGS, arg=1130)
     assert (value(page), value(page, "D")) == ("1130", "90")
 
 
@@ -151,9 +153,9 @@ def test_what_the_server_never_heard_of_comes_back_too(server: Server, page: Pag
     expect(page.locator("#knobs .aside")).to_contain_text("Hz")
     server.process.send_signal(signal.SIGSTOP)
     type_into(page, knob, moved)
-    looks_lost(page, SILENT)
+    looks_lost(page)
     assert value(page, knob) == moved
     server.kill()
     starts_again(server, page)
-    expect(field(page, knob)).to_have_value(moved, timeout=30_000)
-    page.wait_for_function(BELONGS, arg=float(value(page)), timeout=60_000)
+    expect(field(page, knob)).to_have_value(moved)
+    page.wait_for_function(BELONGS, arg=float(value(page)))

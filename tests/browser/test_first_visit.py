@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from knobs import Visit, field, settled
+from knobs import COMPILED, Visit, field, settled
 from playwright.sync_api import Browser, expect
 from started import dashboard
 
@@ -44,8 +44,8 @@ def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromi
     with dashboard(tmp_path / "log", GRANCHAIN_CACHE=str(tmp_path / "cache"), NUMBA_OPT="1") as url:
         page = chromium.new_page(reduced_motion="reduce")
         page.goto(url)
-        expect(page.get_by_role("alert")).to_contain_text("Compiling the kernels", timeout=30_000)
-        expect(page.locator("#foot b")).to_contain_text("period 1", timeout=240_000)
+        expect(page.get_by_role("alert")).to_contain_text("Compiling the kernels")
+        expect(page.locator("#foot b")).to_contain_text("period 1", timeout=COMPILED)
         expect(page.get_by_role("alert")).to_be_hidden()
         page.close()
 

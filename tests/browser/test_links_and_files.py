@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import h5py
-from knobs import Visit, field, knob, settled, type_into
+from knobs import COMPILED, Visit, field, knob, settled, type_into
 from playwright.sync_api import expect
 
 
@@ -104,7 +104,7 @@ def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit,
         page.get_by_label(f"unit of column {number}").select_option(unit)
     page.get_by_role("button", name="read it so").click()
     expect(page.locator("#tabs")).to_contain_text("3 points, 340 to 1130 Hz, force 0.6 to 1.15 N")
-    expect(page.locator("#tabs")).to_contain_text("Measured less model at 3 of 3 frequencies: rms", timeout=60_000)
+    expect(page.locator("#tabs")).to_contain_text("Measured less model at 3 of 3 frequencies: rms")
     with page.expect_download() as download:
         page.get_by_role("button", name="sample file").click()
     download.value.save_as(tmp_path / "sample.csv")
@@ -119,8 +119,9 @@ def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit
     page.locator(".maphost").evaluate("host => { host.dataset.same = 1; }")
     page.locator("select.scene").select_option("rig")
     expect(field(page, "f")).to_have_value("60")
-    page.evaluate("shown()")
+    settled(page)
     assert page.locator(".maphost").get_attribute("data-same") == "1"
+    page.wait_for_selector(".chapters button", timeout=COMPILED)  # its curve is whole: nothing else changes the tab
     page.get_by_role("tab", name="data").click()
     page.locator("[role=tabpanel]").evaluate("""(body) => {
       window.drawn = 0;
@@ -128,7 +129,9 @@ def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit
     }""")
     content = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
     page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": content})
-    expect(page.locator("#tabs")).to_contain_text("2 points")
+    expect(page.locator("#tabs")).to_contain_text("Measured less model")
+    type_into(page, "f", "61")  # whatever the file had caused has come before the answer to this
+    settled(page)
     assert page.evaluate("drawn") == 1
 
 

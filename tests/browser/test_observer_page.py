@@ -45,15 +45,15 @@ def test_it_breaks_without_foundation_and_synchronises_with_it(visit: Visit) -> 
     sheet = opened(page)
     expect(sheet).to_contain_text("it drifts: an offset of its beads grows, because nothing pulls them back", timeout=COMPILED)
     expect(sheet).to_contain_text("predicted × 4.418")  # docs/model.md, `fig11-free`: one multiplier outside
-    page.wait_for_function(f"{LAST}?.[1] > 0.5", timeout=30_000)
+    page.wait_for_function(f"{LAST}?.[1] > 0.5")
     chains = sheet.locator(".chains canvas")
     assert chains.count() == 3
     # the force pushes the observer: an arrow in its colour, which is there in most of a drive period
     until(page, lambda: int(chains.nth(2).evaluate(PUSH)) > 30)
     sheet.get_by_role("button", name="0.001").click()
     expect(sheet).to_contain_text("it synchronises with its chain", timeout=COMPILED)
-    page.wait_for_function(drawn("prediction", 2), timeout=30_000)
-    page.wait_for_function(f"{LAST}[1] < 0.1", timeout=30_000)
+    page.wait_for_function(drawn("prediction", 2))
+    page.wait_for_function(f"{LAST}[1] < 0.1")
     expect(field(page, "kappa")).to_have_value("0.001")
 
 
@@ -62,7 +62,7 @@ def test_a_new_start_is_seen_and_nobody_looking_stops_it(visit: Visit) -> None:
     sheet = opened(page)
     sheet.get_by_role("button", name="0.001").click()
     expect(sheet).to_contain_text("it synchronises", timeout=COMPILED)
-    page.wait_for_function(f"{LAST}[1] < 3e-3", timeout=60_000)
+    page.wait_for_function(f"{LAST}[1] < 3e-3")
     sheet.get_by_role("button", name="from rest").click()
     page.wait_for_function(f"{LAST}[1] > 0.05")
     page.keyboard.press("Escape")

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 from knobs import COMPILED, Visit
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 from room import faults
+from started import until
 
 #: Laptops, screens, a beamer, a phone.
 SIZES = ((1024, 768), (1180, 820), (1280, 800), (1280, 720), (1366, 768), (1440, 900), (1536, 864), (1920, 1080),
@@ -40,6 +39,20 @@ BEADS = """() => {
 }"""
 
 
+def fits(page: Page) -> None:
+    """Wait until nothing is cut: titles and names follow a new size."""
+    found: list[str] = []
+
+    def whole() -> bool:
+        found[:] = faults(page)
+        return not found
+
+    try:
+        until(page, whole)
+    except AssertionError:
+        raise AssertionError(f"{page.viewport_size}: {found}") from None
+
+
 @pytest.mark.parametrize("look", ["light", "dark", "projector"])
 @pytest.mark.parametrize("scene", ["sec2", "fig11-founded"])
 def test_no_control_and_no_word_is_cut_hidden_or_covered(visit: Visit, scene: str, look: str) -> None:
@@ -47,11 +60,7 @@ def test_no_control_and_no_word_is_cut_hidden_or_covered(visit: Visit, scene: st
     page.wait_for_selector(".chapters button", timeout=COMPILED)
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
-        page.evaluate("shown()")
-        end = time.monotonic() + 20.0
-        while (found := faults(page)) and time.monotonic() < end:
-            page.wait_for_timeout(200)  # titles and names follow the new size
-        assert not found, (width, height, found)
+        fits(page)
 
 
 def test_what_the_bar_has_no_room_for_is_in_its_menu(visit: Visit) -> None:
@@ -60,7 +69,7 @@ def test_what_the_bar_has_no_room_for_is_in_its_menu(visit: Visit) -> None:
     expect(theme).to_be_hidden()
     page.get_by_role("button", name="More controls").click()
     expect(theme).to_be_visible()
-    assert faults(page) == []
+    fits(page)
     theme.click()
     page.wait_for_function("document.documentElement.dataset.theme === 'light'")
     page.set_viewport_size({"width": 2560, "height": 1440})
@@ -70,11 +79,9 @@ def test_what_the_bar_has_no_room_for_is_in_its_menu(visit: Visit) -> None:
 
 def test_words_grow_with_the_screen(visit: Visit) -> None:
     page = visit("?look=light")
-    sizes = []
-    for width, height in ((1280, 800), (1920, 1080), (2560, 1440)):
+    for width, height, least in ((1280, 800, 15.0), (1920, 1080, 18.0), (2560, 1440, 21.0)):
         page.set_viewport_size({"width": width, "height": height})
-        sizes.append(page.evaluate("parseFloat(getComputedStyle(document.querySelector('#foot')).fontSize)"))
-    assert sizes[0] >= 15.0 and sizes[1] > 18.0 and sizes[2] > 21.0
+        page.wait_for_function("least => parseFloat(getComputedStyle(document.querySelector('#foot')).fontSize) >= least", arg=least)
 
 
 @LOOKS
@@ -108,5 +115,4 @@ def test_the_equation_is_whole(visit: Visit, knobs: str) -> None:
         if width == 390:
             page.get_by_role("button", name="All knobs, or the first one").click()
         expect(formula.locator("math").first).to_be_visible()
-        assert formula.evaluate(whole), width
-        assert formula.locator("math").count() == 5
+        until(page, lambda: formula.locator("math").count() == 5 and formula.evaluate(whole))

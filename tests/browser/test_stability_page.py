@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from drawn import place, source, tooltips
-from knobs import COMPILED, Visit, type_into
+from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
@@ -32,16 +32,21 @@ def axis_title(page: Page, axis: str) -> str:
 def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) -> None:
     page = visit()
     tab = page.locator("#tabs")
-    page.wait_for_timeout(600)
+    settled(page)
+    # the server computes for whoever looks (tests/pages/test_stability.py), and nobody has said that they do
+    assert "stability-visible true" not in page.evaluate("sent")
     assert page.evaluate("granchain.stability.state.sentence") is None
     page.get_by_role("tab", name="stability").click()
+    assert page.evaluate("sent").count("stability-visible true") == 1
     expect(tab).to_contain_text("Stable: a disturbance shrinks to 0.36", timeout=COMPILED)
     until(page, lambda: marks(page, "within", large=False) == 22)
     type_into(page, "f", "1130")
     expect(tab).to_contain_text("3 drive periods, 2.65 ms")
     page.get_by_role("tab", name="regimes").click()
+    assert page.evaluate("sent")[-1] == "stability-visible false"
     type_into(page, "f", "615")
-    page.wait_for_timeout(600)
+    settled(page)
+    assert page.evaluate("sent").count("stability-visible true") == 1
     assert "3 drive periods" in page.evaluate("granchain.stability.state.sentence")
     page.get_by_role("tab", name="stability").click()
     expect(tab).to_contain_text("2 drive periods")

@@ -24,7 +24,7 @@ def shows(page: Page, story: Story, number: int) -> None:
     badge = page.locator("#foot b")
     expect(badge).not_to_contain_text("preview")
     regime = "not driven" if step.expect.regime == UNDRIVEN else step.expect.regime
-    expect(badge).to_contain_text(f"period {step.expect.period}," if step.expect.period else regime, timeout=30_000)
+    expect(badge).to_contain_text(f"period {step.expect.period}," if step.expect.period else regime)
     curve = page.locator("#curvebar")
     words = "there is no resonance curve"
     expect(curve).to_contain_text(words) if regime == "not driven" else expect(curve).not_to_contain_text(words)
