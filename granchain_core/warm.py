@@ -8,9 +8,6 @@ which can be compiled in its own process.
 from __future__ import annotations
 
 import contextlib
-import functools
-import hashlib
-import os
 import sys
 from collections.abc import Callable, Iterable
 from concurrent.futures import as_completed
@@ -25,7 +22,6 @@ from .accuracy.work_precision import compile_methods
 from .children import pool, starting
 from .integrate import Engine, Setting, certified, live
 from .integrate.batch import Batch, can_share_batch, is_uniform
-from .kernels import jit
 from .kernels.cache import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
 from .lower import lower
@@ -142,20 +138,7 @@ def is_warm(shown: Scene, pieces: Iterable[str] = (LIVE, CERTIFIED)) -> bool:
 
 
 def _marker(folder: Path, name: str, piece: str) -> Path:
-    return folder / f"compiled-{_sources_stamp()}-{name}-{piece}".replace(" ", "-").replace(",", "")
-
-
-@functools.cache
-def _sources_stamp() -> str:
-    """Hash of what, besides their content, distinguishes the sources for Numba: their paths and times.
-
-    The same sources in another clone, or after a checkout that touched them, are compiled once more.
-    """
-    folder = Path(os.path.abspath(jit.__file__)).parent
-    digest = hashlib.sha256(f"{sys.implementation.cache_tag} {folder}".encode())
-    for path in sorted(folder.rglob("*.py")):
-        digest.update(f" {path.name} {path.stat().st_mtime_ns}".encode())
-    return digest.hexdigest()[:12]
+    return folder / f"compiled-{sys.implementation.cache_tag}-{name}-{piece}".replace(" ", "-").replace(",", "")
 
 
 def _compile(job: tuple[Scene, str]) -> str:

@@ -200,8 +200,25 @@ def whole(path: Path) -> bytes:
     raise FileNotFoundError(path)
 
 
+@functools.cache
+def _content_hash(path: str) -> str:
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+
+
 class _Locator(caching.UserProvidedCacheLocator):
-    """Places in the folder of kernels, whether or not it can be written: Numba would look for another one."""
+    """Places in the folder of kernels, whether or not it can be written: Numba would look for another one.
+
+    Numba names a place after the path of the source and marks it with the file's time. Here both are those of the
+    module: the same sources in another environment, or installed again, find what is compiled already.
+    """
+
+    def __init__(self, py_func: Any, py_file: str) -> None:
+        super().__init__(py_func, py_file)
+        self._cache_path = str(Path(numba.config.CACHE_DIR) / py_func.__module__)
+
+    def get_source_stamp(self) -> str:
+        """Hash of the file the function is in; that of all kernels is in the folder's name."""
+        return _content_hash(self._py_file)
 
     @classmethod
     def from_function(cls, py_func: Any, py_file: str) -> _Locator:
