@@ -117,6 +117,8 @@ class Controller:
 
     def close(self, session_context: object) -> None:
         """The visitor left: everything that is computed for this page ends, and nothing is called any more."""
+        if self._left:
+            return
         self._left = True
         METERS.visitors -= 1
         self.pictures.close()

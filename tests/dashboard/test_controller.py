@@ -12,13 +12,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from bokeh.document import Document
 from bokeh.events import Tap
-from host import FakeHost
+from opened import Dashboard
 
 from app import server
 from app.dashboard import links_and_files, main_picture, measurement
-from app.dashboard.controller import Controller
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
 from app.serve.meters import METERS
@@ -26,26 +24,8 @@ from app.session.budget import Refused
 from app.session.hooks import all_actions
 from app.session.live import LiveRun
 from app.session.message_checks import listed, whole
-from app.session.session import Session
 from granchain_core import BadInput, run, scene
 from granchain_core.experiment.measured import MOST_BYTES
-
-
-class Dashboard(FakeHost, Controller):
-    """A dashboard whose callbacks are called when the test says so, and whose messages to the browser are kept."""
-
-    busy, awaiting_picture, curve_computing = Controller.busy, Controller.awaiting_picture, Controller.curve_computing
-    call_later, failed = Controller.call_later, Controller.failed
-
-    def __init__(self) -> None:
-        FakeHost.__init__(self)
-        self.told: list[dict[str, Any]] = []
-        Controller.__init__(self, Document(), Session())
-        self.views.header.send = lambda **message: self.told.append(message)  # type: ignore[method-assign]
-
-    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
-        """From any thread."""
-        self.callbacks.append(lambda: self._guarded(action, *arguments))
 
 
 @pytest.mark.parametrize("wrong", [True, False, None, "3", 2.5, 0, 9, float("nan"), [1]])
@@ -66,14 +46,12 @@ def test_only_a_place_of_the_list_is_found(wrong: object) -> None:
     {"do": "branches-start", "period": True}, {"do": "branches-start", "period": 9},
     {"do": "branches-orbit", "arm": False, "place": 0}, {"do": "branches-double", "place": True},
     {"do": "map-load", "number": True}, {"do": "stability-section", "bead": True, "phase": 0}])
-def test_what_is_no_number_gets_its_sentence(message: dict[str, Any]) -> None:
-    dashboard = Dashboard()
+def test_what_is_no_number_gets_its_sentence(dashboard: Dashboard, message: dict[str, Any]) -> None:
     dashboard.received(message)
     assert "is not a whole number" in dashboard.session.sentence or "not on the page any more" in dashboard.session.sentence
 
 
-def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence() -> None:
-    dashboard = Dashboard()
+def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence(dashboard: Dashboard) -> None:
     dashboard.views.curve.figure._trigger_event(Tap(dashboard.views.curve.figure, x=None, y=None))
     assert dashboard.session.sentence.startswith("drive frequency f must be a number")
     assert dashboard.session.scene.f == 340.0
@@ -82,14 +60,13 @@ def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence() -> N
 @pytest.mark.parametrize(("text", "sentence", "understood"), [
     ("frequency_Hz,force_N\n40,5.5\n60,12.1\n", "", "mine.csv: 2 points"),
     ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (MOST_BYTES + 1), "larger than 2 MB", "")])
-def test_a_measurement_is_read_in_the_background(text: str, sentence: str, understood: str,
+def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str, sentence: str, understood: str,
                                                  monkeypatch: pytest.MonkeyPatch) -> None:
     """Reading 2 MB with the document locked would hold up every visitor."""
     threads = []
     read = measurement.read_data
     monkeypatch.setattr(measurement, "read_data",
                         lambda *given, **named: (threads.append(threading.current_thread().name), read(*given, **named))[1])
-    dashboard = Dashboard()
     dashboard.received({"do": "csv", "name": "mine.csv", "content": base64.b64encode(text.encode()).decode()})
     assert not dashboard.views.tabs.state.get("understood")
     dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
@@ -98,8 +75,7 @@ def test_a_measurement_is_read_in_the_background(text: str, sentence: str, under
     assert all(name.startswith("files") for name in threads) and bool(threads) == (len(text) <= MOST_BYTES)
 
 
-def test_a_picture_is_saved_in_the_background(monkeypatch: pytest.MonkeyPatch) -> None:
-    dashboard = Dashboard()
+def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     dashboard.received({"do": "save"})
     assert "no picture to save yet" in dashboard.session.sentence
     threads = []
@@ -115,9 +91,8 @@ def test_a_picture_is_saved_in_the_background(monkeypatch: pytest.MonkeyPatch) -
     assert threads[0].startswith("files")
 
 
-def test_a_refusal_belongs_to_the_scene_that_was_refused() -> None:
+def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -> None:
     """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about."""
-    dashboard = Dashboard()
     refused = dashboard.session.scene.evolve(N=10_000)
     dashboard.failed(Refused(refused, "It would take long."))
     assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")
@@ -126,11 +101,9 @@ def test_a_refusal_belongs_to_the_scene_that_was_refused() -> None:
     assert dashboard.views.status_line.state["insist"]
     dashboard.failed(BadInput("Something else."))
     assert not dashboard.views.status_line.state["insist"]
-    dashboard.close(None)
 
 
-def test_another_scale_leaves_a_paused_chain_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    dashboard = Dashboard()
+def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     sent: list[object] = []
     monkeypatch.setattr(dashboard.pictures._pacer, "offer", sent.append)
     session, pictures = dashboard.session, dashboard.pictures
@@ -141,10 +114,10 @@ def test_another_scale_leaves_a_paused_chain_where_it_is(monkeypatch: pytest.Mon
     dashboard.received({"do": "scale", "value": "fit"})
     dashboard.work_off(lambda: not pictures.busy)
     assert sent[0] is sent[1] and len(sent) == 2 and pictures.live._shown == 7
-    dashboard.close(None)
 
 
-def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,
+                                                                              monkeypatch: pytest.MonkeyPatch) -> None:
     """Settling would compile what the other process has not finished, inside the server."""
     waiting, settled = threading.Event(), []
 
@@ -162,7 +135,6 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(m
 
     monkeypatch.setattr(main_picture, "COMPILER", Compiling())
     monkeypatch.setattr(main_picture, "settling", lambda *_, **__: settled.append("began") or iter(()))
-    dashboard = Dashboard()
     dashboard.pictures.compute()
     assert waiting.wait(10)
     dashboard.close(None)
@@ -170,10 +142,10 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(m
     assert settled == []
 
 
-def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none(dashboard: Dashboard,
+                                                                                monkeypatch: pytest.MonkeyPatch) -> None:
     """Its table shows beside each switch the type in the slot; a list of its own would miss a new effect."""
     monkeypatch.setattr(COMPILER, "has", lambda *_: False)
-    dashboard = Dashboard()
     dashboard.received({"do": "effects-visible", "value": True})
     panel = dashboard.views.tabs.state["panel"]
     assert sorted([*(one["slot"] for one in panel["effects"]), *panel["always"]]) == sorted(
@@ -181,18 +153,15 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
     assert {one["name"]: one["slot"] for one in panel["effects"]}["dashpot"] == "dissipation"
 
 
-def test_a_reconnected_page_has_its_speed_its_pause_and_its_energy_account_back() -> None:
-    dashboard = Dashboard()
+def test_a_reconnected_page_has_its_speed_its_pause_and_its_energy_account_back(dashboard: Dashboard) -> None:
     dashboard.received({"do": "reconnected", "speed": 5, "playing": False, "account": True, "uploaded": True})
     session = dashboard.session
     assert (session.speed, session.playing, session.account) == (5.0, False, True)
     assert dashboard.views.header.state["account"]
     assert session.sentence.endswith("has started again from rest and your uploaded data are gone.")
-    dashboard.close(None)
 
 
-def test_another_theme_reaches_the_pages_and_their_figures() -> None:
-    dashboard = Dashboard()
+def test_another_theme_reaches_the_pages_and_their_figures(dashboard: Dashboard) -> None:
     told: list[Theme] = []
     for page in dashboard.pages:
         page.theme_changed = told.append  # type: ignore[method-assign]
@@ -200,7 +169,6 @@ def test_another_theme_reaches_the_pages_and_their_figures() -> None:
     dashboard.received({"do": "theme", "value": "none of them"})
     assert told == [THEMES["dark"]] * len(dashboard.pages)
     assert dashboard.views.overlays["branches"].theme == THEMES["dark"]  # type: ignore[attr-defined]
-    dashboard.close(None)
 
 
 def test_an_action_of_two_pages_is_refused_with_both_names() -> None:
@@ -234,9 +202,8 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
     assert given["http_server_kwargs"]["idle_connection_timeout"] == 60 and given["http_server_kwargs"]["body_timeout"] == 30
 
 
-def test_a_busy_server_says_so() -> None:
+def test_a_busy_server_says_so(dashboard: Dashboard) -> None:
     """And stops saying so with the first picture that comes in time."""
-    dashboard = Dashboard()
     try:
         for late, said in ((1.5, True), (0.0, False)):
             METERS._late.extend([late] * 40)
@@ -246,4 +213,3 @@ def test_a_busy_server_says_so() -> None:
             assert words == ("The server is busy: pictures follow every 1.2 s." if said else "")
     finally:
         METERS._late.clear()
-        dashboard.close(None)

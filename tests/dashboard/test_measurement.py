@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_controller import Dashboard
+from opened import Dashboard
 
 from app.dashboard.measurement import SAMPLES
 from app.pictures.measured import measured_columns
-from granchain_core import CurvePoint
+from granchain_core import CurvePoint, scene
 from granchain_core.experiment import Measured, compared, read_data
 from granchain_core.regime import Regime
 from granchain_core.result import ForceErrors
@@ -32,14 +32,14 @@ def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
     return dashboard.views.tabs.state.get(name) or dashboard.session.sentence
 
 
-def test_every_byte_of_a_file_arrives() -> None:
+def test_every_byte_of_a_file_arrives(dashboard: Dashboard) -> None:
     text = "Frequenz [kHz];Kraft [µN]\r\n0,04;5\r\n".encode("utf-16")
-    assert "UTF-16" in after(Dashboard(), sent(text), "understood")
-    assert "did not arrive" in after(Dashboard(), {"do": "csv", "content": "???"}, "understood")
+    assert "UTF-16" in after(dashboard, sent(text), "understood")
+    dashboard.received({"do": "csv", "content": "???"})
+    assert "did not arrive" in dashboard.session.sentence
 
 
-def test_a_question_is_shown_and_its_answers_are_kept() -> None:
-    dashboard = Dashboard()
+def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> None:
     question = after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
     assert question["about"] == ["columns"] and question["rows"][0] == [1, ["1.100", "2,5"]]
     assert question["columns"][0] == [1, "", "frequency", "Hz"] and "kHz" in question["units"]["frequency"]
@@ -55,25 +55,22 @@ def test_a_question_is_shown_and_its_answers_are_kept() -> None:
     ({"columns": [["frequency", True, "Hz"]]}, "not the number of a column"), ({"columns": [["frequency", 1, "N"]]}, "not a unit"),
     ({"columns": [[None, 1, "N"]]}, "Unknown quantity"), ({"columns": [], "decimal": "both"}, "Unknown decimal mark"),
 ])
-def test_an_answer_from_a_browser_is_not_trusted(message: dict[str, Any], sentence: str) -> None:
-    dashboard = Dashboard()
+def test_an_answer_from_a_browser_is_not_trusted(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
     dashboard.received({"do": "csv-answer", **message})
     assert sentence in dashboard.session.sentence
 
 
-def test_a_series_is_not_drawn_as_a_curve() -> None:
+def test_a_series_is_not_drawn_as_a_curve(dashboard: Dashboard) -> None:
     text = b"time_s,velocity_m_s\n" + b"".join(b"%d,1\n" % i for i in range(12))
-    assert "is a time series" in after(Dashboard(), sent(text), "understood")
+    assert "is a time series" in after(dashboard, sent(text), "understood")
 
 
 def point(f: float, force: float) -> CurvePoint:
     """A point of a curve."""
-    dashboard_scene = Dashboard().session.scene
-    return CurvePoint(f, force, force, force, Regime("periodic", 1, None, None, 9), ForceErrors(), rest(dashboard_scene))
+    return CurvePoint(f, force, force, force, Regime("periodic", 1, None, None, 9), ForceErrors(), rest(scene("sec2")))
 
 
-def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve() -> None:
-    dashboard = Dashboard()
+def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve(dashboard: Dashboard) -> None:
     assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: 2 points")
     assert dashboard.views.tabs.state["misfit"] is None
     figure = dashboard.views.curve
@@ -105,11 +102,10 @@ def test_bars_are_errors_or_the_extremes_of_repeats() -> None:
     assert [measured_columns(repeated, 0.5)[name] for name in ("low", "high")] == [[6.0], [8.0]]
 
 
-def test_the_sample_file_is_read_and_says_what_it_is() -> None:
+def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> None:
     found = read_data((SAMPLES / "curve.csv").read_bytes())
     assert isinstance(found, Measured) and found.note.startswith("Not measured: computed by granchain")
     assert found.repeats is not None and found.repeats.max() == 3
-    dashboard = Dashboard()
     told: list[dict[str, Any]] = []
     dashboard.views.tabs.send = lambda **message: told.append(message)  # type: ignore[method-assign]
     dashboard.received({"do": "csv-sample"})
