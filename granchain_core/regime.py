@@ -25,7 +25,7 @@ class Regime:
     periods_run : int
         Drive periods that were run.
     lyapunov : tuple of float or None
-        Lyapunov exponent per drive period and its standard error, where it was measured.
+        Lyapunov exponent per drive period and its standard error over blocks of periods, where it was measured.
     multiplier : float or None
         Largest |μ| of the n-period map, where it was computed.
     followed : bool
@@ -34,6 +34,14 @@ class Regime:
         Period of an orbit that an unsettled motion approaches.
     driven : bool
         Whether there is a drive; without one the motion only moves from its start.
+    return_distance : float or None
+        Median distance from the strobes of a record's second half to the nearest of its first half, relative to the
+        largest displacement and velocity; known where the Lyapunov exponent is zero within its error.
+    return_limit : float or None
+        What that distance must be below for a quasi-periodic motion.
+    window_ratios : tuple of float or None
+        Smallest and largest ratio of the largest change in a window of periods to that in the window before, over three
+        windows and all periods tried; known where the Lyapunov exponent is zero within its error.
 
     Examples
     --------
@@ -53,11 +61,14 @@ class Regime:
     followed: bool = False
     approaches: int | None = None
     driven: bool = True
+    return_distance: float | None = None
+    return_limit: float | None = None
+    window_ratios: tuple[float, float] | None = None
 
     @classmethod
-    def unsettled(cls, periods_run: int) -> Regime:
-        """A motion of which nothing is known after `periods_run` periods."""
-        return cls("unsettled", None, None, None, periods_run)
+    def unsettled(cls, periods_run: int, lyapunov: tuple[float, float] | None = None) -> Regime:
+        """A motion whose regime is not known after `periods_run` periods."""
+        return cls("unsettled", None, None, None, periods_run, lyapunov)
 
     @classmethod
     def undriven(cls, periods_run: int) -> Regime:

@@ -25,14 +25,13 @@ def do(arguments: argparse.Namespace) -> None:
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: lyapunov_spectrum(chosen, arguments.periods, stop=stop, progress=progress))
     if arguments.json:
+        low, high = found.dimension_range or (None, None)
         show_json({"exponents": found.exponents.tolist(), "errors": found.errors.tolist(), "resolved": found.resolved,
                    "dimension": found.dimension, "mean_trace": found.mean_trace, "liouville": found.liouville,
-                   "periods": found.periods})
+                   "periods": found.periods, "dimension_low": low, "dimension_high": high})
         return
-    dimension = "not known, for it depends on exponents that are not" if found.dimension is None \
-        else f"{found.dimension:.4f}"
     print(f"{chosen.name}: {found.resolved} of {len(found.exponents)} exponents resolved over {found.periods} periods; "
-          f"Kaplan–Yorke dimension of the section {dimension}")
+          f"Kaplan–Yorke dimension of the section: {found.dimension_words()}")
     for i, (exponent, error) in enumerate(zip(found.exponents, found.errors, strict=True), start=1):
         known = f"± {error:.1e}" if i <= found.resolved else "at most"
         print(f"{i:4d}  {exponent:+10.5f} per period  {known}")

@@ -9,6 +9,7 @@ from typing import Any
 
 from granchain_core import BadInput, Run, Scene
 from granchain_core.integrate import method_for
+from granchain_core.regime import Regime
 from granchain_core.run.budget import BUDGET
 
 from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
@@ -128,7 +129,7 @@ def _run_json(result: Run) -> dict[str, Any]:
     chosen = result.scene
     return {
         "scene": chosen.name, "knobs": chosen.knobs, "effects": chosen.effects, "status": result.status,
-        "regime": result.regime.name, "period": result.regime.period,
+        "regime": result.regime.name, "period": result.regime.period, "evidence": _evidence(result.regime),
         "max_output_force": result.max_output_force,
         "max_output_force_elastic": result.max_output_force_elastic,
         "max_input_force": result.max_input_force, "error_estimate": result.error_estimate,
@@ -136,6 +137,13 @@ def _run_json(result: Run) -> dict[str, Any]:
         "error_estimate_elastic": result.force_errors.elastic,
         "energy_residual": result.energy_residual, "cost": asdict(result.cost),
     }
+
+
+def _evidence(regime: Regime) -> dict[str, Any]:
+    """The numbers behind the regime; null where one was not computed."""
+    found = asdict(regime)
+    return {name: found[name] for name in ("periods_run", "decay", "distance", "multiplier", "lyapunov", "approaches",
+                                           "return_distance", "return_limit", "window_ratios")}
 
 
 def _show_run(result: Run) -> None:

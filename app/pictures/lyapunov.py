@@ -25,6 +25,6 @@ def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[
         ("place", "@rank"), ("exponent per drive period", "@exponent{0.0000} ± @error{0.0000}")]))
     plot.xaxis.axis_label, plot.yaxis.axis_label = "place by size", "Lyapunov exponent per drive period"
-    dimension = "not known" if found.dimension is None else f"{found.dimension:.3f}"
+    dimension = found.dimension_words()
     plot.title.text = f"Kaplan–Yorke dimension {dimension}; hollow: not more than this"
     return dress(plot, theme)

@@ -4,9 +4,10 @@ Equation   Q_{p+1} R_{p+1} = M_p Q_p with M_p the derivative of the map over per
            λ_i = ⟨ln |R_ii|⟩ per drive period
            D_KY = j + (λ_1 + … + λ_j) / |λ_{j+1}| with the largest j for which the sum is not negative
 Source     Benettin et al. 1980; Kaplan & Yorke 1979; standard errors from means of blocks
-Note       The sum of all exponents is the mean of ∫ trace along the motion (Liouville), which is computed beside them.
-           A strong dashpot shrinks some directions by more than double precision resolves in a period: such exponents
-           are bounds from above, and `resolved` says how many are more than that.
+Note       The sum of all exponents is the mean of ∫ trace along the motion (Liouville), which is computed too.
+           Standard errors take the means of the blocks as independent. A strong dashpot shrinks some directions by more
+           than double precision resolves in a period: such exponents are bounds from above, and `resolved` says how
+           many are more than that.
 """
 
 from __future__ import annotations
@@ -46,7 +47,11 @@ class LyapunovSpectrum(Labelled):
     scene : Scene
         The chain.
     exponents, errors : numpy.ndarray, shape (2N,)
-        Per drive period, largest first, and their standard errors.
+        Per drive period, largest first, and their standard errors: of the means of 20 blocks taken as independent.
+    dimension : float or None
+        Kaplan–Yorke dimension of the section's attractor from the exponents as they are.
+    dimension_range : tuple of float or None
+        The dimension with all exponents one standard error lower, and higher.
     resolved : int
         How many of them are known; the others are at most what is given.
     periods : int
@@ -75,13 +80,23 @@ class LyapunovSpectrum(Labelled):
 
         2N where no sum is negative, as without damping; None where it depends on exponents that are not resolved.
         """
-        sums = np.cumsum(self.exponents)
-        if sums[0] < 0.0:
-            return 0.0
-        last = int(np.nonzero(sums >= 0.0)[0][-1])
-        if last + 1 >= self.resolved:
-            return float(len(sums)) if self.resolved == len(sums) else None
-        return float(last + 1 + sums[last] / abs(self.exponents[last + 1]))
+        return _kaplan_yorke(self.exponents, self.resolved)
+
+    @property
+    def dimension_range(self) -> tuple[float, float] | None:
+        """The dimension with all exponents one standard error lower, and higher; None where one of them is not known.
+
+        A range and no confidence interval: the errors of the exponents are taken to have the same sign.
+        """
+        low = _kaplan_yorke(self.exponents - self.errors, self.resolved)
+        high = _kaplan_yorke(self.exponents + self.errors, self.resolved)
+        return None if low is None or high is None else (low, high)
+
+    @property
+    def dimension_resolved(self) -> bool:
+        """Whether the range is known and has no jump: the largest exponent has one sign within its standard error."""
+        found, certain = self.dimension_range, abs(self.exponents[0]) > self.errors[0]
+        return self.dimension is not None and found is not None and bool(certain or found[0] == found[1])
 
     @property
     def liouville(self) -> float | None:
@@ -101,16 +116,39 @@ class LyapunovSpectrum(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Dimension and sums, and where they come from."""
+        low, high = self.dimension_range or (None, None)
         return {**provenance(self.scene, CERTIFIED, None), "periods": self.periods, "mean_trace": self.mean_trace,
-                "dimension": or_nan(self.dimension), "liouville": or_nan(self.liouville)}
+                "dimension": or_nan(self.dimension), "liouville": or_nan(self.liouville),
+                "dimension_low": or_nan(low), "dimension_high": or_nan(high)}
 
     def summary(self) -> list[str]:
         """The leading exponents and the dimension."""
         shown = [f"{e:+.4f} ± {s:.4f}" for e, s in zip(self.exponents[:4], self.errors, strict=False)]
-        size = "not known" if self.dimension is None else f"{self.dimension:.3f}"
         return [f"leading exponents per drive period: {', '.join(shown)}",
-                f"Kaplan–Yorke dimension of the section: {size}",
+                f"Kaplan–Yorke dimension of the section: {self.dimension_words()}",
                 f"{self.resolved} of {len(self.exponents)} resolved, over {self.periods} periods"]
+
+    def dimension_words(self) -> str:
+        """The dimension with its range; "not resolved" where the sign of the largest exponent decides."""
+        if self.dimension is None:
+            return "not known"
+        if self.dimension_range is None:
+            return f"{self.dimension:.3f}, its range is not known"
+        low, high = self.dimension_range
+        if not self.dimension_resolved:
+            return f"not resolved, {low:.3f} to {high:.3f}: the sign of the largest exponent decides"
+        return f"{self.dimension:.3f}" + (f" ({low:.3f} to {high:.3f})" if high > low else "")
+
+
+def _kaplan_yorke(exponents: np.ndarray, resolved: int) -> float | None:
+    """The dimension from exponents (2N,), largest first, of which the first `resolved` are known."""
+    sums = np.cumsum(exponents)
+    if sums[0] < 0.0:
+        return 0.0
+    last = int(np.nonzero(sums >= 0.0)[0][-1])
+    if last + 1 >= resolved:
+        return float(len(sums)) if resolved == len(sums) else None
+    return float(last + 1 + sums[last] / abs(exponents[last + 1]))
 
 
 def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = None, stop: Stop | None = None,

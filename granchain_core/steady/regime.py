@@ -1,8 +1,8 @@
 """The regime of a motion from its stroboscopic states and its Lyapunov exponents.
 
 A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by r per
-orbit, the distance left is change·r/(1 − r). Only that bound makes a motion a candidate; what confirms it is in
-settling/regime_decisions.py and batch/settle.py.
+orbit, the distance left is change·r/(1 − r). A motion whose bound is small enough is a candidate for a periodic one;
+settling/regime_decisions.py and batch/settle.py confirm it.
 """
 
 from __future__ import annotations
@@ -86,26 +86,43 @@ def grows(mean: float, error: float) -> bool:
 
 
 def is_neutral(mean: float, error: float) -> bool:
-    """Whether neighbours neither part nor come together, by a mean exponent per period and its standard error."""
-    return abs(mean) <= max(3.0 * error, _NEUTRAL)
+    """Whether neighbours neither part nor approach, by a mean exponent per period and its standard error.
+
+    A large error must not make this easier: three standard errors below `CLEAR_GROWTH` exclude strong chaos, and a mean
+    above the limit of chaos is never neutral. Otherwise the measurement is undecided.
+    """
+    return abs(mean) <= max(3.0 * error, _NEUTRAL) and 3.0 * error < CLEAR_GROWTH and mean <= _CHAOTIC
+
+
+def _mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
+    return float(exponents.mean()), float(exponents.std(ddof=1) / math.sqrt(len(exponents)))
+
+
+def undecided(exponents: np.ndarray) -> bool:
+    """Whether the error of these blocks is too large for a decision: more blocks are needed.
+
+    The mean is neither clearly positive nor clearly negative, and `is_neutral` does not hold.
+    """
+    mean, error = _mean_and_error(exponents)
+    return mean >= -3.0 * error and not grows(mean, error) and not is_neutral(mean, error)
 
 
 def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
 
     Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
-    errors or 5e-4, the section comes back near itself as it does on a closed curve, and the record is long enough to
-    show that it is neither shrinking nor growing. Anything else is transient, however slow.
+    errors or 5e-4 (`is_neutral` limits the error), the section comes back near itself as on a closed curve, and the
+    record is long enough to show that changes neither shrink nor grow. Anything else is unsettled. Where the exponent
+    is zero the regime has the numbers on which the other two conditions rest, met or not.
     """
-    mean = float(exponents.mean())
-    error = float(exponents.std(ddof=1) / math.sqrt(len(exponents)))
+    mean, error = _mean_and_error(exponents)
     if grows(mean, error):
-        name = "chaotic"
-    elif is_neutral(mean, error) and stays(strobes) and returns_near(strobes):
-        name = "quasi-periodic"
-    else:
-        name = "unsettled"
-    return Regime(name, None, None, None, run, (mean, error))
+        return Regime("chaotic", None, None, None, run, (mean, error))
+    if not is_neutral(mean, error):
+        return Regime.unsettled(run, (mean, error))
+    name = "quasi-periodic" if stays(strobes) and returns_near(strobes) else "unsettled"
+    return Regime(name, None, None, None, run, (mean, error), return_distance=return_distance(strobes),
+                  return_limit=return_limit(strobes), window_ratios=window_ratios(strobes))
 
 
 def clearly_chaotic(exponents: np.ndarray) -> bool:
@@ -180,13 +197,34 @@ def stays(strobes: np.ndarray) -> bool:
     return len(seen) > 0 and not _slowing(seen) and not _departing(seen)
 
 
+def window_ratios(strobes: np.ndarray) -> tuple[float, float] | None:
+    """Smallest and largest ratio of a window's largest change to that of the window before, over all periods.
+
+    None where the record is too short for three windows.
+    """
+    seen = _windows(strobes)
+    if len(seen) == 0 or not (seen[:, :2] > 0.0).all():
+        return None
+    ratios = seen[:, 1:] / seen[:, :2]
+    return float(ratios.min()), float(ratios.max())
+
+
 def returns_near(strobes: np.ndarray) -> bool:
     """Whether late states of the section have close neighbours among early ones, as on a closed curve.
 
     On a curve filled evenly by P points neighbours lie about 2π/P apart; a section that drifts or spreads does not
-    come back so near. The limit is five times that.
+    come back so near. The limit is five times that, with P the number of early states.
     """
-    half = len(strobes) // 2
-    nearest = np.zeros(len(strobes) - half)
+    return return_distance(strobes) < return_limit(strobes)
+
+
+def return_distance(strobes: np.ndarray) -> float:
+    """Median distance from a state of the record's second half to the nearest of its first half, relative."""
+    nearest = np.zeros(len(strobes) - len(strobes) // 2)
     section.nearest_neighbours(np.ascontiguousarray(strobes), np.zeros(2), nearest)
-    return bool(np.median(nearest) < 5.0 * 2.0 * np.pi / half)
+    return float(np.median(nearest))
+
+
+def return_limit(strobes: np.ndarray) -> float:
+    """The distance below which the record counts as returning."""
+    return 5.0 * 2.0 * math.pi / (len(strobes) // 2)

@@ -93,16 +93,26 @@ def _regime(file: File) -> Regime:
     found = file.json("regime")
     if isinstance(found, dict) and "decay" not in found:  # files written before decay and |μ| were told apart
         found["decay"] = found.pop("multiplier", None)
-    lyapunov = found.pop("lyapunov", None) if isinstance(found, dict) else None
+    lyapunov, ratios = ((found.pop(name, None) for name in ("lyapunov", "window_ratios")) if isinstance(found, dict)
+                        else (None, None))
     told = entries("regime", found, {
         "name": "text", "period": "whole?", "decay": "number?", "distance": "number?", "periods_run": "whole",
-        "multiplier": "number?", "followed": "flag?", "approaches": "whole?", "driven": "flag?"})
+        "multiplier": "number?", "followed": "flag?", "approaches": "whole?", "driven": "flag?",
+        "return_distance": "number?", "return_limit": "number?"})
     one_of("regime", told["name"], NAMES)
     if lyapunov is not None:
-        mean, error = lyapunov
-        told["lyapunov"] = tuple(entries("regime.lyapunov", {"mean": mean, "error": error},
-                                         {"mean": "number", "error": "number"}).values())
+        told["lyapunov"] = _pair("regime.lyapunov", lyapunov, "mean", "error")
+    if ratios is not None:
+        told["window_ratios"] = _pair("regime.window_ratios", ratios, "smallest", "largest")
     return Regime(**{**told, "followed": bool(told["followed"]), "driven": told["driven"] is not False})
+
+
+def _pair(place: str, found: object, first: str, second: str) -> tuple[float, ...]:
+    """Two numbers of a regime."""
+    if not isinstance(found, list) or len(found) != 2:
+        raise Refused(f"{place} is not a pair of numbers")
+    return tuple(entries(place, dict(zip((first, second), found, strict=True)),
+                         {first: "number", second: "number"}).values())
 
 
 def _read_jumps(file: File, beads: int) -> Jumps:

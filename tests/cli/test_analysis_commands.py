@@ -19,7 +19,7 @@ COMMANDS = {
 }
 KEYS = {
     "spectrum": {"force", "period", "resolution", "aliasing", "frequency", "amplitude", "phase", "transfer"},
-    "lyapunov": {"exponents", "errors", "resolved", "dimension", "mean_trace", "liouville", "periods"},
+    "lyapunov": {"exponents", "errors", "resolved", "dimension", "dimension_low", "dimension_high", "mean_trace", "liouville", "periods"},
     "strobes": {"knob", "start", "bead", "values", "regime", "period", "displacement", "velocity"},
     "basins": {"x", "y", "number", "attractors"}, "bands": {"bands", "cut_off"},
     "pulse": {"contact", "time", "force", "speed_beads", "speed", "width", "velocity", "error_estimate", "energy_residual"},

@@ -13,8 +13,8 @@ import pytest
 
 from app.cli import main
 
-RUN_KEYS = {"scene", "knobs", "effects", "status", "regime", "period", "max_output_force", "max_output_force_elastic",
-            "max_input_force", "error_estimate", "error_estimate_input", "error_estimate_output",
+RUN_KEYS = {"scene", "knobs", "effects", "status", "regime", "period", "evidence", "max_output_force",
+            "max_output_force_elastic", "max_input_force", "error_estimate", "error_estimate_input", "error_estimate_output",
             "error_estimate_elastic", "energy_residual", "cost"}
 CURVE_KEYS = {"frequency", "max_output_force", "max_output_force_elastic", "max_input_force", "regime", "period",
               "error_estimate", "error_estimate_input", "error_estimate_elastic", "wall_s"}
@@ -28,6 +28,9 @@ def test_run_prints_one_json_object_with_the_contracts_keys(capsys: pytest.Captu
     assert set(data) == RUN_KEYS
     assert set(data["cost"]) == {"wall_s", "steps", "rhs", "events", "method"}
     assert data["regime"] == "periodic" and data["period"] == 1 and data["status"] == "done"
+    assert set(data["evidence"]) == {"periods_run", "decay", "distance", "multiplier", "lyapunov", "approaches",
+                                     "return_distance", "return_limit", "window_ratios"}
+    assert data["evidence"]["distance"] < 1e-6 and data["evidence"]["window_ratios"] is None
     assert data["max_output_force_elastic"] == pytest.approx(0.62, rel=0.01)  # docs/model.md, `fig3a`
     assert "absent, with no code and no array: tension cut, foundation, preload" in err
 

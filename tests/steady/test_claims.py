@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from granchain_core import State, run, scene
+from granchain_core import State, resonance_curve, run, scene, settled
 from granchain_core.integrate import Engine, Setting, certified
 from granchain_core.kernels.strobes import periodicity as section
 from granchain_core.steady import regime
@@ -46,6 +46,50 @@ def test_growth_within_its_error_is_no_chaos() -> None:
     """A mean exponent of 0.004 ± 0.006 on a closed curve is no evidence of chaos."""
     exponents = np.array([0.03, -0.02, 0.01, -0.01, 0.02, -0.006])
     assert regime.regime_from_exponents(exponents, turning(1.0), 420).name == "quasi-periodic"
+
+
+@pytest.mark.parametrize(("mean", "error", "neutral"), [
+    (0.0, 0.005, True), (-0.012, 0.01, True), (4e-4, 1e-6, True),      # as on the closed curves of section 2
+    (0.02, 0.01, False), (0.0, 0.02, False), (0.005, 0.5, False),      # too uncertain to exclude chaos
+    (0.02, 0.001, False), (-0.02, 0.001, False),                       # clearly something else
+])
+def test_a_bad_measurement_is_no_easier(mean: float, error: float, neutral: bool) -> None:
+    """Zero within three standard errors counts only while these exclude a growth of 0.05 a period."""
+    assert regime.is_neutral(mean, error) is neutral
+
+
+def test_an_uncertain_exponent_is_measured_further() -> None:
+    """0.02 ± 0.01 on a perfect closed curve is unsettled, and asks for more blocks; 0.02 ± 0.001 is chaos."""
+    swing = np.tile([1.0, -1.0], 5)
+    uncertain, sure = 0.02 + 0.03 * swing, 0.02 + 0.003 * swing
+    assert regime.undecided(uncertain) and not regime.undecided(sure) and not regime.undecided(-sure)
+    found = regime.regime_from_exponents(uncertain, turning(1.0), 420)
+    assert found.name == "unsettled" and found.lyapunov == (pytest.approx(0.02), pytest.approx(0.01, rel=1e-12))
+    assert regime.regime_from_exponents(sure, turning(1.0), 420).name == "chaotic"
+
+
+def test_the_evidence_for_a_closed_curve_is_kept() -> None:
+    """The golden rotation: 420 states come back within 2π/210 of their circle, and no window differs from the next."""
+    found = regime.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), turning(1.0), 420)
+    assert found.return_limit == pytest.approx(10.0 * np.pi / 210.0)
+    assert found.return_distance is not None and 0.0 < found.return_distance < 2.0 * np.pi / 210.0
+    assert found.window_ratios is not None and found.window_ratios == pytest.approx((1.0, 1.0), abs=2e-3)
+    creeping = regime.regime_from_exponents(np.array([-2e-4, -4e-4, -3e-4, -3e-4]), turning(0.9997), 420)
+    # the largest change of a window may come some ten periods sooner or later in it: 0.9997^10
+    assert creeping.name == "unsettled" and creeping.window_ratios == pytest.approx((0.9997**100,) * 2, abs=5e-3)
+    short = regime.regime_from_exponents(np.array([1e-4, -1e-4]), turning(1.0, 40), 40)
+    assert short.name == "unsettled" and short.window_ratios is None
+
+
+def test_one_chain_and_a_batch_have_the_same_evidence() -> None:
+    """1700 Hz, quasi-periodic: the two ways judge records of the same length, up to the end of the exponent."""
+    chain = scene("sec2").evolve(f=1700.0)
+    alone_, (together,) = settled(chain).regime, resonance_curve(chain, [1700.0]).points
+    assert alone_.name == together.regime.name == "quasi-periodic"
+    assert alone_.return_limit == together.regime.return_limit == pytest.approx(10.0 * np.pi / 210.0)
+    for one in (alone_, together.regime):
+        assert one.return_distance is not None and one.return_distance < one.return_limit
+        assert one.window_ratios is not None and one.window_ratios[0] <= 1.02 and one.window_ratios[1] >= 0.98
 
 
 def test_a_spiral_that_creeps_inwards_is_no_closed_curve() -> None:

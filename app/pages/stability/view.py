@@ -120,10 +120,20 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
         "What the chain did, and after how many drive periods that was decided.")
     if regime.distance is not None:
         row("distance to the orbit", f"≤ {short_error(regime.distance)}",
-            "Bound on the relative distance of the settled picture: its change over one orbit times |μ|/(1 − |μ|).")
+            "Bound on the relative distance of the settled picture: its change over one orbit times r/(1 − r), where r "
+            "is |μ| if it was computed, else the decay, else ½.")
     if regime.lyapunov is not None:
         row("Lyapunov exponent", f"{regime.lyapunov[0]:+.4f} ± {regime.lyapunov[1]:.4f} per drive period",
             "Mean rate at which neighbouring motions part, with its standard error over blocks of periods.")
+    if regime.return_distance is not None:
+        row("return of the section", f"{short_error(regime.return_distance)}, limit "
+            f"{short_error(regime.return_limit or 0.0)}",
+            "Median distance from later states of the section to the nearest earlier one, relative to the motion; a "
+            "quasi-periodic motion stays below the limit.")
+    if regime.window_ratios is not None:
+        row("change from window to window", " to ".join(f"{one:.3f}" for one in regime.window_ratios),
+            "Smallest and largest ratio of the largest change in 100 periods to that in the 100 before, over all "
+            "periods tried: 1 where nothing shrinks or grows.")
     if analysis is not None:
         _orbit_rows(row, picture, analysis)
     cost = picture.run.cost

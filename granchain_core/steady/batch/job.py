@@ -43,7 +43,7 @@ class Job:
     """A scene that is being settled, from the scaled state y at phase 0, `run` periods after its start.
 
     `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record, its
-    forces [N] and a first measurement of its Lyapunov exponent.
+    forces [N], a first measurement of its Lyapunov exponent, and the blocks (B,) of one that is not finished.
     """
 
     scene: Scene
@@ -55,6 +55,7 @@ class Job:
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     maxima: np.ndarray = field(default_factory=lambda: np.zeros(3))
     measured: Regime | None = None
+    blocks: np.ndarray = field(default_factory=lambda: np.zeros(0))
     number: int = 0
 
     @property

@@ -24,9 +24,9 @@ from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
 from ..lyapunov import MOST_APART, exponents_in_pairs
-from ..regime import agree, clearly_chaotic, find_period, regime_from_exponents
+from ..regime import agree, clearly_chaotic, find_period, regime_from_exponents, undecided
 from ..settling.nearby_orbit import MOST_BEADS, seen_modulus
-from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK
+from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK, REMEMBERED
 from ..steady_state import SteadyState
 from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
 
@@ -120,6 +120,12 @@ class _JobsInBatch:
             if regime.period is not None:
                 job.coarse = (regime, maxima[-regime.period :].max(axis=0))
                 self.waiting.append(job)
+                continue
+            job.record = np.concatenate([job.record, strobes])[-REMEMBERED:]  # as a chain settled alone is judged
+            growth, job.blocks = np.concatenate([job.blocks, growth]), np.zeros(0)
+            if undecided(growth) and job.run < MOST_PERIODS and job.affordable:
+                job.blocks, job.in_doubt = growth, True
+                self.doubtful.append(job)
                 continue
             regime, before = regime_from_exponents(growth, job.record, job.run), job.measured
             if before is None and regime.name != "unsettled" and not clearly_chaotic(growth):

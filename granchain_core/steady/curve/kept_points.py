@@ -52,7 +52,8 @@ def _told(point: CurvePoint) -> dict[str, Any]:
 
 def _point(told: dict[str, Any]) -> CurvePoint:
     regime = dict(told["regime"])
-    regime["lyapunov"] = tuple(regime["lyapunov"]) if regime["lyapunov"] else None
+    for name in ("lyapunov", "window_ratios"):  # the second is missing where an earlier version wrote
+        regime[name] = tuple(regime[name]) if regime.get(name) else None
     displacement, velocity, phase = told["state"]
     return CurvePoint(**{name: told[name] for name in _NUMBERS}, regime=Regime(**regime),
                       force_errors=ForceErrors(**told["force_errors"]), failure=told["failure"],

@@ -15,7 +15,7 @@ from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
 from ..lyapunov import exponents
-from ..regime import agree, clearly_chaotic, departing, regime_from_exponents, slowing
+from ..regime import agree, clearly_chaotic, departing, regime_from_exponents, slowing, undecided
 from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
@@ -30,6 +30,8 @@ PERIODS_IN_BLOCK = 20
 REMEMBERED = 420
 #: Measurements of the Lyapunov exponent for a motion that is not followed any further.
 _MEASUREMENTS = 3
+#: How often such a measurement is made longer, at most.
+_CONTINUED = 2
 #: Beads up to which multipliers confirm every claim of `settled`; for longer chains only claims in doubt.
 _ALWAYS = 30
 #: A claim is in doubt if the decay per drive period is above this: a slowly unstable orbit may look like it.
@@ -58,6 +60,7 @@ class Decisions:
         self.scene, self._carried = scene, carried
         self._departures, self._leaves = 0, False
         self._measured: Regime | None = None
+        self._blocks = np.zeros(0)
 
     def next(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """The next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
@@ -105,12 +108,20 @@ class Decisions:
         if further is None:
             return None
         self._departures += 1
-        self._measured = None
+        self._measured, self._blocks = None, np.zeros(0)
         return Decision(state=further)
 
     def _measure(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
-        """The Lyapunov exponent of the next periods; one that is small counts if a second measurement agrees."""
+        """The Lyapunov exponent of the next periods; one that is small counts if a second measurement agrees.
+
+        A measurement whose error is too large for a decision is continued by the next one.
+        """
         found, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
+        found = np.concatenate([self._blocks, found])
+        if undecided(found):
+            self._blocks = found
+            return Decision(strobes=passed)
+        self._blocks = np.zeros(0)
         record = np.concatenate([strobes, passed])
         run = regime.periods_run + len(passed)
         now, before = regime_from_exponents(found, record[-len(strobes):], run), self._measured
@@ -145,11 +156,18 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
 
 
 def _classified_by_exponent(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """Chaotic or quasi-periodic by one clear measurement of the Lyapunov exponent or by two that agree."""
+    """Chaotic or quasi-periodic by one clear measurement of the Lyapunov exponent or by two that agree.
+
+    A measurement may be made of two, where the error of one is too large for a decision.
+    """
     record, before = strobes, None
     for _ in range(_MEASUREMENTS):
-        found, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
-        record = np.concatenate([record, passed])
+        found = np.zeros(0)
+        for _ in range(_CONTINUED):
+            more, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
+            record, found = np.concatenate([record, passed]), np.concatenate([found, more])
+            if not undecided(found):
+                break
         now = regime_from_exponents(found, record[-REMEMBERED:], regime.periods_run + len(record) - len(strobes))
         if clearly_chaotic(found) or (before is not None and agree(now, before)):
             return now
