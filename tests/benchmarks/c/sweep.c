@@ -1,18 +1,34 @@
-/* The limit for a curve: RK4 in w with a fixed step, eight scenes a register, BLOCKS registers side by side.
+/* The limit for a curve: RK4 in w with a fixed step, WIDTH scenes a register, BLOCKS registers side by side.
  *
  * Every lane is one drive frequency with its own step and number of steps; a lane that has run its periods is filled
  * with the next frequency, the longest first. HARD of the N + 1 contacts take the square root of the square-root
- * unit, the others rsqrt14 with one Newton step on the multipliers, so that both are busy at once.
- * Compiled with -DN=… -DBLOCKS=… -DHARD=…
+ * unit, the others an approximate inverse root and Newton steps on the multipliers, so that both are busy at once.
+ * Compiled with -DWIDTH=… (8: AVX-512, 4: AVX2) -DN=… -DBLOCKS=… -DHARD=…
  */
 #include <immintrin.h>
 #include <math.h>
 #include <string.h>
 
+#if WIDTH == 8
 typedef __m512d V;
-#define V1(x) _mm512_set1_pd(x)
-#define FMA(a, b, c) _mm512_fmadd_pd(a, b, c)
-#define FNMA(a, b, c) _mm512_fnmadd_pd(a, b, c)
+#define OP(name) _mm512_##name##_pd
+#define NEWTON_STEPS 1
+#define LEAST 1e-100 /* 0 has no inverse root; what this adds to a force is 1e-150 */
+static inline V inverse_root(V x) { return _mm512_rsqrt14_pd(x); }
+static inline unsigned greater(V a, V b) { return _mm512_cmp_pd_mask(a, b, _CMP_GT_OQ); }
+static inline unsigned not_less(V a, V b) { return _mm512_cmp_pd_mask(a, b, _CMP_GE_OQ); }
+#else
+typedef __m256d V;
+#define OP(name) _mm256_##name##_pd
+#define NEWTON_STEPS 2 /* from 12 bits */
+#define LEAST 1e-30    /* a float; what this adds to a force is 1e-45 */
+static inline V inverse_root(V x) { return _mm256_cvtps_pd(_mm_rsqrt_ps(_mm256_cvtpd_ps(x))); }
+static inline unsigned greater(V a, V b) { return _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GT_OQ)); }
+static inline unsigned not_less(V a, V b) { return _mm256_movemask_pd(_mm256_cmp_pd(a, b, _CMP_GE_OQ)); }
+#endif
+#define V1(x) OP(set1)(x)
+#define FMA(a, b, c) OP(fmadd)(a, b, c)
+#define FNMA(a, b, c) OP(fnmadd)(a, b, c)
 
 /* State of one register of scenes; u[N] is the wall. */
 typedef struct {
@@ -21,11 +37,12 @@ typedef struct {
 } Block;
 
 static inline __attribute__((always_inline)) V power(V d, int hard) {
-    if (hard) return _mm512_mul_pd(d, _mm512_sqrt_pd(d));
-    V x = _mm512_max_pd(d, V1(1e-100)); /* 0 has no inverse root; what this adds is 1e-150 */
-    V r = _mm512_rsqrt14_pd(x);
-    V a = _mm512_mul_pd(x, r);
-    return _mm512_mul_pd(_mm512_mul_pd(x, a), FNMA(_mm512_mul_pd(V1(0.5), a), r, V1(1.5)));
+    if (hard) return OP(mul)(d, OP(sqrt)(d));
+    V x = OP(max)(d, V1(LEAST)), r = inverse_root(x);
+    for (int i = 0; i + 1 < NEWTON_STEPS; i++)
+        r = OP(mul)(r, FNMA(OP(mul)(OP(mul)(V1(0.5), x), r), r, V1(1.5)));
+    V a = OP(mul)(x, r); /* the last step is taken on the root itself */
+    return OP(mul)(OP(mul)(x, a), FNMA(OP(mul)(V1(0.5), a), r, V1(1.5)));
 }
 
 /* One stage: slope at (u, w); first: acc = s + share·slope; else acc += …; out = s + ahead·slope unless last. */
@@ -33,18 +50,18 @@ static inline __attribute__((always_inline)) V stage(const V *restrict u, const 
                                                      const V *sw, V *restrict ou, V *restrict ow, V *restrict au,
                                                      V *restrict aw, V driver, V lambda, V ahead, V share,
                                                      const int number) {
-    const V zero = _mm512_setzero_pd();
+    const V zero = OP(setzero)();
     V here = u[0];
-    V d_left = _mm512_max_pd(_mm512_sub_pd(driver, here), zero);
+    V d_left = OP(max)(OP(sub)(driver, here), zero);
     V e_left = power(d_left, HARD > 0);
 #pragma GCC unroll 64
     for (int i = 0; i < N; i++) {
         V right = i + 1 < N ? u[i + 1] : zero;
-        V d = _mm512_max_pd(_mm512_sub_pd(here, right), zero);
+        V d = OP(max)(OP(sub)(here, right), zero);
         /* spread the hard ones evenly */
         V e = power(d, ((i + 1) * HARD) / (N + 1) != ((i + 2) * HARD) / (N + 1));
-        V du = FMA(lambda, _mm512_sub_pd(d_left, d), w[i]);
-        V dw = _mm512_sub_pd(e_left, e);
+        V du = FMA(lambda, OP(sub)(d_left, d), w[i]);
+        V dw = OP(sub)(e_left, e);
         if (number == 0) {
             au[i] = FMA(share, du, su[i]), aw[i] = FMA(share, dw, sw[i]);
         } else {
@@ -58,11 +75,11 @@ static inline __attribute__((always_inline)) V stage(const V *restrict u, const 
 
 static inline __attribute__((always_inline)) void advance(Block *b, V lambda, V *e_out) {
     V mu[N], mw[N], nu[N], nw[N], au[N], aw[N];
-    const V half = _mm512_mul_pd(b->h, V1(0.5)), sixth = _mm512_mul_pd(b->h, V1(1.0 / 6.0));
-    const V third = _mm512_mul_pd(b->h, V1(1.0 / 3.0));
+    const V half = OP(mul)(b->h, V1(0.5)), sixth = OP(mul)(b->h, V1(1.0 / 6.0));
+    const V third = OP(mul)(b->h, V1(1.0 / 3.0));
     V s = b->sine, c = b->cosine;
-    V sm = FMA(s, b->turn_c, _mm512_mul_pd(c, b->turn_s)), cm = FNMA(s, b->turn_s, _mm512_mul_pd(c, b->turn_c));
-    V se = FMA(sm, b->turn_c, _mm512_mul_pd(cm, b->turn_s)), ce = FNMA(sm, b->turn_s, _mm512_mul_pd(cm, b->turn_c));
+    V sm = FMA(s, b->turn_c, OP(mul)(c, b->turn_s)), cm = FNMA(s, b->turn_s, OP(mul)(c, b->turn_c));
+    V se = FMA(sm, b->turn_c, OP(mul)(cm, b->turn_s)), ce = FNMA(sm, b->turn_s, OP(mul)(cm, b->turn_c));
     *e_out = stage(b->u, b->w, b->u, b->w, mu, mw, au, aw, s, lambda, half, sixth, 0);
     stage(mu, mw, b->u, b->w, nu, nw, au, aw, sm, lambda, half, third, 1);
     stage(nu, nw, b->u, b->w, mu, mw, au, aw, sm, lambda, b->h, third, 2);
@@ -74,8 +91,8 @@ static inline __attribute__((always_inline)) void advance(Block *b, V lambda, V 
 
 /* The top of the quartic through five values around a maximum c > b, c >= d, after two Newton steps. */
 static inline V quartic(V a, V b, V c, V d, V e) {
-    V first = _mm512_mul_pd(FMA(V1(8.0), _mm512_sub_pd(d, b), _mm512_sub_pd(a, e)), V1(1.0 / 12.0));
-    V second = _mm512_mul_pd(FMA(V1(16.0), _mm512_add_pd(b, d), FNMA(V1(30.0), c, -(a + e))), V1(1.0 / 12.0));
+    V first = OP(mul)(FMA(V1(8.0), OP(sub)(d, b), OP(sub)(a, e)), V1(1.0 / 12.0));
+    V second = OP(mul)(FMA(V1(16.0), OP(add)(b, d), FNMA(V1(30.0), c, -(a + e))), V1(1.0 / 12.0));
     V third = FMA(V1(0.5), e - a, b - d), fourth = a + e + 6.0 * c - 4.0 * (b + d);
     V x = -first / second;
     x -= (first + x * (second + x * (0.5 * third + x * fourth * (1.0 / 6.0)))) /
@@ -85,11 +102,11 @@ static inline V quartic(V a, V b, V c, V d, V e) {
 
 static inline __attribute__((always_inline)) void watch(Block *b, V e) {
     V a0 = b->e4[3], b0 = b->e4[2], c0 = b->e4[1], d0 = b->e4[0];
-    __mmask8 top = _mm512_cmp_pd_mask(c0, b0, _CMP_GT_OQ) & _mm512_cmp_pd_mask(c0, d0, _CMP_GE_OQ) &
-                   _mm512_cmp_pd_mask(c0, b->top, _CMP_GT_OQ);
+    unsigned top = greater(c0, b0) & not_less(c0, d0) & greater(c0, b->top);
     if (top) { /* rare: only a maximum that is a new largest value needs its top */
-        V best = quartic(a0, b0, c0, d0, e);
-        b->top = _mm512_mask_max_pd(b->top, top, b->top, _mm512_max_pd(best, c0));
+        V best = OP(max)(quartic(a0, b0, c0, d0, e), c0);
+        for (int k = 0; k < WIDTH; k++)
+            if (top >> k & 1) b->top[k] = best[k] > b->top[k] ? best[k] : b->top[k];
     }
     b->e4[3] = b0, b->e4[2] = c0, b->e4[1] = d0, b->e4[0] = e;
 }
@@ -97,7 +114,7 @@ static inline __attribute__((always_inline)) void watch(Block *b, V e) {
 /* Peaks of `count` scenes: beta, steps a period; `passed` periods are run, then `watched` more with the peak taken.
  * Scenes are expected longest first. Returns the number of register steps taken. */
 long sweep(int count, const double *beta, const long *steps, int passed, int watched, double lambda, double *peak) {
-    enum { LANES = 8 * BLOCKS };
+    enum { LANES = WIDTH * BLOCKS };
     static Block block[BLOCKS];
     long left[LANES], taken = 0;
     int scene[LANES], watching[LANES], next = 0, running = 0;
@@ -109,8 +126,8 @@ long sweep(int count, const double *beta, const long *steps, int passed, int wat
     for (;;) {
         for (int l = 0; l < LANES; l++) {
             if (left[l] > 0) continue;
-            Block *b = &block[l / 8];
-            int k = l % 8;
+            Block *b = &block[l / WIDTH];
+            int k = l % WIDTH;
             if (scene[l] >= 0 && !watching[l]) {
                 watching[l] = 1, left[l] = (long)watched * steps[scene[l]], ((double *)&b->top)[k] = 0.0;
                 continue;

@@ -1,4 +1,8 @@
-"""Hand-written C with AVX-512, compiled on the spot: the limit of what a fixed step in w can do on this processor."""
+"""Hand-written C, compiled on the spot: the limit of what a fixed step in w can do on this processor.
+
+With AVX-512, a register has eight doubles; where kernels are compiled without it, the sweep has four (AVX2) and is
+compiled without AVX-512 as well, so that it has no more registers than they.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +17,29 @@ from pathlib import Path
 
 import numpy as np
 
+from granchain_core.kernels.width import has_avx512
+
 from .. import machine, problem
 from ..case import Case, Peaks
 from ..problem import Solved
 
 _SOURCES = Path(__file__).resolve().parents[1] / "c"
-_FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512", "-ffp-contract=fast", "-fno-math-errno",
-          "-fno-trapping-math", "-shared", "-fPIC")
+WIDE = has_avx512()
+#: Scenes in a register of the sweep.
+WIDTH = 8 if WIDE else 4
+_FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512" if WIDE else "-mno-avx512f", "-ffp-contract=fast",
+          "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC")
 #: Step in scaled time at `refine` 1, the same as granchain's live method; settings of the ladder are steps.
 STEP = 0.2
 #: Registers of scenes side by side and contacts that use the square-root unit, tried in this order.
-SHAPES = ((1, 4), (1, 3), (1, 5), (1, 2), (1, 6), (2, 4))
+SHAPES = ((1, 4), (1, 3), (1, 5), (1, 2), (1, 6), (2, 4)) if WIDE else ((1, 12), (1, 9), (1, 6), (1, 4), (2, 12), (2, 6))
 
 
 def missing() -> str:
     """Why it cannot run, or nothing."""
     if shutil.which("gcc") is None:
         return "no compiler called gcc"
-    return "" if machine.has_flag("avx512f") else "the processor has no AVX-512"
+    return "" if machine.has_flag("avx2") and machine.has_flag("fma") else "the processor has no AVX2"
 
 
 @functools.cache
@@ -55,7 +64,7 @@ def _pointer(array: np.ndarray) -> ctypes.c_void_p:
 def sweep_peaks(frequencies: np.ndarray, step: float, shape: tuple[int, int] = SHAPES[0],
                 beads: int = problem.BEADS, periods: tuple[int, int] = (problem.PASSED, problem.WATCHED)) -> Peaks:
     """Peaks of the curve with steps of at most `step`, by the program of this shape."""
-    call = library("sweep", N=beads, BLOCKS=shape[0], HARD=shape[1]).sweep
+    call = library("sweep", WIDTH=WIDTH, N=beads, BLOCKS=shape[0], HARD=shape[1]).sweep
     call.restype = ctypes.c_long
     call.argtypes = [ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, ctypes.c_int, ctypes.c_double,
                      ctypes.c_void_p]
@@ -101,9 +110,8 @@ def cases() -> list[Case]:
     """The trajectory along the chain and the sweep across scenes."""
     ladder = [problem.SAMPLES * round(8.0 * 1.1**k) for k in range(88)]
     steps = (0.2, 0.15, 0.1, 0.085, 0.07, 0.06, 0.05, 0.04, 0.03)
-    return [
-        Case("C, AVX-512, rsqrt14", "w", ladder, lambda n: _trajectory(n, False), unit="steps a period"),
-        Case("C, AVX-512, sqrt", "w", ladder, lambda n: _trajectory(n, True), unit="steps a period"),
-        Case("C, AVX-512, lanes", "w", peaks=lambda f, h: sweep_peaks(f, h, best_shape()), curve_ladder=steps,
-             unit="step"),
-    ]
+    sweep = Case(f"C, {'AVX-512' if WIDE else 'AVX2'}, batch", "w", unit="step", curve_ladder=steps,
+                 peaks=lambda f, h: sweep_peaks(f, h, best_shape()))
+    along = [Case("C, AVX-512, rsqrt14", "w", ladder, lambda n: _trajectory(n, False), unit="steps a period"),
+             Case("C, AVX-512, sqrt", "w", ladder, lambda n: _trajectory(n, True), unit="steps a period")]
+    return [*along, sweep] if WIDE else [sweep]
