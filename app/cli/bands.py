@@ -15,7 +15,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """Print the bands of small waves."""
+    """Print the pass bands of linear waves."""
     from granchain_core import bands
 
     chosen = chosen_scene(arguments)
@@ -23,7 +23,7 @@ def do(arguments: argparse.Namespace) -> None:
     if arguments.json:
         show_json({"bands": found, "cut_off": found[-1][1]})
         return
-    print(f"{chosen.name}: small waves of an endless chain of these beads, pressed together by {chosen.F0:g} N")
+    print(f"{chosen.name}: linear waves in an infinite chain of these beads, precompressed by {chosen.F0:g} N")
     for number, (low, high) in enumerate(found, start=1):
         print(f"band {number}: {low:.6g} to {high:.6g} Hz")
     print(f"cut-off {found[-1][1]:.6g} Hz")

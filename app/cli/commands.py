@@ -39,7 +39,7 @@ _COMMANDS = {
     "branch": "branch of periodic orbits and its special points",
     "accuracy": "what accuracy costs: error against time for every method",
     "observe": "push a scene's chain by a measured force",
-    "check": "the hard cases: figure, bar and verdict; status 3 if one fails",
+    "check": "the hard cases: value, limit and verdict of each; status 3 if one fails",
     "curve": "resonance curve: largest forces over frequency",
     "map": "regime and largest forces over two knobs",
     "spectrum": "lines of a force, and the transfer from input to output",

@@ -45,7 +45,8 @@ def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Res
     if not same(found):
         if unfinished:
             return None
-        raise BadInput(f"{arguments.out} is the finished {what} of other words; give another --out.")
+        raise BadInput(f"{arguments.out} is a finished {what} that was computed with other options; give another "
+                       "--out.")
     say(f"{arguments.out} is finished already; nothing was computed.")
     return found
 

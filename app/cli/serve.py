@@ -37,7 +37,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--basic-auth", metavar="FILE",
                         help="a JSON file of user names and passwords (Panel's basic_auth)")
     parser.add_argument("--oauth-provider", metavar="NAME",
-                        help="sign in with a provider that Panel knows; PANEL_OAUTH_KEY and …_SECRET are its")
+                        help="sign in with a provider that Panel knows; PANEL_OAUTH_KEY and PANEL_OAUTH_SECRET "
+                             "are read from the environment")
     parser.add_argument("--log-level", choices=LEVELS, default="warning", help="of the log on standard error")
 
 

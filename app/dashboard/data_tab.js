@@ -4,7 +4,7 @@ import { button, element, paragraph, table } from "../parts/dom.js";
 
 const FORM =
   "A curve of frequency and largest force: CSV or TSV as any spreadsheet writes it, WebPlotDigitizer, HDF5 or netCDF-4. " +
-  "What the file does not say is asked.";
+  "You will be asked about anything the file leaves open.";
 const SENSITIVITY = "V, with its sensor's sensitivity";
 const CHUNK = 0x8000; // bytes that are turned into text at once
 
@@ -122,7 +122,7 @@ function questionForm(model, question) {
       dataset: about("dataset") ? kept.dataset : "",
     });
   };
-  row.append(button("read it so", send, { className: "primary" }));
+  row.append(button("Read with these settings", send, { className: "primary" }));
   const rows = element("table", { className: "asked" }, element("thead", {}, head), element("tbody", {}, ...body));
   return [paragraph(question.reason, "verdict"), row, rows];
 }
@@ -152,6 +152,6 @@ export function dataTab(model) {
   const choice = element("div", { className: "row" }, file, sample, ...(understood ? [remove] : []));
   const asking = question ? questionForm(model, question) : [paragraph(understood || FORM, "soft")];
   const waits =
-    understood && !misfit ? [paragraph("The misfit is said when the curve from rest is complete.", "soft")] : [];
+    understood && !misfit ? [paragraph("The misfit appears once the curve from rest is complete.", "soft")] : [];
   return { content: [choice, ...asking, ...(question ? [] : misfit ? misfitTable(misfit) : waits)] };
 }

@@ -13,7 +13,7 @@ from .layout import Views
 
 
 class DisplayChoices:
-    """Display choices; of them only a chosen curve starts a computation."""
+    """Actions that change how things are shown; only choosing a curve starts a computation."""
 
     def __init__(self, session: Session, views: Views, curves: Curves,
                  theme_changed: Callable[[Theme], None], header: Callable[[], None],

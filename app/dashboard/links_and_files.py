@@ -1,4 +1,4 @@
-"""Share links, and what can be taken along; the visitor's own measurements are in measurement.py."""
+"""Share links and exported files; the visitor's own measurements are in measurement.py."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .main_picture import Pictures
 from .measurement import Measurement
 
 _NONE = "There is no picture to save yet; wait for the first one."
-_PASSES = ("A program repeats a settled picture, and this live run depends on when each knob was moved. Choose "
+_PASSES = ("Only a settled picture can be exported as a script; a live run depends on when each knob moved. Choose "
            "“settled”, or save the run as HDF5.")
 
 

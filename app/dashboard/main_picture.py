@@ -57,7 +57,7 @@ def _computed(scene: Scene, start: State | None, most: float, stop: Turn) -> Ite
 
 @contextmanager
 def _refusing(scene: Scene) -> Iterator[None]:
-    """What takes too long is refused for this scene, whatever the knobs say by then."""
+    """Turn a picture that takes too long into a refusal of this scene, even if the knobs have moved since."""
     try:
         yield
     except (OverBudget, TooLong) as problem:
@@ -112,7 +112,7 @@ class Pictures:
             if self._session.playing:
                 self.idle()
             else:
-                self.advance(1)  # what stands still still shows the chain of these knobs
+                self.advance(1)  # a paused chain shows the new knobs, too
         else:
             self._jobs.submit(partial(self._settled, self._session.scene, start))
 
@@ -178,7 +178,7 @@ class Pictures:
             yield picture
 
     def _found(self, picture: object) -> None:
-        """A picture is ready. One that comes before the last was looked at takes its place: the server is busy then."""
+        """Keep a new picture for the event loop; it replaces one that a busy loop has not looked at yet."""
         assert isinstance(picture, (Settled, LivePicture))
         with self._lock:
             first, self._newest = self._newest is None, picture

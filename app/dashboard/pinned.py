@@ -76,7 +76,7 @@ class Pinned:
     def _add(self) -> None:
         session = self._session
         if session.mode != "settled" or session.picture is None:
-            raise BadInput("Only a settled picture can be pinned: a live run passes. Choose “settled” first.")
+            raise BadInput("Only a settled picture can be pinned: a live run keeps changing. Choose “settled” first.")
         if len(session.pins) == len(NAMES):
             raise BadInput(f"{len(NAMES)} pictures are pinned already; remove one of them in the tab “numbers” first.")
         picture = session.picture

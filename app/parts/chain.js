@@ -12,7 +12,7 @@ const SCALES = [
   ["fit", "fit", "Every picture fills its frame: weak motion can be seen, but not compared"],
 ];
 
-// Calls `act` after the present animation frame: a message posted in a frame arrives when that is done.
+// Calls `act` after the present animation frame: messages posted during a frame are delivered after it.
 function afterFrame(act) {
   const channel = new MessageChannel();
   channel.port1.onmessage = act;

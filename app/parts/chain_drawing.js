@@ -15,7 +15,7 @@ export function unpack({ rows, beads, values }, start = 0) {
     ["energy", beads],
     ["drive", 1],
   ]) {
-    // A plain Float32Array: a part of Bokeh's own array type would start at the buffer's beginning again.
+    // A plain Float32Array, because `subarray` of Bokeh's own array class ignores the offset.
     series[name] = new Float32Array(values.buffer, values.byteOffset + 4 * end, rows * width);
     end += rows * width;
   }
@@ -41,7 +41,6 @@ export class ChainDrawing {
       strong: read("--ink"),
       text: read("--soft"),
       steel: read("--steel"),
-      light: read("--steel-light"),
       shine: read("--steel-shine"),
       edge: read("--steel-edge"),
       number: read("--steel-number"),

@@ -8,7 +8,7 @@
     PING_TIMEOUT = 1300, // silence after a ping that counts as a lost connection
     RETRY_EVERY = 400, // between attempts to reach a lost server
     SILENT_SOCKET = 3000; // how long the socket may stay silent once the server answers HTTP again
-  const LOST = "Connection lost – trying again … The pictures are from before.";
+  const LOST = "Connection lost – trying again … The pictures may be out of date.";
   const BACK = "Connected again – restoring your settings …";
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
@@ -19,7 +19,7 @@
   const unanswered = new Map();
   let viewFields = []; // the fields of a link that belong to no scene
   const linkReceived = (query, answered, fields = viewFields) => {
-    // What answers a request is an act, also where it is the first link, or a more precise one came before it.
+    // A link that answers a request is a step of the history, even if it is the first one or has come in parts.
     const acted = answered.some((name) => unanswered.has(name)) || (known && query !== link);
     link = query;
     viewFields = fields;
@@ -27,7 +27,7 @@
     known = true;
     follow(acted);
   };
-  // The address says more precisely what was asked for before: no step of its own.
+  // A link that only makes the present address more precise is no step of its own.
   const linkRefined = (query) => {
     link = query;
     known = true;
@@ -55,7 +55,7 @@
     return url;
   };
 
-  // The scene and its knobs as the address has them, with what the server has not answered yet.
+  // Scene and knobs of the address, including requests that the server has not answered yet.
   const knobsAsked = () => {
     const query = address().searchParams;
     for (const name of [...query.keys()]) if (!["v", "scene", ...page.knobNames].includes(name)) query.delete(name);
@@ -216,7 +216,7 @@
     else sinceReached ??= 0;
   };
 
-  // One tick counts for four at most, so that a sleeping computer or a busy page is not taken for a silent server.
+  // A late tick counts as four at most: after the computer slept, or while the page is busy, the server is not blamed.
   let last = performance.now();
   const tick = () => {
     const now = performance.now(),

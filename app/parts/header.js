@@ -39,7 +39,7 @@ class Header {
     const small = [this.play, this.step, this.name, element("span", { className: "grow" }), wholePage(this.name)];
     const knobs = () => window.granchain.drawer(!document.getElementById("page").classList.contains("drawer"));
     const all = [
-      iconButton(icon("knobs", "knobs"), "All knobs, or the first one", knobs, "knobs-button"),
+      iconButton(icon("knobs", "knobs"), "Show or hide the other knobs", knobs, "knobs-button"),
       this.name,
       this.scene,
       this.reset,
@@ -75,8 +75,8 @@ class Header {
     this.redo = iconButton(icon("redo"), "Redo (Ctrl-Shift-Z)", () => window.granchain.redo(), "icon");
     this.pin = iconButton(icon("pin", "pin"), "Pin this picture and compare", () => this.pinPicture());
     this.share = iconButton(icon("share", "share"), "Link to this picture", send("share"));
-    const take = "Take along: pictures, tables, a program";
-    this.save = iconButton(icon("save", "save"), take, () => this.popovers.toggle("take"), "save");
+    const words = "Export: pictures, tables, a program";
+    this.save = iconButton(icon("save", "export"), words, () => this.popovers.toggle("take"), "save");
     this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp(), "icon");
     this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon");
     this.sound = iconButton(icon("sound"), "Hear the force at the wall", () => this.toggleSound(), "icon");
@@ -214,7 +214,7 @@ class Header {
     else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
 
-  // The theme of the link comes with the first state; from then on the button alone says it.
+  // The first state carries the theme of the link; after that only the button changes it.
   takeTheme(theme) {
     if (this.themed || !theme) return;
     this.themed = true;

@@ -24,6 +24,6 @@ export const icon = (name, words = "") =>
     words && `<span class="wide">${words}</span>`
   }`;
 
-// A button with an icon; its title is its name for who cannot see it.
+// A button with an icon; its title is also its accessible name.
 export const iconButton = (innerHTML, title, act, className = "") =>
   button("", act, { innerHTML, title, ariaLabel: title, className });

@@ -1,6 +1,6 @@
 // The keys that work everywhere on the page.
 
-// Whether one types or chooses there.
+// Whether the event comes from a field, a list or a button, which use the key themselves.
 const inField = (event) =>
   event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
 

@@ -21,7 +21,7 @@ const HELP = [
 ];
 
 const KEYS = [
-  ["?", "this sheet"],
+  ["?", "this help"],
   ["Space", "play or pause"],
   ["Ctrl-Z", "undo; Ctrl-Shift-Z: redo; so do the browser's back and forward"],
   ["Tab", "to the next control; Shift-Tab: back"],
@@ -45,7 +45,7 @@ export class Popovers {
   constructor(save) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
     this.help = element("div", { className: "popover help", hidden: true, tabIndex: 0 });
-    this.help.append(title("what is what"), list(HELP), title("keys"), list(KEYS));
+    this.help.append(title("Overview"), list(HELP), title("Keys"), list(KEYS));
     this.copied = element("p", { role: "status" });
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
     this.take = element("div", { className: "popover", hidden: true }, takeAlong(save));

@@ -3,7 +3,7 @@
 import { button, element } from "./dom.js";
 
 const ENTRIES = [
-  ["busy", (v) => v, "Many visitors are here: each gets its turn, and pictures on the way are left out."],
+  ["busy", (v) => v, "The server is busy: computations queue and intermediate pictures are skipped."],
   ["start", (v) => v, "Where the steady state was started."],
   ["accuracy", (v) => v, ""], // its title comes with it
   [

@@ -202,14 +202,14 @@ async function png({ text, width, height }) {
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
-// What a picture is of, for its first line and its name.
-function told(what) {
+// The file name of a picture and its first line: scene, frequency, regime.
+function captionOf(what) {
   const { scene, f } = window.granchain.shown ?? {};
   return { name: `${scene}-${f}Hz-${what}`, title: `${scene}, f = ${f} Hz: ${window.granchain.regime ?? ""}` };
 }
 
 async function savePicture(what, kind) {
-  const { name, title } = told(what);
+  const { name, title } = captionOf(what);
   const found =
     what === "page"
       ? { parts: figuresOf(document.getElementById("overlay")).map(figurePiece), words: [], bars: [] }
@@ -219,7 +219,7 @@ async function savePicture(what, kind) {
   download(`${name}.${kind}`, kind === "svg" ? new Blob([drawn.text], { type: "image/svg+xml" }) : await png(drawn));
 }
 
-// The list of what can be taken along. `send` asks the server for a file.
+// The list of what can be exported. `send` asks the server for a file.
 export function takeAlong(send) {
   const picture = element("select", { ariaLabel: "which picture" });
   const options = [
@@ -239,7 +239,7 @@ export function takeAlong(send) {
   return element(
     "div",
     { className: "take" },
-    element("h2", { textContent: "take along" }),
+    element("h2", { textContent: "Export" }),
     element("div", { className: "row" }, picture, save("png"), save("svg")),
     ...files,
   );

@@ -27,7 +27,7 @@ from .theme import Theme
 _NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 _OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
             "--disable-background-networking", "--virtual-time-budget=20000"]
-#: A window may be larger than its page: so many pixels more, which are cut off.
+#: The window is so many pixels larger than the page, because its frame takes some; the rest is cut off.
 _FRAME = 200
 _SECONDS = 120
 #: Put into the page: once everything is drawn, its SVG stands in an element of its own.

@@ -180,10 +180,10 @@ def cell_words(grid: Grid, cell: np.ndarray) -> str:
                       for axis, at, scale in zip((grid.x, grid.y), (j, i), _scales(grid), strict=True))
     name = NAMES[int(cell["regime"])]
     if name == "failed":
-        return f"{place}: the numbers failed"
+        return f"{place}: computation failed"
     regime = f"period {int(cell['period'])}" if cell["period"] else name
     error = float(cell["error_estimate"])
-    sure = f", relative error {short_error(error)}" if np.isfinite(error) else ", the largest seen"
+    sure = f", relative error {short_error(error)}" if np.isfinite(error) else ", largest observed, no error estimate"
     exponent = (f"; Lyapunov exponent {cell['lyapunov']:.3f} ± {cell['lyapunov_error']:.3f}"
                 if np.isfinite(cell["lyapunov"]) else "")
     return f"{place}: {regime}, largest output force {in_words(float(cell['max_output_force']), 'N')}{sure}{exponent}"

@@ -40,9 +40,10 @@ def captioned_page(figure: LayoutDOM, title: str, caption: str, theme: Theme) ->
 
 
 def _page(figure: LayoutDOM, title: str, **options: Any) -> str:
-    """The page by Bokeh, which asks for the current document: one of its own, not that of a dashboard in this process.
+    """Bokeh's page, made with a document of its own as the current one.
 
-    Bokeh keeps a weak reference, and one that is left behind by a visitor who is gone would be an error.
+    Bokeh asks for the current document, and keeps only a weak reference: in the process of a dashboard that may be the
+    document of a visitor who has left, which is an error.
     """
     own = Document()
     with patch_curdoc(own):

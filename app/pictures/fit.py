@@ -131,7 +131,7 @@ def _landscape(found: Fit, i: int, theme: Theme) -> figure:
         plot.add_layout(in_theme(Span(location=limit(found.scale), dimension="width", line_dash=[2, 4]),
                                  line_color="soft", line_width=1.2))
     plot.xaxis.axis_label = axis.label
-    plot.yaxis.axis_label = "χ² above its least"
+    plot.yaxis.axis_label = "Δχ²"
     plot.title.text = _best(found, i)
     return dress(plot, theme)
 

@@ -37,7 +37,7 @@ def spectrum(found: Spectrum, theme: Theme) -> figure:
     heads = plot.scatter("frequency", "amplitude", source=source, size=5, line_color=None)
     in_theme(heads, fill_color="output")
     folded = plot.line([0.0, float(found.frequency[-1]) / hertz], [floor] * 2, line_dash=[4, 4], level="underlay",
-                       legend_label="may be folded back")
+                       legend_label="aliasing bound")
     in_theme(folded, line_color="soft", line_width=1.2)
     plot.add_tools(HoverTool(renderers=[heads], tooltips=[
         ("frequency", f"@frequency{{0.0000}} {letter}Hz"), ("amplitude", f"@amplitude{{0.0000}} {scale.unit}"),

@@ -31,7 +31,6 @@ class Theme:
     faint: str
     accent: str
     steel: str
-    steel_light: str
     steel_shine: str
     steel_edge: str
     steel_number: str
@@ -49,15 +48,15 @@ class Theme:
 
 THEMES = {
     "light": Theme("light", paper="#f6f7f9", card="#ffffff", ink="#14181f", soft="#565f6d", faint="#dfe3e8",
-                   accent="#2456c7", steel="#8b95a3", steel_light="#eef1f5",
+                   accent="#2456c7", steel="#8b95a3",
                    steel_shine="#f4f6f9", steel_edge="#5d6673", steel_number="#14181f",
                    warn="#8a4b00", warn_paper="#fff1da"),
     "dark": Theme("dark", paper="#0e1116", card="#161a21", ink="#eef1f6", soft="#a4adba", faint="#2a313b",
-                  accent="#7aa5ff", steel="#7c8796", steel_light="#cfd6df",
+                  accent="#7aa5ff", steel="#7c8796",
                   steel_shine="#e3e8ef", steel_edge="#414a57", steel_number="#0e1116",
                   warn="#ffcf87", warn_paper="#3a2a10"),
     "projector": Theme("light", paper="#ffffff", card="#ffffff", ink="#000000", soft="#222222", faint="#c4c9d0",
-                       accent="#003cc0", steel="#66707d", steel_light="#e6e9ee",
+                       accent="#003cc0", steel="#66707d",
                        steel_shine="#ffffff", steel_edge="#4a525d", steel_number="#000000",
                        warn=BROWN, warn_paper="#ffe8c2",
                        line=1.8, type=19, small=17),

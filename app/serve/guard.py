@@ -131,7 +131,7 @@ class GuardedSocket(Guard):
     _at = 0.0
 
     def check(self) -> None:
-        """A token of ours too, for the first time."""
+        """Also refuse a connection without a token of this server, or with one that was used before."""
         super().check()
         offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
         try:

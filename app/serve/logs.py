@@ -8,7 +8,7 @@ import sys
 import time
 
 #: What a line may have beside time, level, logger and message.
-_FIELDS = ("request", "path", "remote", "visit")
+_FIELDS = ("request", "path", "remote")
 
 
 class Lines(logging.Formatter):

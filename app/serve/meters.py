@@ -41,7 +41,7 @@ class Meters:
         self.gauges: dict[str, Callable[[], float]] = {}
 
     def answered(self, seconds: float) -> None:
-        """A first picture came so long after the knob moved."""
+        """Count a first picture that came so many seconds after the knob moved."""
         place = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
         with self._lock:
             self.answers[place] += 1
@@ -114,7 +114,7 @@ class Liveness(RequestHandler):
     """`/liveness`: the event loop answers. It makes no page, as Panel's own can be asked to."""
 
     def get(self) -> None:
-        """True."""
+        """Answer `{"/liveness": true}`."""
         self.write({"/liveness": True})
 
 
@@ -122,7 +122,7 @@ class Metrics(RequestHandler):
     """`/metrics`."""
 
     def get(self) -> None:
-        """The counts, as text, for who asks from this machine or a private network."""
+        """Answer with the counts as text, to this machine and private networks only."""
         asking = ipaddress.ip_address(self.request.remote_ip or "0.0.0.0")
         if not (asking.is_loopback or asking.is_private):
             raise HTTPError(403, "metrics are for private addresses")

@@ -32,16 +32,16 @@ class Account:
 
     @property
     def used(self) -> float:
-        """What it has used, of which half is forgotten every five seconds."""
+        """The time used [s]; half of it is forgotten every five seconds."""
         return self._used * math.exp2((self._at - self._clock()) / _HALF_LIFE)
 
     def charge(self, seconds: float) -> None:
-        """It has used so much more."""
+        """Add processor time [s]."""
         self._used, self._at = self.used + seconds, self._clock()
 
 
 class Party(Account):
-    """Several visitors who wait for the same picture: they pay together, with the claim of the one who used least."""
+    """Visitors who wait for the same picture: they share its cost, and queue as the one that has used least."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -49,7 +49,7 @@ class Party(Account):
 
     @property
     def used(self) -> float:
-        """What the member has used that used least."""
+        """The least time that any member has used [s]."""
         return min((member.used for member in list(self.members)), default=math.inf)
 
     def charge(self, seconds: float) -> None:

@@ -2,7 +2,7 @@
 
 Private attributes of Tornado, Bokeh and Panel, and Panel's undocumented `set_curdoc`, are used in this file only. Each
 saves some milliseconds or keeps a message from being lost; if a release drops one, the public API is used instead. Only
-`guard`, on which safety depends, has no such way.
+`guard` has no fallback: without it the server does not start.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def guard(server: Server, rules: Rules) -> None:
             rule.target = guarded(rule.target, rules)
 
 
-#: Values that no model can change for another one.
+#: Types of immutable values: models can share them.
 _CONSTANTS = (type(None), bool, int, float, str, bytes)
 
 

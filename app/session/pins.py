@@ -38,7 +38,7 @@ def pin_texts(pins: Sequence[Pin]) -> dict[str, str]:
 
 
 def read_pin(text: str) -> Pin:
-    """The pin of a link's field. Raises `BadInput` for the first thing that is wrong: half a pin is none."""
+    """Read the pin of a link's field. Raises `BadInput` for the first bad value: a pin is read whole or not at all."""
     shown, extras, refused = decode(text)
     if refused:
         raise BadInput(f"A pin of the link was left out. {refused[0]}")

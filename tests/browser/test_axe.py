@@ -7,7 +7,7 @@ from axe_playwright_python.sync_playwright import Axe
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Page, expect
 
-POPOVERS = ("Help and keys (?)", "Take along: pictures, tables, a program", "Link to this picture")
+POPOVERS = ("Help and keys (?)", "Export: pictures, tables, a program", "Link to this picture")
 #: What depends on the look; everything else is the same in all of them.
 OF_THE_LOOK = {"runOnly": {"type": "rule", "values": ["color-contrast"]}}
 

@@ -92,7 +92,7 @@ def test_a_phone_has_f_at_hand_and_the_pictures_in_view_while_a_knob_moves(visit
     first, second = (page.locator(f'[data-knob="{name}"] input[type="range"]') for name in ("f", "A0"))
     expect(first).to_be_in_viewport(ratio=0.9)
     expect(second).not_to_be_in_viewport(ratio=0.5)
-    page.get_by_role("button", name="All knobs, or the first one").click()
+    page.get_by_role("button", name="Show or hide the other knobs").click()
     expect(second).to_be_in_viewport(ratio=0.9)
     assert page.evaluate(height, "side") < 0.5
     for part in ("chain", "left", "map", "right"):
@@ -103,5 +103,5 @@ def test_a_phone_has_f_at_hand_and_the_pictures_in_view_while_a_knob_moves(visit
     page.touchscreen.tap(box["x"] + 0.8 * box["width"], box["y"] + 0.5 * box["height"])
     page.wait_for_function("(before) => window.painted.length > before", arg=before)
     expect(second).to_be_in_viewport(ratio=0.9)  # the sheet stays
-    page.get_by_role("button", name="All knobs, or the first one").click()
+    page.get_by_role("button", name="Show or hide the other knobs").click()
     expect(second).not_to_be_in_viewport(ratio=0.5)

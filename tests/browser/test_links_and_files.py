@@ -102,7 +102,7 @@ def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit,
     for number, quantity, unit in ((1, "frequency", "kHz"), (2, "force", "mN")):
         page.get_by_label(f"what column {number} holds").select_option(quantity)
         page.get_by_label(f"unit of column {number}").select_option(unit)
-    page.get_by_role("button", name="read it so").click()
+    page.get_by_role("button", name="Read with these settings").click()
     expect(page.locator("#tabs")).to_contain_text("3 points, 340 to 1130 Hz, force 0.6 to 1.15 N")
     expect(page.locator("#tabs")).to_contain_text("Measured less model at 3 of 3 frequencies: rms")
     with page.expect_download() as download:
@@ -139,7 +139,7 @@ def test_the_picture_can_be_saved(visit: Visit, tmp_path: Path) -> None:
     page = visit()
     settled(page)
     with page.expect_download() as download:
-        page.get_by_role("button", name="Take along").click()
+        page.get_by_role("button", name="Export").click()
         page.get_by_role("button", name="everything, HDF5").click()
     path = tmp_path / download.value.suggested_filename
     download.value.save_as(path)

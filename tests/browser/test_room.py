@@ -113,6 +113,6 @@ def test_the_equation_is_whole(visit: Visit, knobs: str) -> None:
     for width, height in WIDTHS:
         page.set_viewport_size({"width": width, "height": height})
         if width == 390:
-            page.get_by_role("button", name="All knobs, or the first one").click()
+            page.get_by_role("button", name="Show or hide the other knobs").click()
         expect(formula.locator("math").first).to_be_visible()
         until(page, lambda: formula.locator("math").count() == 5 and formula.evaluate(whole))

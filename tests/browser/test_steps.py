@@ -108,7 +108,7 @@ def test_a_pin_stays_while_knobs_move_and_comes_back_with_the_link(visit: Visit)
 def test_pictures_are_taken_along_as_they_are_on_the_screen(visit: Visit, tmp_path: Path) -> None:
     page = visit(accept_downloads=True)
     settled(page)
-    page.get_by_role("button", name="Take along").click()
+    page.get_by_role("button", name="Export").click()
     for what in ("stage", "chain", "driver", "energy", "wall", "curve"):
         page.get_by_label("which picture").select_option(what)
         kind = "SVG" if what in ("stage", "curve") else "PNG"

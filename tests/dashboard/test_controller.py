@@ -6,7 +6,6 @@ import base64
 import json
 import threading
 import time
-from collections.abc import Callable
 from concurrent.futures import Future
 from types import SimpleNamespace
 from typing import Any

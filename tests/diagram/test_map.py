@@ -167,7 +167,7 @@ def test_a_killed_map_resumes_and_computes_nothing_again(tmp_path: Path, capsys:
     assert main(words(out, "--resume")) == 0  # once more: it is there
     assert json.loads(capsys.readouterr().out)["computed"] == 0
     assert main([*words(out, "--resume"), "--set", "D=90"]) == 2
-    assert "finished map of other words" in capsys.readouterr().err
+    assert "finished map that was computed with other options" in capsys.readouterr().err
 
 
 def test_a_damaged_block_is_computed_again(tmp_path: Path) -> None:

@@ -50,12 +50,12 @@ def test_only_what_is_computed_is_drawn() -> None:
     failed = filled(4, regime="failed", period=0)
     failed.cells[4]["max_output_force"] = np.nan
     rows = cell_rows(GRID, failed.cells[[4]])
-    assert rows["force"] == [None] and rows["regime"] == ["failed"] and rows["tooltip"] == ["2000 Hz, 1 µm: the numbers failed"]
+    assert rows["force"] == [None] and rows["regime"] == ["failed"] and rows["tooltip"] == ["2000 Hz, 1 µm: computation failed"]
 
 
 def test_a_cell_is_told_with_its_error_or_without_a_claim() -> None:
     cell = filled(4).cells[4]
-    assert cell_words(GRID, cell) == "2000 Hz, 1 µm: period 2, largest output force 2.5 N, the largest seen"
+    assert cell_words(GRID, cell) == "2000 Hz, 1 µm: period 2, largest output force 2.5 N, largest observed, no error estimate"
     cell["error_estimate"] = 3e-5
     assert cell_words(GRID, cell).endswith("2.5 N, relative error 3e-5")
     cell["regime"], cell["period"], cell["lyapunov"], cell["lyapunov_error"] = REGIMES.index("chaotic"), 0, 0.21, 0.02

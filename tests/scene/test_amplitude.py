@@ -88,7 +88,7 @@ def test_the_command_line_takes_it_and_goes_on_with_it(tmp_path: Path, capsys: p
     assert main([*words, "--amplitude", "constant-velocity=6e-3", "--resume"]) == 0
     assert "finished already" in capsys.readouterr().err
     assert main([*words, "--amplitude", "constant-velocity=7e-3", "--resume"]) == 2
-    assert "the finished curve of other words" in capsys.readouterr().err
+    assert "a finished curve that was computed with other options" in capsys.readouterr().err
 
 
 def test_what_is_unclear_in_a_file_is_asked_with_its_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

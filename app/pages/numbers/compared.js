@@ -2,7 +2,7 @@
 
 import { button, element, paragraph } from "../../parts/dom.js";
 
-const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey, and the differences stand here.";
+const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey, and the differences are listed here.";
 const DASHES = ["╌", "┈", "─ ·"]; // of the lines, in the order of the pins
 
 let told = { pins: [], rows: [] };

@@ -25,7 +25,7 @@ class ProbePage(Page):
         self.actions: Actions = {"probe-bead": self._choose, "probe-watched": self._watch}
 
     def picture_ready(self, picture: Settled) -> None:
-        """Another motion."""
+        """Draw the bead of the new motion."""
         self._draw(picture)
 
     def _choose(self, message: dict[str, Any]) -> None:

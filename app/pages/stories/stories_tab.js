@@ -2,7 +2,7 @@
 
 import { button, element, paragraph } from "../../parts/dom.js";
 
-const INVITES = "A story turns the knobs, says where to look, and asks. You may touch everything meanwhile.";
+const INVITES = "A story turns the knobs, says where to look, and asks. All controls stay available.";
 
 let revealed = ""; // the step whose answer has been asked for
 
