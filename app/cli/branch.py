@@ -178,7 +178,7 @@ def _in_file(arguments: argparse.Namespace) -> Branch:
         raise BadInput(f"--resume takes everything from {Path(arguments.resume).name}; it cannot be combined with "
                        "--knob, --from, --to, --period, --amplitude or --set.")
     found = load_branch(arguments.resume)
-    if found.axis.scene.name != arguments.scene:
+    if found.axis.scene.name != arguments.scene.removesuffix(".toml").rpartition("/")[2]:
         raise BadInput(f"{arguments.resume} is a branch of {found.axis.scene.name}, not of {arguments.scene}.")
     return found
 

@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, TypeVar
 
 from granchain_core import BadInput, Cancelled, Scene, scene
@@ -27,7 +28,7 @@ _PATIENCE = 1.2
 
 
 def chosen_scene(arguments: argparse.Namespace) -> Scene:
-    """The scene that SCENE, --set and --accuracy describe."""
+    """The scene that SCENE, a name or a file NAME.toml, --set and --accuracy describe."""
     changes: dict[str, str] = {}
     settings = list(arguments.set)
     if getattr(arguments, "accuracy", None) is not None:
@@ -39,7 +40,7 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
         if name in changes:
             raise BadInput(f"{name} is set twice, to {changes[name]} and to {value}; give it once.")
         changes[name] = value
-    preset = scene(arguments.scene)
+    preset = scene(Path(arguments.scene) if arguments.scene.endswith(".toml") else arguments.scene)
     chosen = preset.evolve(**changes)
     say_if(kept_spring(preset, chosen, changes))
     say_if(missing_impurity(chosen))
@@ -112,7 +113,7 @@ def in_background(work: Callable[[Any], T]) -> T:
 
 @contextmanager
 def unbroken() -> Iterator[None]:
-    """Write a result in this block: a signal waits for its end, and is obeyed then."""
+    """Finish this block, which writes a result, before a signal ends the command."""
     with ending.told() as asked:
         yield
         if asked():

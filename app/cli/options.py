@@ -28,7 +28,7 @@ def whole(text: str) -> int:
 
 def add_scene(parser: argparse.ArgumentParser) -> None:
     """Add SCENE and the changes of its knobs."""
-    parser.add_argument("scene", metavar="SCENE")
+    parser.add_argument("scene", metavar="SCENE", help="a name of `granchain scenes`, or a scene file NAME.toml")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
 
 

@@ -1,37 +1,34 @@
-"""Scenes by name, read from assets/scenes/*.toml: a parent and only the differences."""
+"""Scenes by name, read from assets/scenes/*.toml: a parent and only the differences; and scenes in a user's file."""
 
 from __future__ import annotations
 
 import functools
-import tomllib
-from dataclasses import replace
+import os
 from pathlib import Path
 from typing import Any
 
 from ..errors import BadInput, unknown_name
-from ..quantities import QUANTITIES
-from .description import Bead
+from .files import TABLES, built, toml_of
 from .model import Scene
 
 _PACKAGE = Path(__file__).resolve().parents[1]
-#: Scenes and measured data: beside the packages in the tree, within this one where it is installed.
+#: Scenes and measured data: next to the packages in the tree, within this one where it is installed.
 ASSETS = next(place for place in (_PACKAGE / "assets", _PACKAGE.parent / "assets") if place.is_dir())
-_SECTIONS = {"parent", "title", "look_at", "paper", "order", "chain", "knobs", "ranges"}
 
 
 def _read(name: str) -> dict[str, Any]:
     """The TOML of one preset merged over its ancestors, section by section."""
-    path = ASSETS / "scenes" / f"{name}.toml"
-    data = tomllib.loads(path.read_text(encoding="utf-8"))
-    unknown = set(data) - _SECTIONS
-    if unknown:
-        raise BadInput(f"{path.name}: unknown section {sorted(unknown)[0]!r}; known: {', '.join(sorted(_SECTIONS))}.")
+    return _over_parent(toml_of(ASSETS / "scenes" / f"{name}.toml"))
+
+
+def _over_parent(data: dict[str, Any]) -> dict[str, Any]:
+    """The sections of a scene merged over those of its parent, if it has one."""
     if "parent" not in data:
         return data
     base = _read(data["parent"])
-    for section in ("chain", "knobs", "ranges"):
-        base[section] = {**base.get(section, {}), **data.get(section, {})}
     own = data.get("knobs", {})
+    for section in TABLES:
+        base[section] = {**base.get(section, {}), **data.get(section, {})}
     if "kappa" in own:
         base["knobs"].pop("k", None)
     elif "k" in own:
@@ -61,14 +58,14 @@ def scene_names() -> tuple[str, ...]:
     return tuple(sorted(names, key=lambda n: (_read(n).get("order", 1000), n)))
 
 
-@functools.cache
-def scene(name: str) -> Scene:
-    """A preset by its name.
+def scene(name: str | os.PathLike[str]) -> Scene:
+    """A preset by its name, or the scene in a file.
 
     Parameters
     ----------
-    name : str
-        One of `scene_names()`: "sec2", "fig3a", "rig", … (files in assets/scenes).
+    name : str or path-like
+        One of `scene_names()`: "sec2", "fig3a", "rig", … (files in assets/scenes); or the path of a scene file as a
+        `pathlib.Path`, "mine.toml" being called "mine" (docs/scene-file.md). A text is never taken as a path.
 
     Returns
     -------
@@ -78,7 +75,8 @@ def scene(name: str) -> Scene:
     Raises
     ------
     BadInput
-        There is no such scene; the message names the nearest one.
+        There is no such scene, and the message names the nearest one; or the file cannot be used, and the message says
+        why.
 
     Examples
     --------
@@ -91,22 +89,25 @@ def scene(name: str) -> Scene:
     ...
     granchain_core.errors.BadInput: Unknown scene 'sec22'; the nearest is 'sec2'; known: ...
     """
+    return _preset(name) if isinstance(name, str) else _from_file(Path(name))
+
+
+@functools.cache
+def _preset(name: str) -> Scene:
     if name not in scene_names():
         raise unknown_name("scene", name, scene_names())
-    data = _read(name)
-    chain, knobs = data["chain"], dict(data["knobs"])
-    kappa = knobs.pop("kappa", None)
-    new = Scene(
-        name=name, title=data["title"], look_at=data["look_at"], paper=data["paper"],
-        pattern=tuple(Bead(**b) for b in chain["pattern"]),
-        impurities=tuple((i["place"], Bead(**{k: v for k, v in i.items() if k != "place"}))
-                         for i in chain.get("impurities", ())),
-        start_velocity=tuple((int(v["place"]), float(v["velocity"])) for v in chain.get("start_velocity", ())),
-        reference_overlap=chain["reference_overlap"],
-        ranges=tuple((knob, float(low), float(high)) for knob, (low, high) in data["ranges"].items()),
-        **{"k": 0.0, **knobs},
-    )
-    new = new.evolve(**{n: v for n, v in new.knobs.items() if n != "kappa"})  # presets are checked like user input
-    if kappa is not None:
-        new = new.evolve(kappa=kappa)
-    return replace(new, preset=tuple((n, new.knobs[n]) for n in QUANTITIES))
+    return built(name, _read(name))
+
+
+def _from_file(path: Path) -> Scene:
+    """The scene in a user's file: read anew each time; texts that it does not have are not those of its parent."""
+    data, name = toml_of(path), path.stem
+    try:
+        if name in scene_names():
+            raise BadInput(f"the name {name!r} belongs to a scene of granchain; give the file another one.")
+        if "parent" in data and data["parent"] not in scene_names():
+            raise unknown_name("parent", data["parent"], scene_names())
+        texts = {"title": data.get("title", name), "look_at": data.get("look_at", ""), "paper": data.get("paper", "")}
+        return built(name, {**_over_parent(data), **texts})
+    except BadInput as problem:
+        raise BadInput(f"{path.name}: {problem}") from None

@@ -20,7 +20,7 @@ STEADY = (
            k.CLAIMS),
     Mutant("any-growth-is-chaos", _REGIME, "return mean > max(3.0 * error, _CHAOTIC)", "return mean > 0.0",
            "an exponent within its error is called chaos", k.CLAIMS),
-    Mutant("creeping-is-quasi-periodic", _REGIME, "and stays(strobes) and", "and",
+    Mutant("creeping-is-quasi-periodic", _REGIME, "if stays(strobes) and", "if",
            "a slow approach with an exponent near zero is called quasi-periodic", k.CLAIMS),
     Mutant("drift-is-quasi-periodic", _REGIME, "and returns_near(strobes)", "",
            "a section that never comes back is called a closed curve", k.CLAIMS),

@@ -1,0 +1,145 @@
+"""A scene file: TOML text, checked section by section, and the scene that it describes (docs/scene-file.md)."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterable
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+from ..errors import BadInput, unknown_name
+from ..quantities import QUANTITIES
+from .checked import checked_fields
+from .description import Bead
+from .model import Scene
+
+#: Longest scene file [bytes].
+MOST_BYTES = 100_000
+#: Sections of a scene file that are tables, with the names each may hold.
+TABLES = {"chain": ("pattern", "impurities", "start_velocity", "reference_overlap"), "knobs": tuple(QUANTITIES),
+          "ranges": tuple(QUANTITIES)}
+#: What else a scene file may hold: texts, and its place in the list of scenes.
+WORDS = ("parent", "title", "look_at", "paper", "order")
+_BEAD = tuple(field.name for field in fields(Bead))
+
+
+def toml_of(path: Path) -> dict[str, Any]:
+    """The content of a scene file, with known sections only; `BadInput` says what cannot be used."""
+    try:
+        with path.open("rb") as file:
+            raw = file.read(MOST_BYTES + 1)
+    except OSError as problem:
+        raise BadInput(f"{path.name}: cannot be read ({problem.strerror or problem}).") from None
+    if len(raw) > MOST_BYTES:
+        raise BadInput(f"{path.name}: a scene file has at most {MOST_BYTES} bytes.")
+    try:
+        data = tomllib.loads(raw.decode("utf-8-sig"))
+    except UnicodeDecodeError:
+        raise BadInput(f"{path.name}: is not UTF-8 text.") from None
+    except (tomllib.TOMLDecodeError, RecursionError) as problem:
+        raise BadInput(f"{path.name}: is not TOML: {problem}.") from None
+    try:
+        _check_sections(data)
+    except BadInput as problem:
+        raise BadInput(f"{path.name}: {problem}") from None
+    return data
+
+
+def _check_sections(data: dict[str, Any]) -> None:
+    _only(data, "section", (*TABLES, *WORDS))
+    for section, names in TABLES.items():
+        table = data.get(section, {})
+        if not isinstance(table, dict):
+            raise BadInput(f"[{section}] must be a table, not {str(table)[:40]!r}.")
+        _only(table, f"name in [{section}]", names)
+    for name in WORDS[:-1]:
+        if not isinstance(data.get(name, ""), str):
+            raise BadInput(f"{name} must be a text, not {str(data[name])[:40]!r}.")
+    order = data.get("order", 0)
+    if isinstance(order, bool) or not isinstance(order, (int, float)) or not math.isfinite(order):
+        raise BadInput(f"order must be a number, not {str(order)[:40]!r}.")
+    if {"k", "kappa"} <= set(data.get("knobs", {})):
+        raise BadInput("[knobs] has k and kappa, which say the same thing: give one of them.")
+
+
+def built(name: str, data: dict[str, Any]) -> Scene:
+    """The scene of merged sections, each value checked as a user's; `BadInput` says which one cannot be used."""
+    chain, knobs = data.get("chain", {}), dict(data.get("knobs", {}))
+    kappa = knobs.pop("kappa", None)
+    for needed, section in (("pattern", chain), ("reference_overlap", chain), ("N", knobs), ("f", knobs),
+                            ("A0", knobs), ("D", knobs)):
+        if needed not in section:
+            raise BadInput(f"there is no {needed}; give it, or a parent that has it.")
+    beads = [_bead(entry, "pattern") for entry in _list(chain["pattern"], "pattern")]
+    found = checked_fields({
+        "k": 0.0, "F0": 0.0, "wall": "bead", "dissipation": "linear", "tension": "allowed", "accuracy": 1e-6, **knobs,
+        "name": name, "title": data.get("title", name), "look_at": data.get("look_at", ""),
+        "paper": data.get("paper", ""), "reference_overlap": chain["reference_overlap"], "pattern": beads,
+        "impurities": [_impurity(one, beads) for one in _list(chain.get("impurities", ()), "impurities")],
+        "start_velocity": [_start(one) for one in _list(chain.get("start_velocity", ()), "start_velocity")],
+        "ranges": [_range(knob, ends) for knob, ends in data.get("ranges", {}).items()]})
+    ranges = tuple((knob, float(low), float(high)) for knob, low, high in found["ranges"])
+    new = Scene(**{**found, "ranges": ranges})
+    new = new.evolve(**{n: v for n, v in new.knobs.items() if n != "kappa"})
+    if kappa is not None:
+        new = new.evolve(kappa=kappa)
+    return replace(new, preset=tuple((n, new.knobs[n]) for n in QUANTITIES))
+
+
+def _only(found: Iterable[str], kind: str, known: Iterable[str]) -> None:
+    for name in found:
+        if name not in tuple(known):
+            raise unknown_name(kind, name, known)
+
+
+def _list(value: Any, name: str) -> Any:
+    if not isinstance(value, (list, tuple)):
+        raise BadInput(f"{name} must be a list of tables in braces, not {str(value)[:40]!r}.")
+    return value
+
+
+def _table(value: Any, name: str, known: tuple[str, ...]) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise BadInput(f"an entry of {name} must be a table in braces, not {str(value)[:40]!r}.")
+    _only(value, f"name in {name}", known)
+    return value
+
+
+def _bead(entry: Any, name: str) -> dict[str, Any]:
+    found = _table(entry, name, _BEAD)
+    for needed in _BEAD:
+        if needed not in found:
+            raise BadInput(f"a bead of {name} has no {needed}; it needs {', '.join(_BEAD)}.")
+    return found
+
+
+def _place(entry: dict[str, Any], name: str) -> int:
+    place = entry.get("place")
+    if not isinstance(place, int) or isinstance(place, bool) or place < 1:
+        raise BadInput(f"an entry of {name} needs place, the number of a bead from 1 on, not {str(place)[:40]!r}.")
+    return place
+
+
+def _impurity(entry: Any, beads: list[dict[str, Any]]) -> list[Any]:
+    """Place and bead; what the entry does not name is that of the pattern's bead there."""
+    found = _table(entry, "impurities", ("place", *_BEAD))
+    place = _place(found, "impurities")
+    own = {name: value for name, value in found.items() if name != "place"}
+    return [place, {**beads[(place - 1) % len(beads)], **own}] if beads else [place, own]
+
+
+def _start(entry: Any) -> list[Any]:
+    found = _table(entry, "start_velocity", ("place", "velocity"))
+    if "velocity" not in found:
+        raise BadInput("an entry of start_velocity has no velocity [m/s].")
+    return [_place(found, "start_velocity"), found["velocity"]]
+
+
+def _range(knob: str, ends: Any) -> list[Any]:
+    numbers = isinstance(ends, list) and len(ends) == 2 and all(
+        isinstance(end, (int, float)) and not isinstance(end, bool) for end in ends)
+    if not numbers or not ends[0] < ends[1]:
+        raise BadInput(f"the range of {knob} must be two ascending numbers, not {str(ends)[:40]!r}.")
+    return [knob, *ends]
