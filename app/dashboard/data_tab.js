@@ -1,6 +1,6 @@
 // The data tab: the visitor's own curve, what its file leaves open, and how far the model is from it.
 
-import { button, element, paragraph, table } from "../parts/dom.js";
+import { button, download, element, paragraph, table } from "../parts/dom.js";
 
 const FORM =
   "A curve of frequency and largest force: CSV or TSV as any spreadsheet writes it, WebPlotDigitizer, HDF5 or netCDF-4. " +
@@ -25,9 +25,7 @@ async function sendFile(model, [chosen]) {
 // The server's sample file becomes a download.
 export function saveSample({ type, name, text }) {
   if (type !== "sample") return;
-  const link = element("a", { download: name, href: URL.createObjectURL(new Blob([text], { type: "text/csv" })) });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  download(name, new Blob([text], { type: "text/csv" }));
 }
 
 const options = (values, chosen) =>

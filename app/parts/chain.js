@@ -1,6 +1,7 @@
 // The chain on the page: bead i stands above column i of the map; its clock is the page's.
 
-import { ChainDrawing, unpack } from "./chain_drawing.js";
+import { ChainDrawing } from "./chain_drawing.js";
+import { unpack } from "./chain_series.js";
 import { Clock, Cursor } from "./clock.js";
 import { Crosshair } from "./crosshair.js";
 import { button, element } from "./dom.js";

@@ -71,5 +71,5 @@ def drawn_chain(scene: Scene) -> dict[str, Any]:
 
 def chain_series(displacement: np.ndarray, force: np.ndarray, energy: np.ndarray,
                  drive: np.ndarray) -> list[np.ndarray]:
-    """The series of one chain, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chain_drawing.js."""
+    """The series of one chain, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chain_series.js."""
     return [series.ravel() for series in (displacement, force, energy, drive)]

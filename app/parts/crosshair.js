@@ -2,20 +2,11 @@
 // the map is a measuring tape: time, distance and speed between two places.
 
 import { element } from "./dom.js";
-
-const PREFIXES = [
-  [1e3, "k"],
-  [1, ""],
-  [1e-3, "m"],
-  [1e-6, "µ"],
-  [1e-9, "n"],
-  [1e-12, "p"],
-];
+import { draw, prefixed } from "./plot.js";
 
 // A value with three figures and a prefix, as "0.52 N".
 function told(value, unit) {
-  const size = Math.abs(value);
-  const [factor, letter] = PREFIXES.find(([one]) => size >= one) ?? [1, ""];
+  const [factor, letter] = prefixed(value);
   return `${String(Number((value / factor).toPrecision(3))).replace("-", "−")} ${letter}${unit}`;
 }
 
@@ -29,9 +20,7 @@ export class Crosshair {
       this.line.append(this.words[name]);
     }
     this.bead = element("i", { id: "crossbead", hidden: true });
-    this.tape = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-    this.tape.id = "tape";
-    this.tape.setAttribute("aria-hidden", "true");
+    this.tape = draw("svg", { id: "tape", "aria-hidden": "true" });
     this.measured = element("p", { id: "measured", role: "status", hidden: true });
     this.line.ariaHidden = "true"; // the time cursor tells a screen reader the same
     cursor.stage.append(this.line, this.bead, this.tape, this.measured);
@@ -114,20 +103,20 @@ export class Crosshair {
     const from = this.at(event);
     const { map } = this.cursor;
     map.setPointerCapture(event.pointerId);
-    const move = (next) => this.draw(from, this.at(next));
+    const move = (next) => this.drawTape(from, this.at(next));
     const done = () => {
       map.removeEventListener("pointermove", move);
       map.removeEventListener("pointerup", done);
     };
     map.addEventListener("pointermove", move);
     map.addEventListener("pointerup", done);
-    this.draw(from, from);
+    this.drawTape(from, from);
   }
 
-  draw(from, to) {
-    const place = `<line x1="${from.x}" y1="${from.y}" x2="${to.x}" y2="${to.y}"/>`;
+  drawTape(from, to) {
+    const line = `<line x1="${from.x}" y1="${from.y}" x2="${to.x}" y2="${to.y}"/>`;
     const end = ({ x, y }) => `<circle cx="${x}" cy="${y}" r="4"/>`;
-    this.tape.innerHTML = place + end(from) + end(to);
+    this.tape.innerHTML = line + end(from) + end(to);
     this.measured.textContent = this.sentence(from, to);
     this.measured.hidden = false;
   }

@@ -39,3 +39,31 @@ export const pageHead = (title, ...controls) =>
     element("span", { className: "grow" }),
     button("✕", () => window.granchain.closePage(), { title: "Back to the chain", className: "close" }),
   );
+
+// A file for the visitor, by the name it is saved under.
+export function download(name, blob) {
+  const link = element("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+// The choices of a list of beads, as many as the chain has; the bead that was chosen stays if there is one.
+export function fillBeads(select, count) {
+  if (select.length === count) return;
+  const chosen = Math.min(Number(select.value) || 1, count);
+  select.replaceChildren(...Array.from({ length: count }, (_, i) => new Option(`bead ${i + 1}`, i + 1)));
+  select.value = String(chosen);
+}
+
+// Calls `act` when an element has another width; what `act` changes in its height calls nothing.
+export function onWidth(host, act) {
+  let width = 0;
+  new ResizeObserver(() => {
+    if (host.clientWidth === width) return;
+    width = host.clientWidth;
+    act();
+  }).observe(host);
+}
+
+// Calls `act` with whether an element is on the screen, whenever it comes there or leaves.
+export const onScreen = (host, act) => new IntersectionObserver(([entry]) => act(entry.isIntersecting)).observe(host);

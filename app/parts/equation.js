@@ -1,6 +1,6 @@
 // The equation of motion as MathML, which the browser typesets with its own fonts.
 
-import { element } from "./dom.js";
+import { element, onWidth } from "./dom.js";
 
 // A line that is longer than the column is set smaller, down to this part of the size of the others.
 const SMALLEST = 0.55;
@@ -32,12 +32,7 @@ export function render({ model }) {
     fit();
   };
   model.on("state", show);
-  let width = 0;
-  new ResizeObserver(() => {
-    if (root.clientWidth === width) return;
-    width = root.clientWidth;
-    fit();
-  }).observe(root);
+  onWidth(root, fit);
   window.granchain.on("theme", fit); // the projector's words are larger
   show();
   return root;

@@ -1,11 +1,10 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
-import { element } from "./dom.js";
+import { download, element, onWidth } from "./dom.js";
 import { wholePage } from "./embed.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
 import { Popovers } from "./popovers.js";
-import { download } from "./take_along.js";
 import { Tour } from "./tour.js";
 
 const MODES = [
@@ -281,12 +280,7 @@ export function render({ model }) {
     header.send("theme", { value });
     header.fit(); // the projector's words are larger
   });
-  let width = 0;
-  new ResizeObserver(() => {
-    if (header.root.clientWidth === width) return;
-    width = header.root.clientWidth;
-    header.fit();
-  }).observe(header.root);
+  onWidth(header.root, () => header.fit());
   document.addEventListener("keydown", (event) => keyPressed(event, header));
   document.addEventListener("pointerdown", (event) => {
     if (!event.composedPath().includes(header.root)) header.popovers.close();

@@ -1,11 +1,16 @@
 // Small drawings in SVG: axes and words.
 
+export const SVG = "http://www.w3.org/2000/svg";
 export const draw = (tag, attributes = {}, ...children) => {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  const element = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
   element.append(...children);
   return element;
 };
+
+// The factor and letter of the SI prefix in which a value reads between 1 and 1000.
+const PREFIXES = [..."GMk mµnpfa"].map((letter, i) => [10 ** (9 - 3 * i), letter.trim()]);
+export const prefixed = (value) => PREFIXES.find(([factor]) => Math.abs(value) >= 0.999 * factor) ?? [1, ""];
 
 export const round3 = (value) => Number(value.toPrecision(3));
 

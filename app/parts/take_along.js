@@ -1,9 +1,9 @@
 // Pictures of the page as PNG and SVG, made in the browser from what is on the screen; the other files come from the
 // server.
 
-import { button, element } from "./dom.js";
+import { button, download, element } from "./dom.js";
+import { draw, SVG } from "./plot.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const MARGIN = 12, // px around a picture
   SHARP = 2; // pixels of a PNG for one of the picture
 // Of the main page: the name in a file, the element, the model of its figure.
@@ -22,12 +22,6 @@ const FILES = [
 ];
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-
-export function download(name, blob) {
-  const link = element("a", { href: URL.createObjectURL(blob), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-}
 
 const views = (name) =>
   window.Bokeh.documents
@@ -143,17 +137,10 @@ function sheet(title, { parts, words, bars }) {
   };
 }
 
-const made = (tag, attributes, ...children) => {
-  const one = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) one.setAttribute(name, value);
-  one.append(...children);
-  return one;
-};
-
 const textOf = (x, y, text, fill, size, weight) => {
   const family = style("--font").replaceAll('"', "'");
   const given = { x, y: y + 0.8 * parseFloat(size), fill, "font-size": size, "font-weight": weight };
-  return made("text", { ...given, "font-family": family }, text);
+  return draw("text", { ...given, "font-family": family }, text);
 };
 
 // Two drawings in one file must not share the names of their gradients and clips.
@@ -171,15 +158,15 @@ function renamed(drawn, prefix) {
 
 function barOf(bar, x, y, id) {
   const last = bar.stops.length - 1;
-  const stops = bar.stops.map((colour, i) => made("stop", { offset: i / last, "stop-color": colour }));
+  const stops = bar.stops.map((colour, i) => draw("stop", { offset: i / last, "stop-color": colour }));
   const { width, height } = bar.box;
-  return [made("linearGradient", { id }, ...stops), made("rect", { x, y, width, height, fill: `url(#${id})` })];
+  return [draw("linearGradient", { id }, ...stops), draw("rect", { x, y, width, height, fill: `url(#${id})` })];
 }
 
 function svg(title, found) {
   const { line, lines, width, height, x, y } = sheet(title, found);
-  const root = made("svg", { xmlns: SVG, width, height, viewBox: `0 0 ${width} ${height}` });
-  root.append(made("title", {}, title), made("rect", { width: "100%", height: "100%", fill: style("--card") }));
+  const root = draw("svg", { xmlns: SVG, width, height, viewBox: `0 0 ${width} ${height}` });
+  root.append(draw("title", {}, title), draw("rect", { width: "100%", height: "100%", fill: style("--card") }));
   for (const [number, words] of lines.entries())
     root.append(textOf(MARGIN, MARGIN + 1.25 * line * number, words, style("--ink"), `${line}px`, 600));
   for (const [number, part] of found.parts.entries()) {

@@ -30,6 +30,12 @@ def test_a_file_can_be_held_and_says_what_it_is(path: Path) -> None:
             assert ast.get_docstring(node), f"{path.name}: {node.name} has no docstring"  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "app").rglob("*.js")), ids=lambda p: p.name)
+def test_a_script_can_be_held_and_says_what_it_is(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert text.count("\n") <= 300 and text.startswith("//")
+
+
 def lines_of_docstrings(tree: ast.Module) -> int:
     """Lines that are documentation: the better a file is documented, the longer it may be."""
     return sum(node.body[0].end_lineno - node.body[0].lineno + 1 for node in ast.walk(tree)

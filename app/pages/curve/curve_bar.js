@@ -1,16 +1,16 @@
 // Which curves are shown, how far they are, and a button to stop them.
 
-import { button, element, meter } from "../../parts/dom.js";
+import { button, element, meter, onScreen } from "../../parts/dom.js";
 import { ChapterLabels } from "./chapter_labels.js";
 
 // Tells the server whether the curve is on the screen; one that nobody looks at is not computed.
 function watchVisibility(tell) {
-  let onScreen = true;
-  const check = () => tell(onScreen && !window.granchain.overlay);
-  new IntersectionObserver(([entry]) => {
-    onScreen = entry.isIntersecting;
+  let seen = true;
+  const check = () => tell(seen && !window.granchain.overlay);
+  onScreen(document.getElementById("curve"), (now) => {
+    seen = now;
     check();
-  }).observe(document.getElementById("curve"));
+  });
   window.granchain.on("overlay", check);
 }
 

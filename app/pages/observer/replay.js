@@ -1,6 +1,6 @@
 // The periods that the server computes for the Observer page: asked for in time, kept in a queue, replayed one by one.
 
-import { unpack } from "../../parts/chain_drawing.js";
+import { unpack } from "../../parts/chain_series.js";
 
 const PERIODS_A_SECOND = 4;
 const AHEAD = 2; // periods that wait in the queue

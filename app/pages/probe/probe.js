@@ -1,6 +1,6 @@
 // The Probe page, over the pictures: one bead in six pictures. A click on a bead, in the chain or the map, chooses it.
 
-import { button, element, pageHead, paragraph } from "../../parts/dom.js";
+import { button, element, fillBeads, pageHead, paragraph } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
 
 const TITLES = {
@@ -51,8 +51,7 @@ class ProbePage {
 
   show() {
     const { bead, beads, sentence } = this.model.state;
-    if (this.bead.length !== beads)
-      this.bead.replaceChildren(...Array.from({ length: beads }, (_, i) => new Option(`bead ${i + 1}`, i + 1)));
+    fillBeads(this.bead, beads);
     this.bead.value = String(bead);
     this.before.disabled = bead <= 1;
     this.after.disabled = bead >= beads;

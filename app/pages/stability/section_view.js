@@ -1,6 +1,6 @@
 // The Poincaré section on the page: its picture, and the choice of bead and drive phase.
 
-import { element } from "../../parts/dom.js";
+import { element, fillBeads } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
 export class SectionView {
@@ -40,10 +40,7 @@ export class SectionView {
   }
 
   choose(count) {
-    if (this.beads.length === count) return;
-    const kept = Math.min(Number(this.beads.value) || 1, count);
-    this.beads.replaceChildren(...Array.from({ length: count }, (_, i) => new Option(`bead ${i + 1}`, i + 1)));
-    this.beads.value = String(kept);
+    fillBeads(this.beads, count);
   }
 
   say() {

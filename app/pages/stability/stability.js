@@ -1,6 +1,6 @@
 // The Stability page, over the pictures: whether a disturbance dies out, which way it leaves, and on what evidence.
 
-import { element, pageHead } from "../../parts/dom.js";
+import { element, onScreen, pageHead } from "../../parts/dom.js";
 import { ModeView } from "./mode.js";
 import { MultiplierPlane } from "./multiplier_plane.js";
 import { OrbitSearch } from "./orbit_search.js";
@@ -112,10 +112,10 @@ function watchVisibility(tell) {
     tell(visible);
   };
   document.addEventListener("visibilitychange", check);
-  new IntersectionObserver(([entry]) => {
-    tabsSeen = entry.isIntersecting;
+  onScreen(document.getElementById("tabs"), (now) => {
+    tabsSeen = now;
     check();
-  }).observe(document.getElementById("tabs"));
+  });
   page.on("overlay", check);
   page.on("tab", (name) => {
     tab = name;

@@ -8,8 +8,8 @@ let revealed = ""; // the step whose answer has been asked for
 
 // The part of the page that a step is about has a frame.
 function point(look) {
-  for (const id of ["chain", "left", "map", "right", "curve"])
-    document.getElementById(id).classList.toggle("looked-at", id === look);
+  for (const one of document.querySelectorAll(".looked-at")) one.classList.remove("looked-at");
+  if (look) document.getElementById(look).classList.add("looked-at");
 }
 
 function chooser(model) {
