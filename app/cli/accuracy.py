@@ -28,8 +28,7 @@ def do(arguments: argparse.Namespace) -> None:
     chosen = chosen_scene(arguments)
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: work_precision(chosen, stop, progress))
-    write_picture(arguments.picture, f"What accuracy costs for {chosen.name}",
-                  lambda theme: _drawn(found, theme))
+    write_picture(arguments.picture, f"What accuracy costs for {chosen.name}", found)
     if arguments.json:
         show_json(_accuracy_json(found))
     else:
@@ -65,9 +64,3 @@ def _show_accuracy(found: Any) -> None:
     for one in found.lesson.drawn if found.lesson else ():
         drawn = one.failure or f"off by {100 * one.error:.2g} % of the largest"
         print(f"output force by {one.method} with {one.steps} steps a period: {drawn}")
-
-
-def _drawn(found: Any, theme: Any) -> Any:
-    from ..pictures.door import measured_accuracy
-
-    return measured_accuracy(found, theme)

@@ -36,7 +36,7 @@ def do(arguments: argparse.Namespace) -> None:
         values_from(option, text, MOST_CELLS) for option, text in (("--x", arguments.x), ("--y", arguments.y)))
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: basins(chosen, (x, x_spaced(*x_ends)), (y, y_spaced(*y_ends)), stop, progress))
-    write_picture(arguments.picture, f"Basins of {chosen.name}", lambda theme: _drawn(found, theme))
+    write_picture(arguments.picture, f"Basins of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found))
         return
@@ -51,9 +51,3 @@ def _json(found: Basins) -> dict[str, Any]:
             "attractors": [{"share": float(share), "regime": one.regime.name, "period": one.regime.period,
                             "max_output_force": one.max_output_force, "stable": one.stable}
                            for share, one in zip(found.shares, found.attractors, strict=True)]}
-
-
-def _drawn(found: Basins, theme: Any) -> Any:
-    from ..pictures.basins import basins
-
-    return basins(found, theme)

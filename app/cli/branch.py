@@ -50,7 +50,7 @@ def do(arguments: argparse.Namespace) -> None:
         check_writable(arguments.out)
     check_points(arguments.points, 2, MOST_POINTS)
     found = _followed(arguments)
-    write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", lambda theme: _drawn(found, theme))
+    write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", found)
     for arm in found.arms:
         say(f"{len(arm.points)} orbits {_way(arm)}: {arm.reason or 'stopped after the number of orbits asked for'}")
     if arguments.json:
@@ -199,11 +199,6 @@ class _Progress:
                 say(f"{len(arm.points)} orbits {_way(arm)}, now at {last.knob:.6g}, "
                     f"{'stable' if last.stable else 'unstable'}, {len(arm.special)} special points")
 
-
-def _drawn(found: Branch, theme: Any) -> Any:
-    from ..pictures.branches import branches
-
-    return branches([found], theme)
 
 
 def _way(arm: Arm) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from .common import finite_or_null, say, show_json
 from .options import add_json
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_picture, write_figure
 
 if TYPE_CHECKING:
     from granchain_core.hard import Check
@@ -41,7 +41,8 @@ def do(arguments: argparse.Namespace) -> int:
     else:
         _show_cases(found)
     say(f"{sum(row.passed for row in every)} of {len(every)} rows passed in {time.perf_counter() - began:.1f} s")
-    write_picture(arguments.picture, "The hard cases", _drawn)
+    if arguments.picture:
+        write_figure(arguments.picture, "The hard cases", _drawn())
     missed = [row.case for row in every if not row.passed]
     if missed:
         say(f"{len(missed)} of {len(every)} rows are above their bars: {'; '.join(missed)}.")
@@ -69,17 +70,18 @@ def _show_cases(found: dict[str, list[Check]]) -> None:
             print(f"  {mark} {row.value:9.2e} ≤ {row.limit:7.1e}  {row.case.removeprefix(case.name + ': ')}{note}")
 
 
-def _drawn(theme: Any) -> Any:
-    """Every case that has a picture, one below the other."""
+def _drawn() -> Any:
+    """Draw every case that has a picture, one below the other."""
     from bokeh.layouts import column
     from bokeh.models import Div
 
     from granchain_core.hard.table import CASES
 
     from ..pictures.check import check as drawn
+    from ..pictures.theme import THEMES
 
     shown = [(case.name, case.picture()) for case in CASES if case.picture is not None]
-    models = [model for name, picture in shown for model in (Div(text=heading(name)), drawn(picture, theme))]
+    models = [model for name, picture in shown for model in (Div(text=heading(name)), drawn(picture, THEMES["light"]))]
     return column(*models, sizing_mode="stretch_width")
 
 

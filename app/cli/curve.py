@@ -49,7 +49,7 @@ def do(arguments: argparse.Namespace) -> None:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
     amplitude = chosen_amplitude(arguments, chosen)
     swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points), amplitude)
-    write_picture(arguments.picture, f"Resonance curve of {chosen.name}", lambda theme: _drawn_curve(swept, theme))
+    write_picture(arguments.picture, f"Resonance curve of {chosen.name}", swept)
     if arguments.json:
         show_json(_curve_json(swept))
     else:
@@ -121,9 +121,3 @@ def _show_curve(swept: Any) -> None:
         print(f"{p.frequency:12.6g}  {p.max_output_force:18.6g}  {outward}  {p.max_output_force_elastic:9.6g}  "
               f"{elastic}  {p.max_input_force:17.6g}  {inward}  {regime}")
     say(f"{len(swept.points)} points in {swept.wall_s:.2f} s")
-
-
-def _drawn_curve(swept: Any, theme: Any) -> Any:
-    from ..pictures.curve import curve as drawn
-
-    return drawn([swept], theme)

@@ -73,7 +73,7 @@ def do(arguments: argparse.Namespace) -> None:
         landscape = {one.name: values[:, i].tolist() for i, one in enumerate(found.free)}
         Path(arguments.out).write_text(json.dumps({**found.to_json(), "landscape": {
             **landscape, "misfit": misfits.tolist()}}, indent=1), encoding="utf-8")
-    write_picture(arguments.picture, f"A fit of {chosen.name}", lambda theme: _drawn(found, theme))
+    write_picture(arguments.picture, f"A fit of {chosen.name}", found)
     if arguments.json:
         show_json(found.to_json())
     else:
@@ -149,9 +149,3 @@ def _rows(found: Fit) -> list[tuple[float, float, float, str]]:
     named = regimes if len(regimes) == len(frequencies) else [""] * len(frequencies)
     return list(zip(frequencies, map(float, found.evaluation.model), map(float, found.evaluation.residuals), named,
                     strict=True))
-
-
-def _drawn(found: Fit, theme: Any) -> Any:
-    from ..pictures.fit import fit
-
-    return fit(found, theme)

@@ -63,7 +63,7 @@ def do(arguments: argparse.Namespace) -> None:
     if arguments.picture:
         _refuse_too_many(grid)
     found, computed = _found(arguments, grid)
-    write_picture(arguments.picture, f"A map of {grid.scene.name}", lambda theme: _drawn(found, theme))
+    write_picture(arguments.picture, f"A map of {grid.scene.name}", found)
     _tell(found, computed, arguments)
 
 
@@ -93,11 +93,6 @@ def _refuse_too_many(grid: Grid) -> None:
         raise BadInput(f"--picture draws up to {MOST_DRAWN} cells and this map has {grid.size}; take fewer points on "
                        "an axis, or leave --picture out.")
 
-
-def _drawn(found: Diagram, theme: Any) -> Any:
-    from ..pictures.door import both_maps
-
-    return both_maps(found, theme)
 
 
 def _client(address: str | None) -> Any:

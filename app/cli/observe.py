@@ -57,7 +57,7 @@ def do(arguments: argparse.Namespace) -> None:
             f"is good to {seen.integration_error:.1e}.")
     if arguments.out:
         save_observation(seen, arguments.out)
-    write_picture(arguments.picture, f"An observer of {chosen.name}", lambda theme: _drawn(seen, theme))
+    write_picture(arguments.picture, f"An observer of {chosen.name}", seen)
     if arguments.json:
         show_json(described(seen))
         return
@@ -71,11 +71,6 @@ def do(arguments: argparse.Namespace) -> None:
           f"{seen.interpolation_error:.1e} between samples; {seen.cost.method}, {seen.cost.steps} steps, "
           f"{seen.cost.events} contact events, {1e3 * seen.cost.wall_s:.1f} ms")
 
-
-def _drawn(seen: Any, theme: Any) -> Any:
-    from ..pictures.observation import observation
-
-    return observation(seen, theme)
 
 
 def described(seen: Any) -> dict[str, Any]:

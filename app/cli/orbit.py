@@ -38,7 +38,7 @@ def do(arguments: argparse.Namespace) -> None:
     chosen = chosen_scene(arguments)
     start = _start(chosen, arguments.start, arguments.seed)
     found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop))
-    write_picture(arguments.picture, f"Multipliers of {chosen.name}", lambda theme: _drawn(found, theme))
+    write_picture(arguments.picture, f"Multipliers of {chosen.name}", found)
     if arguments.json:
         data: dict[str, Any] = {
             "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
@@ -55,11 +55,6 @@ def do(arguments: argparse.Namespace) -> None:
     if found.observer_multipliers is not None:
         _show_multipliers("observer", found.observer_multipliers)
 
-
-def _drawn(found: Any, theme: Any) -> Any:
-    from ..pictures.multipliers import multipliers
-
-    return multipliers(found, theme)
 
 
 def _pairs(multipliers: Any) -> list[list[float]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +25,17 @@ def check_picture(name: str | None) -> None:
     check_writable(name)
 
 
-def write_picture(name: str | None, title: str, draw: Callable[[Any], Any]) -> None:
-    """Write the figure that `draw` makes for a theme, if a picture was asked for."""
+def write_picture(name: str | None, title: str, result: Any, **options: Any) -> None:
+    """Write the picture that `granchain.figure` draws of a result, if one was asked for; `options` are its own."""
     if name is None:
         return
-    from ..pictures.file import page_of
-    from ..pictures.theme import THEMES
+    from ..pictures.door import stretched
 
-    Path(name).write_text(page_of(draw(THEMES["light"]), title), encoding="utf-8")
+    write_figure(name, title, stretched(result, **options))
+
+
+def write_figure(name: str, title: str, figure: Any) -> None:
+    """Write a figure of `app/pictures`."""
+    from ..pictures.file import page_of
+
+    Path(name).write_text(page_of(figure, title), encoding="utf-8")

@@ -40,7 +40,7 @@ def do(arguments: argparse.Namespace) -> None:
         raise unknown_name("force", arguments.force, FORCES)
     motion = in_background(lambda stop: _motion(chosen, arguments.record, arguments.samples, stop))
     found, through = spectrum(motion, arguments.force), transfer(motion) if motion.regime.period else None
-    write_picture(arguments.picture, f"Spectrum of {chosen.name}", lambda theme: _drawn(found, theme))
+    write_picture(arguments.picture, f"Spectrum of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found, through))
         return
@@ -74,9 +74,3 @@ def _show(found: Spectrum, through: Transfer | None) -> None:
         gain = gains.get(float(found.frequency[i]))
         print(f"{found.frequency[i]:12.6g}  {found.amplitude[i]:11.5g}  {found.phase[i]:9.4f}  "
               f"{'–' if gain is None else f'{gain:.4g}':>17}")
-
-
-def _drawn(found: Spectrum, theme: Any) -> Any:
-    from ..pictures.spectrum import spectrum
-
-    return spectrum(found, theme)

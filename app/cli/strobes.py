@@ -45,7 +45,7 @@ def do(arguments: argparse.Namespace) -> None:
     for point in found.points:
         if point.failure:
             say(f"{knob} = {point.value:g}: {point.failure}")
-    write_picture(arguments.picture, f"Strobes of {chosen.name}", lambda theme: _drawn(found, arguments.bead, theme))
+    write_picture(arguments.picture, f"Strobes of {chosen.name}", found, bead=arguments.bead)
     if arguments.json:
         show_json(_json(found, arguments.bead))
         return
@@ -60,9 +60,3 @@ def _json(found: StrobeDiagram, bead: int) -> dict[str, Any]:
             "period": [point.regime.period for point in found.points],
             "displacement": [point.strobes[:, 0, bead - 1].tolist() for point in found.points],
             "velocity": [point.strobes[:, 1, bead - 1].tolist() for point in found.points]}
-
-
-def _drawn(found: StrobeDiagram, bead: int, theme: Any) -> Any:
-    from ..pictures.strobe_diagram import strobe_diagram
-
-    return strobe_diagram(found, bead, theme)

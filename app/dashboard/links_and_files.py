@@ -17,7 +17,7 @@ from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.message_checks import quoted
 from ..session.take_along import TEXTS, Screen
-from ..session.task import Job, Task
+from ..session.task import Job, Task, say_nothing
 from .layout import Views
 from .main_picture import Pictures
 from .measurement import Measurement
@@ -35,7 +35,7 @@ class LinksAndFiles:
         self._views = views
         self._curves = curves
         self._pictures = pictures
-        self._saving = Task(host, FILES, _say_nothing, "Saving the picture", host.failed)
+        self._saving = Task(host, FILES, say_nothing, "Saving the picture", host.failed)
         self._measurement = Measurement(host, views.tabs, curves)
         self.actions: Actions = {"share": self._share, "save": self._save, **self._measurement.actions}
 
@@ -93,7 +93,3 @@ def _hdf5(run: Run) -> bytes:
         path = Path(folder) / "picture.h5"
         save(run, path)
         return path.read_bytes()
-
-
-def _say_nothing(status: str, sentence: str) -> None:
-    """Show no status: a finished file speaks for itself, and the host reports failures."""

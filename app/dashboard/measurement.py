@@ -31,11 +31,11 @@ from granchain_core.scene import ASSETS
 
 from ..pages.curve.page import Curves
 from ..parts.component import Component
-from ..pictures.axes import in_words
+from ..pictures.axes import in_words, signed_in_words
 from ..serve.queues import FILES
 from ..session.hooks import Actions
 from ..session.host import Host
-from ..session.task import Job, Task
+from ..session.task import Job, Task, say_nothing
 
 #: What a column of a curve may hold, and its units.
 CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error of the force"}
@@ -56,7 +56,7 @@ class Measurement:
         self._host = host
         self._tabs = tabs
         self._curves = curves
-        self._task = Task(host, FILES, _say_nothing, "Reading the measurement", host.failed)
+        self._task = Task(host, FILES, say_nothing, "Reading the measurement", host.failed)
         self._name, self._content, self._answers = "", b"", Answers()
         curves.compared = self._compared
         self.actions: Actions = {"csv": self._read, "csv-answer": self._answer, "csv-too-large": self._too_large,
@@ -171,11 +171,7 @@ def _misfit(difference: Difference | None) -> dict[str, Any] | None:
         return None
     measured = difference.measured
     rows = [[f"{f:g} Hz", in_words(float(force), "N"), in_words(float(model), "N"),
-             f"{'+' if gap >= 0.0 else '−'}{in_words(abs(float(gap)), 'N', 3)}"]
+             signed_in_words(float(gap), "N")]
             for f, force, model, gap in zip(measured.frequency, measured.force, difference.model, difference.residuals,
                                             strict=True) if abs(gap) >= 0.0]
     return {"sentence": difference.sentence, "rows": rows[:_ROWS], "left": max(0, len(rows) - _ROWS)}
-
-
-def _say_nothing(status: str, sentence: str) -> None:
-    """Show no status: what is read speaks for itself, and the host reports failures."""

@@ -40,6 +40,11 @@ def force_scale(title: str, largest: float) -> Scale:
     return Scale(title, factor, f"{letter}N")
 
 
+def signed_in_words(value: float, unit: str, figures: int = 3) -> str:
+    """A difference in SI with its sign and prefix, "+500 mN"."""
+    return f"{'−' if value < 0.0 else '+'}{in_words(abs(value), unit, figures)}"
+
+
 def in_words(value: float, unit: str, figures: int = 4) -> str:
     """A value in SI with its prefix, "597.2 mN"."""
     factor, letter = prefixed(abs(value))

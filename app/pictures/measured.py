@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 
 from granchain_core.experiment import Measured
 
-from .axes import in_words
+from .axes import in_words, signed_in_words
 from .theme import frame, in_theme
 
 COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual")
@@ -33,7 +33,7 @@ def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | 
             "low": (low / factor).tolist(), "high": (high / factor).tolist(),
             "value": [in_words(float(force), "N", 5) for force in measured.force], "repeats": count.tolist(),
             "residual": ["no model here" if not np.isfinite(one) else
-                         f"{'+' if one >= 0.0 else '−'}{in_words(abs(float(one)), 'N', 3)}" for one in gap]}
+                         signed_in_words(float(one), "N") for one in gap]}
 
 
 def measured_over(plot: figure, measured: Measured, factor: float, sigma: np.ndarray | None = None) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from granchain_core import BadInput, Run, Scene, State
 from granchain_core.quantities import QUANTITIES
 
-from ..format import prefixed
+from ..pictures.axes import in_words, signed_in_words
 from .share import PINS, START, decode, encode
 from .starts import read_start, start_text
 
@@ -86,18 +86,14 @@ def _stated(run: Run, attribute: str, error: str) -> str:
     value = float(getattr(run, attribute))
     relative = getattr(run.force_errors, error)
     digits = 3 if relative is None else int(np.clip(np.floor(-np.log10(max(relative, 1e-12))), 1, 6))
-    factor, letter = prefixed(abs(value))
-    return f"{value / factor:.{digits}g} {letter}N"
+    return in_words(value, "N", digits)
 
 
 def _beside(now: Run, run: Run | None, attribute: str, error: str) -> list[str]:
     if run is None:
         return _NOTHING
     here, there = float(getattr(now, attribute)), float(getattr(run, attribute))
-    gap = here - there
-    factor, letter = prefixed(abs(gap)) if gap else (1.0, "")
-    sign = "+" if gap >= 0.0 else "−"
-    return [_stated(run, attribute, error), f"{sign}{abs(gap) / factor:.3g} {letter}N", _times(here, there)]
+    return [_stated(run, attribute, error), signed_in_words(here - there, "N"), _times(here, there)]
 
 
 def _times(here: float, there: float) -> str:

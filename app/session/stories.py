@@ -18,8 +18,8 @@ from granchain_core.errors import unknown_name
 from granchain_core.scene import ASSETS
 from granchain_core.stop import Stop
 
-from ..format import prefixed
 from ..frames import samples_for
+from ..pictures.axes import in_words
 from .share import EXTRAS
 
 FOLDER = ASSETS / "stories"
@@ -158,8 +158,7 @@ def differences(step: Step, shown: Run) -> list[str]:
 
 
 def _force(newtons: float) -> str:
-    factor, letter = prefixed(newtons)
-    return f"{newtons / factor:.3g} {letter}N"
+    return in_words(newtons, "N", 3)
 
 
 def _step(number: int, data: Any) -> Step:

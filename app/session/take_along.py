@@ -150,33 +150,14 @@ print(f"curve, {start}: {{len(frequencies)}} points, largest difference from the
 
 
 def _drawings(screen: Screen) -> list[tuple[str, str]]:
-    forces = """from bokeh.io import output_notebook, show
-from bokeh.models import LinearColorMapper
-from bokeh.plotting import figure
+    motion = """from bokeh.io import output_notebook, show
+
+import granchain
 
 output_notebook(hide_banner=True)
-time = 1e3 * (run.time - run.time[0])
-forces = figure(title="forces", x_axis_label="time (ms)", y_axis_label="force (N)", width=760, height=260)
-forces.line(time, run.input_force, color="#3b82f6", legend_label="input")
-forces.line(time, run.output_force, color="#2f9e6a", legend_label="output")
-show(forces)"""
-    energy = """energy = run.kinetic_energy
-beads = energy.shape[1]
-plot = figure(title="kinetic energy", x_axis_label="bead", y_axis_label="time (ms)", width=560, height=420,
-              x_range=(0.5, beads + 0.5), y_range=(time[-1], 0))
-# Colours follow the square root of the energy, as on the page.
-plot.image([np.sqrt(energy)], x=0.5, y=0, dw=beads, dh=time[-1],
-           color_mapper=LinearColorMapper("Inferno256", low=0, high=float(np.sqrt(energy.max()))))
-show(plot)"""
-    found = [("The force trains.", forces), ("Every bead in time.", energy)]
-    for start in screen.curves:
-        found.append((f"The curve, {start}.", f"""plot = figure(title="resonance curve, {start}", width=760, height=300,
-              x_axis_label="drive frequency (Hz)", y_axis_label="largest output force (N)")
-plot.line(frequencies_of := [point.frequency for point in curve_{start}.points],
-          curve_{start}.column("max_output_force"), color="#2f9e6a")
-plot.scatter([chain.f], [run.max_output_force], size=11, color="#2f9e6a")
-show(plot)"""))
-    return found
+show(granchain.figure(run))"""
+    curves = [(f"The curve, {start}.", f"show(granchain.figure(curve_{start}))") for start in screen.curves]
+    return [("The motion: drive and input force, every bead's energy, output force.", motion), *curves]
 
 
 def _csv(titles: Sequence[str], rows: Any) -> str:
@@ -187,7 +168,7 @@ def _csv(titles: Sequence[str], rows: Any) -> str:
     return text.getvalue()
 
 
-#: What can be taken along as a text: the end of its name, and how it is written.
+#: What can be exported as a text: the end of its name, and how it is written.
 TEXTS: dict[str, tuple[str, Callable[[Screen], str]]] = {
     "trains": ("-trains.csv", lambda screen: trains_csv(screen.run)),
     "curve": ("-curve.csv", lambda screen: curve_csv(screen.curves)),

@@ -20,6 +20,10 @@ from .progress import Status
 Say = Callable[[Status, str], None]
 
 
+def say_nothing(status: Status, sentence: str) -> None:
+    """Show no status, for a task whose result is all there is to see; the host reports failures."""
+
+
 class Job:
     """One run of a task, as its work sees it from a worker thread."""
 
