@@ -1,5 +1,7 @@
 // A Bokeh figure of its own in an element: made on the server by a function of app/pictures, filled here.
 
+import { documentOf, drawDocument, forgetDocument, frameOf } from "./bokeh.js";
+
 export class Embedded {
   constructor(host, filled = () => {}) {
     this.host = host;
@@ -16,9 +18,9 @@ export class Embedded {
     this.enqueue(async () => {
       this.clear();
       // Filled before it is drawn: an axis without data has no range.
-      this.document = Bokeh.require("document").Document.from_json(item.doc);
+      this.document = documentOf(item);
       this.filled(this);
-      this.views = await Bokeh.embed.add_document_standalone(this.document, this.host);
+      this.views = await drawDocument(this.document, this.host);
     });
   }
 
@@ -33,7 +35,7 @@ export class Embedded {
   }
 
   clear() {
-    if (this.document) Bokeh.documents.splice(Bokeh.documents.indexOf(this.document), 1);
+    if (this.document) forgetDocument(this.document);
     this.views?.clear();
     this.host.replaceChildren();
     this.document = this.views = null;
@@ -63,7 +65,7 @@ export class Embedded {
 
   // On a tap, calls choose(source, row). `pick` selects among the rows hit, by default the nearest; of several sources
   // the first in `names` wins.
-  taps(names, choose, pick = (rows, data, at) => nearest(rows, data, at, this.views.roots[0].frame)) {
+  taps(names, choose, pick = (rows, data, at) => nearest(rows, data, at, frameOf(this.views.roots[0]))) {
     const hit = new Map();
     const chosen = () => {
       const name = names.find((one) => hit.has(one));

@@ -1,6 +1,7 @@
 // Pictures of the page as PNG and SVG, made in the browser from what is on the screen; the other files come from the
 // server.
 
+import { figuresIn, modelsNamed, svgContext, svgOf, viewOf, writtenSvg } from "./bokeh.js";
 import { button, download, element } from "./dom.js";
 import { draw, SVG } from "./plot.js";
 
@@ -23,30 +24,10 @@ const FILES = [
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-const views = (name) =>
-  window.Bokeh.documents
-    .map((one) => one.get_model_by_name(name))
-    .filter(Boolean)
-    .map((model) => window.Bokeh.index.find_one(model))
-    .filter(Boolean);
-
-// The figures of the page over the pictures, as far as they are on the screen.
-function figuresOf(node, found = []) {
-  for (const one of node.querySelectorAll("*")) {
-    const view = one.bokehView;
-    if (view?.export && one.getClientRects().length) found.push(view);
-    if (one.shadowRoot) figuresOf(one.shadowRoot, found);
-  }
-  return found;
-}
-
-const asSvg = (view) => {
-  const drawn = view.export("svg", true);
-  return new DOMParser().parseFromString(drawn.ctx.get_serialized_svg(true), "image/svg+xml").documentElement;
-};
+const views = (name) => modelsNamed(name).map(viewOf).filter(Boolean);
 
 // One piece of a picture: its box on the screen, and its drawing.
-const figurePiece = (view) => ({ box: view.el.getBoundingClientRect(), svg: () => asSvg(view) });
+const figurePiece = (view) => ({ box: view.el.getBoundingClientRect(), svg: () => svgOf(view) });
 
 // The chain is drawn once more, by the same code, on a context that writes SVG.
 const chainPiece = () => {
@@ -54,11 +35,10 @@ const chainPiece = () => {
   return {
     box: canvas.getBoundingClientRect(),
     svg: () => {
-      const { SVGRenderingContext2D } = window.Bokeh.require("core/util/svg");
       const { width, height } = canvas.getBoundingClientRect();
-      const context = new SVGRenderingContext2D({ width, height, document });
+      const context = svgContext(width, height);
       redraw(context);
-      return new DOMParser().parseFromString(context.get_serialized_svg(true), "image/svg+xml").documentElement;
+      return writtenSvg(context);
     },
   };
 };
@@ -199,7 +179,7 @@ async function savePicture(what, kind) {
   const { name, title } = captionOf(what);
   const found =
     what === "page"
-      ? { parts: figuresOf(document.getElementById("overlay")).map(figurePiece), words: [], bars: [] }
+      ? { parts: figuresIn(document.getElementById("overlay")).map(figurePiece), words: [], bars: [] }
       : pieces(what);
   if (!found.parts.length) return;
   const drawn = svg(title, found);

@@ -1,6 +1,7 @@
 // The names of the curve's peaks, valleys and stop band as buttons over its figure. A name that would lie on another
 // one moves up, and is left out where there is no room: strong peaks come first.
 
+import { frameOf, modelsNamed, onLayout, viewOf } from "../../parts/bokeh.js";
 import { button, element } from "../../parts/dom.js";
 
 const FIGURE = "resonance curve"; // the name of its model
@@ -53,22 +54,22 @@ export class ChapterLabels {
     this.timer = setTimeout(() => requestAnimationFrame(() => this.place()), 60);
   }
 
-  view() {
-    const model = window.Bokeh.documents.map((one) => one.get_model_by_name(FIGURE)).find(Boolean);
-    const view = model && window.Bokeh.index.find_one(model);
+  // The frame of the curve's figure, whose changes place the names anew.
+  frame() {
+    const [model] = modelsNamed(FIGURE);
+    const view = model && viewOf(model);
     if (view && !this.follows) {
       this.follows = true;
-      for (const signal of [model.y_range.change, model.x_range.change, model.properties.inner_width.change])
-        signal.connect(() => this.later());
+      onLayout(model, () => this.later());
     }
-    return view;
+    return frameOf(view);
   }
 
   place() {
     if (!this.chapters.length) return;
-    const view = this.view();
-    if (!view?.frame) return;
-    const { left, right, top, bottom } = view.frame.bbox;
+    const frame = this.frame();
+    if (!frame) return;
+    const { left, right, top, bottom } = frame.bbox;
     const kept = [];
     const order = [...this.chapters.keys()].sort(
       (a, b) =>
@@ -80,8 +81,8 @@ export class ChapterLabels {
       label.hidden = false;
       const wide = label.offsetWidth,
         tall = label.offsetHeight;
-      const x = view.frame.x_scale.compute(f) - wide / 2;
-      const lowest = Math.min(bottom, view.frame.y_scale.compute(height) - ABOVE) - tall;
+      const x = frame.x_scale.compute(f) - wide / 2;
+      const lowest = Math.min(bottom, frame.y_scale.compute(height) - ABOVE) - tall;
       const place = { left, right: right - wide, top, x, lowest };
       const box = freeBox(place, (one) => kept.every((other) => apart(one, other)), wide, tall);
       label.hidden = !box;

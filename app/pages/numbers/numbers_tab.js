@@ -1,6 +1,7 @@
 // The Numbers tab: the pictures in words and in tables, and beside pinned ones. The words describe the pictures to a
 // screen reader, too.
 
+import { modelsNamed } from "../../parts/bokeh.js";
 import { element, paragraph, table } from "../../parts/dom.js";
 import { compared } from "./compared.js";
 
@@ -23,7 +24,7 @@ export function numbersMessage(message) {
 
 // The rows of the curve are those that its figure draws.
 function curveRows() {
-  const figure = window.Bokeh.documents.map((one) => one.get_model_by_name(CURVE)).find(Boolean);
+  const [figure] = modelsNamed(CURVE);
   const points = (figure?.renderers ?? [])
     .map(({ data_source, visible, glyph }) => (visible && glyph.type === "Scatter" ? data_source.data : {}))
     .filter(({ regime }) => regime?.length);

@@ -1,0 +1,42 @@
+// What the page uses of BokehJS beyond its documentation. No other module touches it, so that a new release is checked
+// here (tests/browser/test_bokeh_internals.py); docs/dashboard.md lists the rest.
+
+// The models of this name in all documents of the page, as each figure has a document of its own.
+export const modelsNamed = (name) => window.Bokeh.documents.map((one) => one.get_model_by_name(name)).filter(Boolean);
+
+// What draws a model, if it is drawn.
+export const viewOf = (model) => window.Bokeh.index.find_one(model);
+
+// The box of a figure's frame in its element, and its scales from data to pixels; null before it is laid out.
+export const frameOf = (view) => view?.frame ?? null;
+
+// Calls `act` when a figure has other ranges or another size.
+export function onLayout({ x_range, y_range, properties }, act) {
+  for (const signal of [y_range.change, x_range.change, properties.inner_width.change]) signal.connect(act);
+}
+
+// The views of the figures in an element that are on the screen.
+export function figuresIn(node, found = []) {
+  for (const one of node.querySelectorAll("*")) {
+    const view = one.bokehView;
+    if (view?.export && one.getClientRects().length) found.push(view);
+    if (one.shadowRoot) figuresIn(one.shadowRoot, found);
+  }
+  return found;
+}
+
+// A canvas context that writes SVG, and the element that it has written.
+export function svgContext(width, height) {
+  const { SVGRenderingContext2D } = window.Bokeh.require("core/util/svg");
+  return new SVGRenderingContext2D({ width, height, document });
+}
+export const writtenSvg = (context) =>
+  new DOMParser().parseFromString(context.get_serialized_svg(true), "image/svg+xml").documentElement;
+
+// A figure as SVG.
+export const svgOf = (view) => writtenSvg(view.export("svg", true).ctx);
+
+// A document of its own from Bokeh's JSON, drawn in an element, and taken away again.
+export const documentOf = ({ doc }) => window.Bokeh.require("document").Document.from_json(doc);
+export const drawDocument = (one, host) => window.Bokeh.embed.add_document_standalone(one, host);
+export const forgetDocument = (one) => window.Bokeh.documents.splice(window.Bokeh.documents.indexOf(one), 1);
