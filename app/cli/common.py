@@ -17,6 +17,7 @@ from granchain_core.scene.validity import missing_impurity
 from granchain_core.stop import Stop
 
 from . import ending
+from .compiling import announce_compiling
 from .foundation import kept_spring
 
 T = TypeVar("T")
@@ -95,6 +96,7 @@ def in_background(work: Callable[[Any], T]) -> T:
         except BaseException as error:  # handed to the main thread, which knows what to say
             problem.append(error)
 
+    announce_compiling()
     thread = threading.Thread(target=target, daemon=True)
     with ending.told(stop.set) as asked:
         thread.start()

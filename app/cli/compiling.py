@@ -1,0 +1,30 @@
+"""A first run waits for the compiler: a person at a terminal is told what the wait is, once."""
+
+from __future__ import annotations
+
+import functools
+import sys
+
+WORDS = ("Compiling the kernels for this set of effects: 10 to 60 s, once per machine. "
+         "`granchain warm` does it ahead of time.")
+
+
+@functools.cache
+def announce_compiling() -> None:
+    """From now on, tell a person at a terminal when Numba begins to compile; a kernel read from disk is no news."""
+    if not sys.stderr.isatty():
+        return
+    from numba.core import event  # with the compiler: a second that commands without kernels do not wait
+
+    class Listener(event.Listener):
+        told = False
+
+        def on_start(self, event: event.Event) -> None:
+            if not Listener.told:
+                Listener.told = True
+                print(WORDS, file=sys.stderr, flush=True)
+
+        def on_end(self, event: event.Event) -> None:
+            pass
+
+    event.register("numba:compile", Listener())
