@@ -3,9 +3,10 @@
     from granchain_core import resonance_curve, run, scene
     result = run(scene("sec2").evolve(f=340.0))
 
-This is the public API: what is listed in `__all__` is public, everything else may change. Names mirror the commands
-of the command line. `settle`, `orbit` and `branch` are also known by their longer names `settled`, `periodic_orbit` and
-`continue_branch`.
+This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
+function of the same name; `curve` is `resonance_curve`, `map` is `diagram`, `strobes` is `strobe_diagram`, `lyapunov`
+is `lyapunov_spectrum` and `accuracy` is `work_precision`. `settle`, `orbit` and `branch` are also known by their longer
+names `settled`, `periodic_orbit` and `continue_branch`.
 """
 
 from __future__ import annotations

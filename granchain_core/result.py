@@ -164,7 +164,8 @@ class Run(Motion):
         Stated largest error of any displacement over the largest displacement: numerical error only, an empirical
         bound (docs/design.md), not a proof; None where none is claimed.
     energy_residual : float or None
-        (work − lost − stored) over the largest of the three; None where no account was kept.
+        |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
+        energy; None where no account was kept.
     regime : Regime
         What kind of motion it is.
     status : str
@@ -267,7 +268,10 @@ def said_forces(found: HasForces) -> list[str]:
 
 
 def residual(energy: np.ndarray | None) -> float | None:
-    """How far the energy account is from closing, relative to its largest entry; columns stored, work, lost."""
+    """|work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored energy.
+
+    `energy` (T, 3) has the columns stored, work, lost; None where no account was kept.
+    """
     if energy is None:
         return None
     stored, work, lost = (energy[-1] - energy[0])

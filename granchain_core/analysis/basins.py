@@ -38,7 +38,7 @@ class Basins(Labelled):
     attractors : list of Attractor
         The steady states that were found, the one with the most starts first.
     number : numpy.ndarray of int, shape (len(y), len(x))
-        Place in `attractors`; −1 where the numbers failed or the computation was stopped.
+        Place in `attractors`; −1 where the computation failed or the computation was stopped.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
     stop : Stop, optional
         Once it is set the computation ends with what is there; other starts are −1.
     progress : callable, optional
-        Told the part that is done, 0 to 1.
+        Called with the fraction that is done, 0 to 1.
 
     Returns
     -------

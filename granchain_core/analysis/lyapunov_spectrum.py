@@ -166,7 +166,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     stop : Stop, optional
         Once it is set the computation ends with `Cancelled`.
     progress : callable, optional
-        Told the part that is done, 0 to 1.
+        Called with the fraction that is done, 0 to 1.
 
     Returns
     -------

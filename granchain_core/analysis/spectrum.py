@@ -65,7 +65,7 @@ class Spectrum(Labelled):
 
     @property
     def resolution(self) -> float:
-        """Distance of two frequencies that can be told apart [Hz]."""
+        """Frequency resolution [Hz]."""
         return float(self.frequency[1]) * (1.0 if self.period else 2.0)
 
     @property

@@ -37,7 +37,7 @@ MOST_VALUES, MOST_STROBES = 20_000, 10_000
 class StrobePoint:
     """The strobes at one value of the knob: displacement and velocity of every bead at phase 0, (P, 2, N) [m, m/s].
 
-    `failure` is a sentence where the numbers failed; there are no strobes then.
+    `failure` is a sentence where the computation failed; there are no strobes then.
     """
 
     value: float
@@ -91,7 +91,7 @@ class StrobeDiagram(Labelled):
         return values, states
 
     def tables(self) -> tuple[Table, ...]:
-        """`strobes`: states over knob, strobe and bead, NaN where the numbers failed; `values`: the regime of each."""
+        """`strobes`: states over knob, strobe and bead, NaN after a failure; `values`: the regime of each."""
         quantity, most = QUANTITIES[self.knob], max((len(point.strobes) for point in self.points), default=0)
         states = np.full((len(self.points), most, 2, self.scene.N), np.nan)
         for row, point in zip(states, self.points, strict=True):
@@ -139,7 +139,7 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
     stop : Stop, optional
         Once it is set the diagram ends; what is computed stays.
     progress : callable, optional
-        Told the part that is done, 0 to 1.
+        Called with the fraction that is done, 0 to 1.
 
     Returns
     -------

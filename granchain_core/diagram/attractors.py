@@ -116,7 +116,7 @@ def _settled(starts: list[Start], stop: Stop | None,
 
 
 def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
-    """New starts beside the orbit for all results on an unstable orbit."""
+    """New starts near the orbit for all results on an unstable orbit."""
     orbit = group[0].orbit
     assert orbit is not None
     u, v = orbit.state.displacement, orbit.state.velocity

@@ -2,7 +2,8 @@
 
 A pair of neighbouring cells determines what is searched between them: periods n and 2n a period doubling, a periodic
 and a quasi-periodic cell a Neimark–Sacker point, anything else the fold at which an orbit ends. The orbit of the
-periodic cell is carried towards its neighbour, and from where its multipliers come nearest the point itself is found.
+periodic cell is continued towards its neighbour; the search for the point starts where a multiplier is nearest to its
+critical value.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from .cells import REGIMES, Diagram
 
 #: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
-#: A point this many cells outside the pair of cells between which it was looked for belongs to another boundary.
+#: A point this many cells outside the pair of cells between which it was sought belongs to another boundary.
 _OUTSIDE = 1.0
 #: Curves closer than this many cells are the same.
 _SAME = 0.5

@@ -80,7 +80,7 @@ def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.n
 
 
 def merged(results: list[Found]) -> list[list[Found]]:
-    """Results in groups that are one attractor each; the first of a group stands for it."""
+    """Results grouped by attractor; the first of a group represents it."""
     groups: list[list[Found]] = []
     for one in results:
         _join(groups, [one])

@@ -1,4 +1,4 @@
-"""A measured curve beside a computed one: differences in newtons and, where errors are known, in parts of these."""
+"""Compare a measured curve with a computed one: differences in newtons and, if known, in units of the errors."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Difference:
 
 
 def compared(measured: Measured, frequencies: np.ndarray, forces: np.ndarray) -> Difference:
-    """The measurement beside a curve of ascending frequencies [Hz] and forces [N]."""
+    """Compare the measurement with a curve of ascending frequencies [Hz] and forces [N]."""
     model = np.full(len(measured.frequency), np.nan)
     if len(frequencies):
         model = np.interp(measured.frequency, frequencies, forces, left=np.nan, right=np.nan)

@@ -1,4 +1,4 @@
-"""What a file does not say: a question to its reader, and the answers."""
+"""Questions about a file whose columns, units or number format are ambiguous, and the answers."""
 
 from __future__ import annotations
 

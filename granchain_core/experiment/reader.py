@@ -1,4 +1,4 @@
-"""A measured table from a file: what is certain is read, what is not is asked, what is wrong is refused with its line.
+"""Read a measured table from a file; ask about ambiguous columns, units and numbers; refuse errors with their line.
 
 CSV and what spreadsheets make of it, projects and tables of WebPlotDigitizer, HDF5 and netCDF-4.
 """

@@ -98,7 +98,7 @@ class Fit(Labelled):
     wall_s: float = 0.0
 
     def tables(self) -> tuple[Table, ...]:
-        """`parameters` with their intervals, `data` beside the model, `profiles`, and the `landscape` of the misfit."""
+        """`parameters` with their intervals, `data` with the model, `profiles`, and the `landscape` of the misfit."""
         profiles = (profile_table(self.free, self.profiles),) if self.profiles else ()
         return (parameter_table(self.free, self.best, self.profiles), data_table(self.target, self.evaluation),
                 *profiles, landscape_table(self.free, self.landscape))
@@ -161,7 +161,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
     stop : Stop, optional
         Ends the fit when another thread sets it.
     progress : callable, optional
-        Told how many sets of parameters have been evaluated.
+        Called with the number of sets of parameters evaluated.
     scheduler : distributed.Client, optional
         Its workers evaluate the design and the derivatives, a set of parameters at a time.
 

@@ -23,7 +23,7 @@ class Free:
 
     `name` is one of `UNITS`, or A0@f for the drive amplitude at one measured frequency [Hz]. Between `low` and `high`
     it is searched on a logarithmic scale where both are above 0. `prior` has mean and standard deviation of what is
-    known beside the data.
+    known besides the data.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""A fit as tables: parameters with their intervals, the data beside the model, profiles, and all that was tried."""
+"""A fit as tables: parameters with their intervals, the data with the model, profiles, and all that was tried."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def parameter_table(free: Sequence[Free], best: np.ndarray, profiles: Sequence[P
 
 
 def data_table(target: CurveTarget | SeriesTarget | FeatureTarget, evaluation: Evaluation) -> Table:
-    """A row for each datum: the measured value, the model's beside it, and the residual."""
+    """A row for each datum: the measured value, the model's, and the residual."""
     along, count = ("datum",), len(evaluation.residuals)
     unit = "Hz" if isinstance(target, FeatureTarget) else "N"
     columns = {"residual": Column(evaluation.residuals, along, "1", "model less measured, in standard deviations"),

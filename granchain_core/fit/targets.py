@@ -23,16 +23,16 @@ from ..steady.settling.recorded import settled
 from ..stop import Stop
 from .trains import Train, moved
 
-#: Scatter, in parts of it, that is given to the largest force of a motion that is not periodic.
+#: Relative standard deviation assigned to the largest force of a motion that is not periodic.
 SCATTER = 0.2
-#: The residual of a point whose numbers failed, in standard deviations.
+#: The residual of a point whose computation failed, in standard deviations.
 FAILED = 20.0
-#: Standard deviation assumed where neither errors nor repeats are known, as a part of the largest force; the misfit is
-#: then scaled so that it has the size of its degrees of freedom.
+#: Standard deviation assumed where neither errors nor repeats are known, as a fraction of the largest force; the misfit
+#: is then scaled so that it has the size of its degrees of freedom.
 ASSUMED = 0.05
-#: A relative error of a smaller force than this part of the largest is that of this part.
+#: Forces below this fraction of the largest have the absolute error of a force of this fraction.
 _SMALLEST = 1e-3
-#: Repeats that agree better than to this part are no evidence that the next one would.
+#: Least relative scatter of repeats that is believed: closer agreement may be chance.
 _LEAST_SCATTER = 1e-4
 #: Samples of a model's train in a drive period, and most samples of a series that are compared.
 _TRAIN, _COMPARED = 768, 4000
@@ -40,9 +40,9 @@ _TRAIN, _COMPARED = 768, 4000
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """Residuals (n,) in standard deviations, what χ² has beyond their squares, and the regimes behind them.
+    """Residuals (n,) in standard deviations, the term added to the sum of their squares in χ², and the regimes.
 
-    `model` is the model's value beside each datum, for pictures: forces [N], frequencies [Hz].
+    `model` is the model's value for each datum, for pictures: forces [N], frequencies [Hz].
     """
 
     residuals: np.ndarray

@@ -1,4 +1,4 @@
-"""Virtual experiments: measurements that are none, of a model with known parameters, marked as such."""
+"""Synthetic data: curves and series of a model with known parameters and noise, marked as synthetic."""
 
 from __future__ import annotations
 

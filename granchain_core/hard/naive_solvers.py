@@ -1,4 +1,4 @@
-"""Naive solvers in plain Python, which some pictures draw beside ours.
+"""Naive solvers in plain Python, which some pictures compare with ours.
 
 They are correct except for what they omit: contacts are tested at the ends of steps, and no event is located.
 """

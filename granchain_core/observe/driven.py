@@ -54,7 +54,8 @@ class Driven(Motion):
     error_estimate : float
         Largest error of any displacement over the largest displacement.
     energy_residual : float
-        (work − lost − stored) over the largest of the three.
+        |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
+        energy.
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost

@@ -1,7 +1,7 @@
-"""Motions of the driver beside the harmonic one: chirp, burst, two tones, noise, a measured series.
+"""Prescribed motions of the driver other than the harmonic one: chirp, burst, two tones, noise, a measured series.
 
-A signal is given at knots. Between them the velocity is a straight line and the displacement a quadratic, which is the
-motion that is computed, exactly. A formula u(t) is given at KNOTS places in a period of its highest frequency. The
+A signal is given at knots. Between them the velocity is a straight line and the displacement a quadratic, and this
+motion is computed exactly. A formula u(t) is given at KNOTS places in a period of its highest frequency. The
 velocities there are lowered by h² v''/12, so that the displacement, on which the elastic forces depend, follows the
 formula with an error of order h⁴ at the knots and 4e-8 of the amplitude between them; the velocity differs by 2e-5.
 """

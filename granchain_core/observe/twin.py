@@ -45,8 +45,8 @@ TRANSLATION = 0.7
 class Twin:
     """A chain x and its observer y in time: T samples of N beads in SI.
 
-    `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is its
-    distance's factor per orbit period as measured in time, `measured` one or two leading multipliers fitted to
+    `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is the
+    factor per orbit period by which the distance grows or shrinks, `measured` one or two leading multipliers fitted to
     it (None and empty where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is
     not periodic, or cuts tension. `translation` is how much of the last linear difference is one shift of all beads.
     """
@@ -173,7 +173,7 @@ def _check(periods: int, samples: int) -> None:
 
 
 def observer_start(scene: Scene, chain: State, perturbation: float | State) -> State:
-    """Where the observer starts: in a given state, or beside the chain by a part of A0."""
+    """Where the observer starts: in a given state, or displaced from the chain by a fraction of A0."""
     if isinstance(perturbation, State):
         if len(perturbation.displacement) != scene.N:
             raise BadInput(f"The observer's start has {len(perturbation.displacement)} beads; the chain has {scene.N}.")
@@ -197,7 +197,7 @@ def linear_window(distance: np.ndarray) -> tuple[int, int]:
 def rates(strobes: np.ndarray) -> tuple[float | None, tuple[complex, ...]]:
     """Factor of the distance per strobe (least squares of its logarithm) and one or two leading multipliers.
 
-    `strobes` are successive differences (P, 2N). Where one real multiplier explains them a second would be invented.
+    `strobes` are successive differences (P, 2N). Where one real multiplier explains them no second one is fitted.
     """
     if len(strobes) < _FEWEST:
         return None, ()

@@ -1,6 +1,6 @@
 """The results of the figures, from the presets and by the core's own functions.
 
-Each function takes a user's data, a stop flag, and a function that is told what fraction is done.
+Each function takes a user's data, a stop flag, and a function that is called with the fraction done.
 """
 
 from __future__ import annotations

@@ -29,14 +29,14 @@ Outcome = tuple[Any, str]
 
 
 class Runs(list[Any], Labelled):
-    """The results of many scenes in their order; None where the numbers failed.
+    """The results of many scenes in their order; None where the computation failed.
 
     Attributes
     ----------
     scenes : list of Scene
         The chains.
     failures : list of str
-        For each a sentence where the numbers failed, else "".
+        For each a sentence where the computation failed, else "".
 
     Examples
     --------
@@ -173,7 +173,7 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
 
 
 def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -> Outcome:
-    """What `work` makes of a chain, or the sentence with which its numbers failed."""
+    """What `work` makes of a chain, or the sentence with which its computation failed."""
     try:
         return work(chain, **options), ""
     except (NumbersFailed, OverBudget) as problem:

@@ -14,6 +14,14 @@ _NESTERENKO = ("V. F. Nesterenko. Propagation of nonlinear compression pulses in
                "Phys. 24, 733–743 (1983).")
 _DIMERS = ("K. R. Jayaprakash, Y. Starosvetsky, A. F. Vakakis. New family of solitary waves in granular dimer chains "
            "with no precompression. Phys. Rev. E 83, 036606 (2011).")
+_TRAINS = ("S. Job, F. Melo, A. Sokolow, S. Sen. Solitary wave trains in granular chains: experiments, theory and "
+           "simulations. Granular Matter 10, 13–20 (2007).")
+_IMPURITY = ("E. Hascoët, H. J. Herrmann. Shocks in non-loaded bead chains with impurities. Eur. Phys. J. B 14, "
+             "183–190 (2000).")
+_TAPER = "S. Sen, F. S. Manciu, M. Manciu. Thermalizing an impulse. Physica A 299, 551–558 (2001)."
+_PRECOMPRESSED = "V. F. Nesterenko. Dynamics of Heterogeneous Materials. Springer, New York (2001)."
+_DIODE = ("N. Boechler, G. Theocharis, C. Daraio. Bifurcation-based acoustic switching and rectification. Nature "
+          "Materials 10, 665–668 (2011).")
 _LAWS = {
     "tsuji": "Y. Tsuji, T. Tanaka, T. Ishida. Lagrangian numerical simulation of plug flow of cohesionless particles "
              "in a horizontal pipe. Powder Technology 71, 239–250 (1992).",
@@ -31,4 +39,15 @@ def citations(scene: Description) -> list[tuple[str, str]]:
         found.append(("solitary wave", _NESTERENKO))
     if scene.dimer != 1.0:
         found.append(("dimers", _DIMERS))
+    if scene.taper != 1.0:
+        found.append(("tapered chains", _TAPER))
+    if scene.F0 > 0.0:
+        found.append(("precompressed chains", _PRECOMPRESSED))
+    impurity = scene.impurity != 1.0 and scene.site <= scene.N
+    if not scene.is_driven and scene.striker > 1.0:
+        found.append(("pulse trains", _TRAINS))
+    if not scene.is_driven and impurity:
+        found.append(("impurities", _IMPURITY))
+    if scene.is_driven and scene.F0 > 0.0 and impurity:
+        found.append(("acoustic diode", _DIODE))
     return found

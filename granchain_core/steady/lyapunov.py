@@ -16,8 +16,8 @@ from ..stop import Stop
 
 #: Distance of the shadow in drive amplitudes: far above rounding, far below the kinks of the contacts.
 _DISTANCE = 1e-8
-#: Largest ratio of steps a period of two scenes that run side by side: the extra periods of the faster one must not
-#: push its own out of the record.
+#: Largest ratio of steps per period of two scenes that run side by side: the faster one runs on until the slower one
+#: has finished, and these extra strobes must not overwrite those that count.
 MOST_APART = 2.5
 
 

@@ -34,7 +34,7 @@ def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float,
     """Relative errors of the three largest forces on an orbit: of its integration, and of the distance left to it.
 
     `change` (3,) is the relative change of the forces from one computation to a finer one. If both began in the same
-    state, `contraction` is the part of a distance that is left after an orbit (|μ|, or else the decay seen): an error
+    state, `contraction` is the contraction factor per orbit (|μ|, or else the decay seen): an error
     e of the n-period map moves its fixed point by e/(1 − contraction), and the forces with it. If each ran on its own
     orbit, it is 0. `distance` (3,) is what the distance left contributes (`force_distances`), and `further` errors
     (3,), such as those at jumps, are added. `least` is the typical error of the finer computation: two may agree by
@@ -46,7 +46,7 @@ def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float,
 def errors_between(finer: Engine, before: np.ndarray, contraction: float, distance: float) -> np.ndarray:
     """Relative errors (3,) of the largest forces that `finer` found in one orbit; a coarser run found `before`.
 
-    Both began at the relative `distance` from the orbit; `contraction` is the part of it that is left after an orbit.
+    Both began at the relative `distance` from the orbit; `contraction` is the contraction factor per orbit.
     """
     jumps = jump_errors(finer.setting, finer.lowered, finer.samples, finer.jumps, finer.maxima)
     left = force_distances(distance, finer.lowered, finer.maxima, finer.y)

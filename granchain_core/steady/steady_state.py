@@ -16,8 +16,9 @@ from ..state import State
 class SteadyState:
     """A steady state with its largest forces `maxima` (3,) [N] in the order input, output, elastic output.
 
-    `errors` (3,) are their relative errors, None where none is claimed; `state` is at drive phase 0. With a `failure`,
-    a sentence, there are none of these, and `status` is its name. `number` is that of the start it was found from.
+    `errors` (3,) are their relative errors, None where none is claimed; `state` is at drive phase 0. If the computation
+    failed, `failure` is a sentence, `status` the name of the failure, and the forces are NaN. `number` is that of the
+    start it was found from.
     `doubtful`: the batch could not decide; `settle` continues from `state`.
     """
 

@@ -22,3 +22,15 @@ def test_what_a_scene_uses_is_cited(settings: list[str], named: list[str], capsy
     assert main(["cite", "sec2", *settings]) == 0
     said = capsys.readouterr().out
     assert "arXiv:1606.09305" in said and len(said.splitlines()) == len(named)
+
+
+@pytest.mark.parametrize(("scene", "named"), [
+    ("impact-train", ["solitary wave", "pulse trains"]), ("impact-impurity", ["solitary wave", "impurities"]),
+    ("impact-taper", ["solitary wave", "tapered chains"]), ("precompressed", ["precompressed chains"]),
+    ("diode", ["precompressed chains", "acoustic diode"]), ("diode-reverse", ["precompressed chains", "acoustic diode"]),
+])
+def test_the_sources_of_the_scenes_beyond_the_paper_are_cited(scene: str, named: list[str],
+                                                             capsys: pytest.CaptureFixture[str]) -> None:
+    """The references of docs/scenes.md, for the scenes that show them."""
+    assert main(["cite", scene, "--json"]) == 0
+    assert [one["for"] for one in json.loads(capsys.readouterr().out)["citations"]][3:] == named

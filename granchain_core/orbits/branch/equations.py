@@ -1,8 +1,8 @@
 """The equations of a branch, P(x; p) − x = 0 and one condition on the step, and Newton's method on them.
 
 Jacobian   [[(P_x − 1)√(2N), P_p], [nᵀ]] in z = (x/√(2N), p): P_x is the exact derivative of the stroboscopic map, P_p
-           a difference of the map in the knob. n is the plane's normal, across which z may not move: the matrix stays
-           regular through folds (Keller 1977).
+           a difference of the map in the knob. n is the normal of the plane in which z is sought: the bordered matrix
+           stays regular at folds (Keller 1977).
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class BranchEquations:
         """The branch's point in the plane through z across `normal`, at most `farthest` from z.
 
         `slope` is P_p nearby, where it is known. Each Newton step but the last is followed by one that reuses its
-        derivative, since the map alone costs a third of it. Raises `NumbersFailed` with the residuals where the method
+        derivative, since the map alone is cheaper. Raises `NumbersFailed` with the residuals where the method
         does not converge.
         """
         start, residuals = z, list[float]()

@@ -3,7 +3,7 @@
 fold             the knob turns; a real multiplier passes +1
 period_doubling  a real multiplier passes −1
 neimark_sacker   a complex pair passes the unit circle
-grazing          a contact touches or separates once more, or less, along the orbit
+grazing          a contact touches or separates once more, or once less, along the orbit
 
 Each is enclosed between two computed orbits that differ by the change. Test functions only choose the next orbit to
 compute, so a wrong test function cannot make an interval wrong.
@@ -21,8 +21,8 @@ from .point import BranchPoint
 
 #: An interval is narrow enough at this width relative to the knob, or to a thousandth of the range's larger end.
 WIDTH = 1e-5
-#: The tangents at both ends of a bracket meet within this factor times its length: they turn by no more
-#: than 30° (walk.py).
+#: The tangents at both ends of a bracket meet within this factor times its length, because the branch turns by at most
+#: 30° in a step (walk.py).
 _SIDE = 1.25
 #: Offsets of the next orbit from the root of the test function, as fractions of the bracket, on alternating sides so
 #: that it closes from both; None means the middle. A narrower bracket is straighter, so the second two are smaller.
@@ -94,7 +94,7 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 
 def _fraction(a: BranchPoint, b: BranchPoint, depth: int) -> float:
-    """Fraction of the next orbit: beside the root of a test function, or the middle."""
+    """Fraction of the next orbit: near the root of a test function, or the middle."""
     beside, root = _BESIDE[depth % len(_BESIDE)], _root(a, b)
     if beside is None or root is None:
         return 0.5

@@ -25,7 +25,7 @@ _DOUBLED = 0.5
 
 
 def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None = None) -> Branch:
-    """A branch of twice the period, begun beside the period doubling `special` of `branch` and leading away from it.
+    """A branch of twice the period, begun near the period doubling `special` of `branch` and leading away from it.
 
     Raises `BadInput` for another kind of point and `NumbersFailed` where no doubled orbit is found.
     """

@@ -1,4 +1,4 @@
-"""A branch as tables: every orbit, every special point, and the orbits beside each."""
+"""A branch as tables: every orbit, every special point, and the two orbits around each."""
 
 from __future__ import annotations
 

@@ -22,9 +22,9 @@ FIRST = 0.02
 LONGEST = 0.4
 #: Shortest step.
 SHORTEST = 1e-7
-#: A step after at most this many of Newton's iterations grows.
+#: The step grows after at most this many Newton iterations.
 _EASY = 3
-#: A step after at least this many shrinks.
+#: The step shrinks after at least this many.
 _HARD = 5
 #: Cosine of the tangent's turn up to which a step grows.
 _STRAIGHT = np.cos(np.radians(10.0))
@@ -33,7 +33,7 @@ _BENT = np.cos(np.radians(30.0))
 #: Factors by which a step grows and shrinks.
 _GROW = 2.0
 _SHRINK = 0.6
-#: The corrected point may lie this part of the step from the predicted one.
+#: Largest distance from the predicted to the corrected point, as a fraction of the step.
 _OFF = 0.3
 #: A step passes the seed if the seed lies this near to it, relative to its length.
 _PASSES = 0.2

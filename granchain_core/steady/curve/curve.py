@@ -39,7 +39,8 @@ class CurvePoint:
     frequency : float
         [Hz]
     max_output_force, max_output_force_elastic, max_input_force : float
-        Largest forces [N]; where the motion is not periodic, those of the last periods. NaN where the numbers failed.
+        Largest forces [N]; where the motion is not periodic, those of the last periods. NaN where the computation
+        failed.
     regime : Regime
         What kind of motion it is.
     force_errors : ForceErrors
@@ -47,7 +48,7 @@ class CurvePoint:
     state : State
         Where the chain is at drive phase 0.
     failure : str
-        A sentence where the numbers failed.
+        A sentence where the computation failed.
     status : str
         "done", or the failure's name.
 
@@ -134,7 +135,7 @@ class Curve(Labelled):
         return (Table("curve", axis("frequency", self.column("frequency"), "Hz", "drive frequency"), {
             **drive, **force_columns(forces, along), **error_columns(errors, along),
             **regime_columns([p.regime for p in self.points], "frequency"),
-            "status": Column(outcomes, along, "", "done, or how the numbers failed")}),)
+            "status": Column(outcomes, along, "", "done, or how the computation failed")}),)
 
     def attributes(self) -> dict[str, Attribute]:
         """Start and cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""

@@ -20,12 +20,12 @@ STRONG = 0.7
 #: A push ends where the force falls below this part of the largest push.
 ENDED = 0.05
 #: A peak or valley counts if it differs from both neighbouring extrema by this part of the larger: a valley is at least
-#: 20 % below both peaks beside it.
+#: 20 % below both neighbouring peaks.
 STANDS_OUT = 0.2
-#: A state is on a peak if its force is below it by no more than this part of the height from the next valley.
+#: A state is on a peak if its force is below the peak by at most this fraction of the height above the next valley.
 _ON_TOP = 0.2
-#: A state is at the bottom of a valley if its force is above it by less than this part of that height; what lies
-#: between is a flank.
+#: A state is in a valley if its force is above the valley by less than this fraction of that height; states in between
+#: are on a flank.
 _AT_BOTTOM = 0.1
 #: A state whose force differs by this part from the curve's at its frequency is not on the curve.
 _OFF = 0.1

@@ -1,4 +1,4 @@
-"""The periodic orbit beside a motion, and whether the motion approaches it or departs from it.
+"""The periodic orbit near a motion, and whether the motion approaches it or departs from it.
 
 A motion may stay near an unstable orbit for hundreds of periods, and may need thousands to reach a stable one;
 meanwhile both look alike. So the orbit itself is found by Newton's method, and its multipliers predict the growth of
@@ -24,17 +24,17 @@ from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point,
 MOST_BEADS = 100
 #: |μ| is not known better than this.
 UNSURE = 1e-5
-#: A motion that changes by more over n periods is not beside an orbit of period n, nor is one this far from the orbit
+#: A motion that changes by more over n periods is not near an orbit of period n, nor is one this far from the orbit
 #: that was found.
 _BESIDE = 0.1
 #: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _AS_SMALL = 3.0
-#: Factor between the tested distances. Beside an orbit that has just become stable there may be a closed curve on which
+#: Factor between the tested distances. Near an orbit that has just become stable there may be a closed curve on which
 #: the motion stays, and distances vary by some per cent: hence several distances, and large parts of each.
 _CLOSER = 0.4
 #: Smallest distance tested, relative to the orbit.
 _SMALLEST = 1e-5
-#: Part of a distance that must decay according to the multipliers: it sets the number of orbits.
+#: Fraction of a distance that must decay according to the multipliers: it sets the number of orbits.
 _TAKEN = 0.2
 #: Most orbits for that.
 _MOST_ORBITS = 3000
@@ -52,7 +52,7 @@ _BACK = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class NearbyOrbit:
-    """An orbit of `period` drive periods beside a motion at x (2N,), scaled; `modulus` is its largest |μ|."""
+    """An orbit of `period` drive periods near a motion at x (2N,), scaled; `modulus` is its largest |μ|."""
 
     stroboscopic_map: FiniteDifferenceMap
     point: FixedPoint
@@ -156,7 +156,7 @@ def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: f
 
 
 def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) -> Iterator[NearbyOrbit]:
-    """Orbits beside a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
+    """Orbits near a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
     moved = [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]
     if not moved or min(moved) > _BESIDE:
         return

@@ -1,4 +1,4 @@
-"""What a chain settles to, recorded: pictures on the way, and the refined orbit with its error.
+"""Records of settling: pictures of the motion on its way, and the refined periodic orbit with its error.
 
 Motions that are not periodic are recorded by the live method, without a claim on their error.
 """

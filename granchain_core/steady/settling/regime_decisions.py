@@ -1,6 +1,6 @@
 """The regime of a motion that seems periodic, or that has not settled for a long time, in successive decisions.
 
-A motion that seems settled is confirmed by the multipliers of its orbit. Otherwise the orbit beside the motion is
+A motion that seems settled is confirmed by the multipliers of its orbit. Otherwise a nearby orbit is
 examined: if the motion approaches it, the orbit is reported; if it departs, the departure is
 enlarged. A motion that does neither is classified by its Lyapunov exponent, measured twice.
 """
@@ -36,7 +36,7 @@ _CONTINUED = 2
 _ALWAYS = 30
 #: A claim is in doubt if the decay per drive period is above this: a slowly unstable orbit may look like it.
 CLEAR_DECAY = 0.9
-#: Factor on the largest number of periods for a motion beside an unstable orbit, since departures are slow too.
+#: Factor on the largest number of periods for a motion near an unstable orbit, since departures are slow too.
 _PATIENCE = 4
 #: Largest |μ| of a settled motion, by differences at its own state, below which Newton's method is not needed.
 _CLEAR = 0.97
@@ -78,7 +78,10 @@ class Decisions:
         return self._measure(engine, strobes, regime)
 
     def _confirmed(self, engine: Engine, regime: Regime) -> Decision:
-        """A motion that seems settled: on an orbit that is stable, or beside one that it will leave."""
+        """A motion that seems settled: on an orbit that is stable, or near one that it will leave.
+
+        Where Newton's method finds no orbit, a doubtful claim is withdrawn and a clear decay from rest is accepted.
+        """
         assert regime.period is not None
         doubtful = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
         if (MOST_BEADS if doubtful else _ALWAYS) < self.scene.N:
@@ -97,7 +100,7 @@ class Decisions:
                     multiplier=orbit.modulus))
 
     def _beside(self, orbit: NearbyOrbit, regime: Regime) -> Decision | None:
-        """The decision by an orbit beside the motion, if it allows one."""
+        """The decision by an orbit near the motion, if it allows one."""
         if orbit.approached():
             return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus, decay=None,
                                     distance=orbit.distance, followed=True, approaches=None), orbit.point.x)

@@ -1,4 +1,4 @@
-"""From the orbit of the live method's own step onto that of a finer setting: a few more periods, or extrapolation."""
+"""Refine an orbit found with the default step: a few more periods with a finer setting, or extrapolation."""
 
 from __future__ import annotations
 
