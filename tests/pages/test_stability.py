@@ -102,6 +102,12 @@ def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:
     assert " → " in rows["Newton's residual"] and float(rows["Liouville"]) < 1e-6
     chaotic = replace(picture(), regime=Regime("chaotic", None, None, None, 620, (0.265, 0.023)))
     assert [row["name"] for row in evidence(chaotic, None, None)] == ["regime", "Lyapunov exponent", "settled by"]
+    quasi = replace(picture(), regime=Regime("quasi-periodic", None, None, None, 840, (1e-3, 5e-3), return_distance=0.02,
+                                             return_limit=0.15, window_ratios=(0.985, 1.012)))
+    shown = {row["name"]: row["value"] for row in evidence(quasi, None, None)}
+    assert list(shown) == ["regime", "Lyapunov exponent", "return of the section", "change from window to window",
+                           "settled by"]
+    assert shown["change from window to window"] == "0.985 to 1.012" and "limit 0.15" in shown["return of the section"]
     json.dumps(evidence(picture(), analysis(), None), allow_nan=False)
 
 

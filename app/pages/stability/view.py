@@ -126,8 +126,7 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
         row("Lyapunov exponent", f"{regime.lyapunov[0]:+.4f} ± {regime.lyapunov[1]:.4f} per drive period",
             "Mean rate at which neighbouring motions part, with its standard error over blocks of periods.")
     if regime.return_distance is not None:
-        row("return of the section", f"{short_error(regime.return_distance)}, limit "
-            f"{short_error(regime.return_limit or 0.0)}",
+        row("return of the section", f"{regime.return_distance:.2g}, limit {regime.return_limit or 0.0:.2g}",
             "Median distance from later states of the section to the nearest earlier one, relative to the motion; a "
             "quasi-periodic motion stays below the limit.")
     if regime.window_ratios is not None:
