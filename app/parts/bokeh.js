@@ -15,15 +15,19 @@ export function onLayout({ x_range, y_range, properties }, act) {
   for (const signal of [y_range.change, x_range.change, properties.inner_width.change]) signal.connect(act);
 }
 
+const FIGURES = new Set(["Figure", "Row", "Column", "GridPlot"]); // what a function of app/pictures returns
+const holds = (host, node) => {
+  for (let at = node; at; at = at.parentNode ?? at.host) if (at === host) return true;
+  return false;
+};
+
 // The views of the figures in an element that are on the screen.
-export function figuresIn(node, found = []) {
-  for (const one of node.querySelectorAll("*")) {
-    const view = one.bokehView;
-    if (view?.export && one.getClientRects().length) found.push(view);
-    if (one.shadowRoot) figuresIn(one.shadowRoot, found);
-  }
-  return found;
-}
+export const figuresIn = (host) =>
+  window.Bokeh.documents
+    .flatMap((one) => one.roots())
+    .filter(({ type }) => FIGURES.has(type))
+    .map(viewOf)
+    .filter((view) => view?.el.getClientRects().length && holds(host, view.el));
 
 // A canvas context that writes SVG, and the element that it has written.
 export function svgContext(width, height) {

@@ -15,7 +15,7 @@ NEEDED = {
     "views": "Boolean(view.el && view.export)",
     "frame": "frame.bbox.right > frame.bbox.left && [frame.x_scale, frame.y_scale].every((one) => Number.isFinite(one.compute(1)))",
     "signals": "[model.y_range.change, model.x_range.change, model.properties.inner_width.change].every((one) => one.connect)",
-    "elements": "bokehViews.some((one) => one === view)",
+    "roots": "Bokeh.documents.every((one) => one.roots().every((root) => root.type))",
     "svg": "Boolean(view.export('svg', true).ctx.get_serialized_svg(true).includes('<svg'))",
     "svg context": "typeof Bokeh.require('core/util/svg').SVGRenderingContext2D === 'function'",
     "documents from JSON": "typeof Bokeh.require('document').Document.from_json === 'function'",
@@ -24,12 +24,7 @@ NEEDED = {
 }
 ALL = """() => {
   const model = Bokeh.documents.map((one) => one.get_model_by_name("resonance curve")).find(Boolean);
-  const view = Bokeh.index.find_one(model), { frame } = view, bokehViews = [];
-  const look = (node) => { for (const one of node.querySelectorAll("*")) {
-    if (one.bokehView) bokehViews.push(one.bokehView);
-    if (one.shadowRoot) look(one.shadowRoot);
-  } };
-  look(document);
+  const view = Bokeh.index.find_one(model), { frame } = view;
   return {NEEDED};
 }""".replace("NEEDED", ", ".join(f'"{name}": {expression}' for name, expression in NEEDED.items()))
 

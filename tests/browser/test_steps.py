@@ -129,6 +129,20 @@ def test_pictures_are_taken_along_as_they_are_on_the_screen(visit: Visit, tmp_pa
     assert 'scene("sec2")' in (tmp_path / "again.py").read_text(encoding="utf-8")
 
 
+def test_the_figures_of_the_open_page_are_exported(visit: Visit, tmp_path: Path) -> None:
+    page = visit(accept_downloads=True)
+    page.get_by_role("tab", name="stability").click()
+    page.get_by_role("button", name="open the page").click()
+    expect(page.locator('[data-overlay="stability"] .plane canvas').first).to_be_visible(timeout=COMPILED)
+    page.get_by_role("button", name="Export").click()
+    expect(page.get_by_label("which picture")).to_have_value("page")
+    with page.expect_download() as download:
+        page.get_by_role("button", name="SVG", exact=True).click()
+    download.value.save_as(tmp_path / "page.svg")
+    text = (tmp_path / "page.svg").read_text(encoding="utf-8")
+    assert download.value.suggested_filename == "sec2-340Hz-page.svg" and "real part of" in text and text.count("<path") > 10
+
+
 def test_in_a_frame_there_are_the_pictures_and_nothing_to_turn(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=850&embed=1", viewport={"width": 900, "height": 520})
     for gone in ("#side", "#tabs", "#curvebar"):
