@@ -28,8 +28,11 @@ def definitions() -> dict[str, str]:
 
 
 def _names(terms: str) -> list[str]:
-    """The terms of a row: "resonance, anti-resonance of a curve" are two, "Floquet multiplier" is also a multiplier."""
-    names = [re.sub(r" of an? .*", "", one.strip()) for one in terms.split(",")]
+    """The terms of a row: "resonance, anti-resonance of a curve" are two, "Floquet multiplier" is also a multiplier.
+
+    Another name of a term stands in parentheses after it.
+    """
+    names = [re.sub(r" of an? .*", "", one.strip()) for one in re.split("[(),]", terms) if one.strip()]
     if len(names) > 1 and names[-1].endswith(" force"):  # "input, output force"
         names = [one if one.endswith(" force") else f"{one} force" for one in names]
     return [*names, *(one.split()[-1] for one in names if one == "Floquet multiplier")]
