@@ -23,8 +23,8 @@ def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
     dots = plot.scatter("rank", "exponent", source=source, size=8, fill_alpha="fill")
     in_theme(dots, fill_color="accent", line_color="accent")
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[
-        ("place", "@rank"), ("exponent per drive period", "@exponent{0.0000} ± @error{0.0000}")]))
-    plot.xaxis.axis_label, plot.yaxis.axis_label = "place by size", "Lyapunov exponent per drive period"
+        ("rank", "@rank"), ("exponent per drive period", "@exponent{0.0000} ± @error{0.0000}")]))
+    plot.xaxis.axis_label, plot.yaxis.axis_label = "rank", "Lyapunov exponent per drive period"
     dimension = found.dimension_words()
-    plot.title.text = f"Kaplan–Yorke dimension {dimension}; hollow: not more than this"
+    plot.title.text = f"Kaplan–Yorke dimension {dimension}; hollow: upper bounds"
     return dress(plot, theme)
