@@ -66,7 +66,7 @@ class Tabs {
     this.rows = new Map(rows.map((row) => [row.name, row]));
     this.first = rows[0].name; // the tab that is open when nothing else is said
     this.chosen = this.first;
-    this.seen = null; // the tab that is on the screen, null while a page lies over the pictures
+    this.seen = null; // the page over the pictures, or else the tab, as the server was last told
     this.redraw = () => {};
     const groups = [...model.state.groups, ""].map((group) => this.group(group, rows));
     this.tabs = groups.flatMap((group) => [...group.querySelectorAll("[role=tab]")]);
@@ -101,9 +101,10 @@ class Tabs {
     window.granchain.emit("tab", name);
   }
 
-  // Some pages compute only while somebody looks at their tab; a page over the pictures hides it.
+  // Some pages compute only while somebody looks at them: at their tab, or at the page over the pictures, which hides
+  // the tabs.
   reportVisibility() {
-    const seen = window.granchain.overlay ? null : this.chosen;
+    const seen = window.granchain.overlay ?? this.chosen;
     if (seen === this.seen) return;
     for (const [name, value] of [
       [this.seen, false],
