@@ -1,6 +1,6 @@
 // Modules are imported by the browser itself. The shim that Panel loads for browsers without import maps, which this page
 // does not need, would fetch and rewrite every one of them: 0.2 s of each opening.
-window.importShim = (url) => import(url);
+window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); // the maps Panel adds are empty here
 
 // What the parts of the page share in the browser: events, the theme and the drawer.
 window.granchain = (() => {

@@ -11,11 +11,23 @@ from typing import Any
 
 import pytest
 from evidence import WATCHED, folder_of, leave, watch
+from knobs import COMPILED
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 from started import dashboard, launch
 
-# Three workers with a browser and a server each share two processors: what is waited for comes, but not within Playwright's five seconds.
+HERE = Path(__file__).parent
+
+# Three workers with a browser and a server each share two processors: what is waited for comes, but not within
+# Playwright's five seconds.
 expect.set_options(timeout=60_000)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """A test of the browser that fails is run once more, and the summary says so: on two busy processors Chromium loses a
+    click now and then, which says nothing of the page."""
+    for item in items:
+        if item.path.is_relative_to(HERE):
+            item.add_marker(pytest.mark.flaky(reruns=1))
 
 
 @pytest.hookimpl(wrapper=True)
@@ -50,8 +62,18 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
+@pytest.fixture(scope="session")
+def prepared(chromium: Browser, address: str) -> str:
+    """The address, once the first scene's curve and its names are kept: a page that is closed before drops them."""
+    page = chromium.new_page(reduced_motion="reduce")
+    page.goto(address)
+    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.close()
+    return address
+
+
 @pytest.fixture
-def visit(chromium: Browser, address: str, log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
+def visit(chromium: Browser, prepared: str, log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
     """Opens the dashboard; at the end no page may have complained or asked another host for anything.
 
     The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
@@ -60,7 +82,7 @@ def visit(chromium: Browser, address: str, log: Path, request: pytest.FixtureReq
     contexts = []
     complaints: list[str] = []
 
-    def open_page(query: str = "", url: str = address, script: str = "", **options: Any) -> Page:
+    def open_page(query: str = "", url: str = prepared, script: str = "", **options: Any) -> Page:
         context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **options})
         context.set_default_timeout(60_000)
         contexts.append(context)
