@@ -10,7 +10,7 @@ _FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", 
 _MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
 
 #: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.
-_WITHOUT_SALTATION = """from .effects.dissipation import damping
+_WITHOUT_SALTATION = """from ..effects.dissipation import damping
 
 
 @saltate.of(Tangent)
