@@ -22,6 +22,7 @@ from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import new_tension_cut
+from .kernels.equations.body_forces import add_force_slope
 from .kernels.equations.motion import Forces, Slots, place
 from .laws import LAWS, require_complete
 from .scene import Scene
@@ -33,8 +34,11 @@ from .state import State
 _STEP = 0.2
 #: The same for the oscillation of a bead on its foundation, in radians of phase.
 _FOUNDATION_STEP = 0.1
-#: Half of RK4's stability limit on the negative real axis, 2.78, for the fastest dashpot mode, 4λ/m.
-_DASHPOT_LIMIT = 1.39
+#: Half of RK4's stability limit on the negative real axis, 2.78, for the fastest damped mode: 4λ/m of the dashpots plus
+#: −∂P/∂v/m of forces from outside the chain.
+_DAMPING_LIMIT = 1.39
+#: The largest speed of a bead over that of what pushes it: a light bead leaves a heavy one twice as fast.
+_FASTEST = 2.0
 #: More steps than this in one drive period are refused: one period would take a good part of a minute.
 MOST_STEPS = 50_000_000
 
@@ -142,12 +146,25 @@ class Lowered:
         static = float(slots.preload.static.max()) if slots.preload is not None else 0.0
         overlap = max(1.0, static, self._struck)
         step = _STEP / math.sqrt(lightest * stiffest) / overlap**0.25
+        stiffness, damping = self._body_rates
         if slots.dissipation is not None:
-            strength = slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
-            step = min(step, _DASHPOT_LIMIT / (4.0 * strength * lightest))
-        if slots.foundation is not None:
-            step = min(step, _FOUNDATION_STEP / math.sqrt(slots.foundation.stiffness * lightest))
+            damping += 4.0 * slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
+        if damping > 0.0:
+            step = min(step, _DAMPING_LIMIT / (damping * lightest))
+        if stiffness > 0.0:
+            step = min(step, _FOUNDATION_STEP / math.sqrt(stiffness * lightest))
         return step
+
+    @property
+    def _body_rates(self) -> tuple[float, float]:
+        """−∂P/∂u and −∂P/∂v of the forces P from outside the chain, at one drive amplitude and the largest speed.
+
+        They come from the same linearisation as the tangents, so a new force needs no entry here.
+        """
+        struck = float(np.abs(self.scene.velocities_at_start()).max()) / self.scales.velocity
+        speed = _FASTEST * max(struck, self.beta if self.scene.is_driven else 0.0)
+        return (-add_force_slope(self.slots, 0.0, 1.0, speed, 1.0, 0.0, 1.0, 1.0),
+                -add_force_slope(self.slots, 0.0, 1.0, speed, 0.0, 1.0, 1.0, 1.0))
 
     @property
     def _struck(self) -> float:

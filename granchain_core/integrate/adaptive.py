@@ -53,7 +53,7 @@ class Adaptive:
         return Trajectory(lo.slots, Cycle(lo.beta, lo.period), y, self.work)
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
-        """Put the driver and the slope, where every kernel expects it, in step with y."""
+        """Recompute driver state and dy/dt for y."""
         place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:

@@ -64,7 +64,7 @@ class Batch:
         whole = [np.zeros(BATCH_SIZE, dtype=np.int64) for _ in range(10)]
         parts = [np.zeros(BATCH_SIZE) for _ in range(2)]
         self.state = kernels.BatchState(
-            y=_rows(rows), gaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
+            y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
             steps=whole[0], left=whole[1], periods=whole[2], return_at=whole[3], earliest=whole[4],
             extrapolate_from=whole[5], pause=whole[6], kept=whole[7], testing=whole[8], due=whole[9], slowest=parts[0],
             change_before_extrapolation=parts[1], before=np.zeros((BATCH_SIZE, 2, n + 2)),
@@ -98,7 +98,7 @@ class Batch:
         state.phase[:, member] = 0.0, 1.0
         state.peaks[:, member] = 0.0
         state.steps[member] = state.left[member] = steps
-        state.y[:, member], state.gaps[:, member] = y, 0.0
+        state.y[:, member], state.overlaps[:, member] = y, 0.0
         state.ends[:, member] = 1.0  # counts as closed, so that no closing is recorded here
         state.strobes[member, 0], state.kept[member] = y.reshape(2, -1), 1
         state.periods[member], state.return_at[member], state.earliest[member] = 0, return_at, earliest

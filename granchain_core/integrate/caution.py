@@ -9,8 +9,8 @@ Contact events make the fall uneven.
 
 from __future__ import annotations
 
-#: Displacements: where the error falls by the order at every refinement (`Method.even`), and where it does not: at
-#: contact events with the other methods, with tension cut, and between the samples of a measured force.
+#: Displacements. EVEN: the error falls by the method's order at every refinement (`Method.even`). UNEVEN: it does not,
+#: as at contact events with the other methods, with tension cut, and between the samples of a measured force.
 EVEN, UNEVEN = 1.5, 3.0
 #: Largest forces of a run, on top of the factor above: where no force jumps, and where one does, whose error varies
 #: from one step size to the next. Found by trial (`python -m tests.numerics.forces run`).

@@ -82,7 +82,7 @@ class Engine:
         self.reset_peaks()
 
     def place(self, from_velocity: bool = False) -> None:
-        """Put the driver and the slope, where every kernel expects it, in step with y."""
+        """Recompute driver state and dy/dt for y."""
         if self.lowered.slots.tension is not None:  # flags of the last step
             self.lowered.slots.tension.force_free[:] = 0
         self.stepper.place(2 * np.pi * self.grid_index / self.grid, self.y, from_velocity)
@@ -182,7 +182,7 @@ class Engine:
     # --- failures ------------------------------------------------------------------------------------------
 
     def raise_for(self, status: int, done: float, before: Start | None = None) -> None:
-        """Turn the status of a kernel into an outcome, after `done` periods of a call from `before`, if that is known.
+        """Raise the error for a kernel's status, after `done` periods of a call from `before`, None if unknown.
 
         Raises `NumbersFailed`, `Cancelled`.
         """

@@ -85,7 +85,7 @@ class FixedStep:
                           self.work)
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
-        """Put the driver and the slope, where every kernel expects it, in step with y."""
+        """Recompute driver state and dy/dt for y."""
         place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
@@ -190,5 +190,5 @@ def _long_chain(lowered: Lowered) -> LongChain:
     preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
     return LongChain(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
                      now=empty(2 * blocks), before=empty(2 * blocks), acc=empty(2 * blocks), first=empty(2 * blocks),
-                     second=empty(2 * blocks), gap=empty(blocks), slope=empty(blocks), elastic=empty(blocks),
+                     second=empty(2 * blocks), overlap=empty(blocks), velocity=empty(blocks), elastic=empty(blocks),
                      signs=np.zeros(blocks, dtype=np.int64))

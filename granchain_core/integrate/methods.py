@@ -125,7 +125,7 @@ def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, Lowered, int], S
 
 
 def _in_velocity(kind: Any) -> Callable[[Setting, Lowered, int], Stepper]:
-    """The same in (u, v)."""
+    """What makes the stepper of a method with fixed steps in (u, v)."""
     return lambda setting, lowered, samples: FixedStepInVelocity(kind(setting.steps_per_period(lowered, samples)),
                                                                  lowered, samples)
 

@@ -31,7 +31,7 @@ from numba.core.serialize import dumps
 
 from .width import BATCH_SIZE
 
-#: Where what a person should know is said: on stderr, unless the program keeps a log.
+#: Where messages for a person go: on stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
 #: Bytes of a checksum.
 _DIGEST = 32
@@ -58,7 +58,7 @@ def sources_hash() -> str:
 
 
 def cache_folder() -> Path | None:
-    """The folder of the compiled kernels; None where nothing can be kept, which is said once.
+    """The folder of the compiled kernels; None, with one message, where nothing can be kept.
 
     It is in $GRANCHAIN_CACHE, else in the user's cache. Where that cannot be written, kernels that are there already
     are used; where there are none, a folder in the temporary directory is, if nobody else can write to it.
@@ -150,7 +150,7 @@ CACHE_FOLDER = cache_folder()
 class _Files:
     """The compiled versions of one function, each in a file of its own that is named by a hash of its key.
 
-    Numba keeps an index beside them. Two processes that compile at once overwrite each other's index, and versions are
+    Numba keeps an index next to them. Two processes that compile at once overwrite each other's index, and versions are
     lost. A file that gets its name when it is complete needs no index; it says itself which version it holds.
     """
 

@@ -8,7 +8,7 @@ from .jit import inline_numba, internal
 
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
 #: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
-GAP, RATE, GAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
+OVERLAP, RATE, OVERLAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
 #: Size of an overlap that only has a sign: above zero the contact counts as closed, but its force is negligible.
 TINY = 1e-300
 

@@ -1,11 +1,11 @@
 """The one place that decides how kernels are compiled; cache.py decides where the compiled code is kept.
 
 * `nogil`, so that threads really run kernels side by side.
-* No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`, which let an absent effect's
-  neutral elements fold away and sums be vectorised.
+* No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`: sums are vectorised and `x + 0.0` folds
+  away, but `x * 0.0` does not, so the code for an absent effect must not multiply by zero.
 * Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by a hash of the sources
-  in this package but cache.py, of Numba's version, the processor and the size of a batch: any edit starts an empty
-  one, and with an unchanged tree the second process compiles nothing.
+  in this package but cache.py, of Numba's version, the processor and the size of a batch: any edit starts a new
+  folder, and with an unchanged tree the second process compiles nothing.
 """
 
 from __future__ import annotations
@@ -115,8 +115,9 @@ def by_slot(absent, forceinline=False):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 
     The decorated function is the code for an absent effect (slot None). `function.of(Slot, …)` registers the code
-    for slots of these NamedTuple classes. An absent effect leaves no code behind, in no caller: of the SIMD kernels
-    the machine code is tested for it (tests/kernels/test_machine_code.py). A slot without code is a TypeError that
+    for slots of these NamedTuple classes. The code for None returns an argument as it is, or a zero that callers only
+    add, which leaves no instruction. Tested in short chains, batches and the flow with tangents
+    (tests/kernels/test_machine_code.py). A slot without code is a TypeError that
     names slot and function, in Python and while a kernel is typed.
     """
     implementations = {type(None): absent}

@@ -1,7 +1,7 @@
 """The naive methods: the equations in (u, v), whose dashpot force jumps, with fixed steps across all events.
 
 Equation   m_i v̇_i = F_{i-1} − F_i − k u_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
-Purpose    the usual first attempt, beside which the gain of w-variables and located events is measured
+Purpose    the usual first attempt, against which the gain of w-variables and located events is measured
 The second row of the state holds v here, not w; nothing else differs for the rest of the program.
 """
 
@@ -13,7 +13,7 @@ from .effects.contact import elastic_force, positive_part
 from .effects.dissipation import dashpot_force
 from .effects.preload import overlap
 from .effects.tension import cut_at_zero
-from .equations.motion import force_on_bead
+from .equations.body_forces import force_on_bead
 from .forces.crossings import end_overlaps, watch_crossings
 from .forces.largest import Instant
 from .jit import kernel
@@ -43,9 +43,9 @@ def naive_motion(slots, u0, v0, y, dy, forces):
         dy[i] = y[m + i]
     left = 0.0
     for c in range(m - 1):
-        gap = overlap(slots.preload, y, c)
-        damped = dashpot_force(slots.dissipation, gap, dy[c] - dy[c + 1])
-        force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], positive_part(gap)) + damped)
+        delta = overlap(slots.preload, y, c)
+        damped = dashpot_force(slots.dissipation, delta, dy[c] - dy[c + 1])
+        force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], positive_part(delta)) + damped)
         forces.e[c] = force - damped
         if c > 0:
             dy[m + c] = inverse_mass[c] * force_on_bead(slots, left - force, y[c], dy[c])

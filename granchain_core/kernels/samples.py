@@ -25,7 +25,7 @@ class Samples(NamedTuple):
 
 
 class Output(NamedTuple):
-    """What a kernel writes beside its result, and the stop flag (1,) that it reads; `counts` (4,) as in status.py."""
+    """What a kernel writes besides its result, and the stop flag (1,) it reads; `counts` (4,) as in status.py."""
 
     log: ForceLog
     counts: np.ndarray

@@ -2,9 +2,9 @@
 
 A step of a batch keeps some thirty vectors at hand. Where a register holds eight doubles (AVX-512), eight scenes fit
 into the 32 registers. Where it holds four, eight scenes are two registers each, and a third of all instructions only
-move them to the stack and back: four scenes take half the time. Zen 4 has the registers of AVX-512 and carries out each
-instruction on them in two halves: four scenes take 0.83 of the time of eight. Vectors along a chain and of tangents are
-better left at eight everywhere.
+move them to the stack and back: with four scenes a vector the time per scene is half. Zen 4 has the registers of
+AVX-512 and carries out each instruction on them in two halves: with four scenes the time per scene is 0.83 of that with
+eight. Vectors along a chain and of tangents are better left at eight everywhere.
 """
 
 from __future__ import annotations

@@ -14,9 +14,8 @@ from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.flow.attempt import ContactStatus, Course
 from ..kernels.flow.run import run_flow
-from ..kernels.flow.saltation import VelocityTangent
-from ..kernels.flow.tangent import Tangent
-from ..kernels.simd.vector import LANES, aligned
+from ..kernels.flow.saltation import VelocityTangent, new_velocity_tangent
+from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
 from ..kernels.status import EVENTS_PER_CONTACT
 from ..lower import Lowered
 from ..scene import Scene
@@ -79,9 +78,9 @@ class StroboscopicMap:
         With `observer` the tangents are those of a chain pushed by the recorded input force.
         """
         start = np.eye(len(x)) if directions is None else directions
-        tangent = _tangent(start, self.engine.lowered.bodies - 1, 1 if observer else 0)
+        tangent = new_tangent(start, self.engine.lowered.bodies, 1 if observer else 0)
         trace = self._run(x, tangent)
-        return Flow(self.inner(self.engine.y), _columns(tangent, start.shape[1]), trace, self.changes)
+        return Flow(self.inner(self.engine.y), columns_of(tangent, start.shape[1]), trace, self.changes)
 
     def derivative_by_saltation(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
@@ -95,10 +94,8 @@ class StroboscopicMap:
         if lo.slots.dissipation is not None and not isinstance(lo.slots.dissipation, LinearDashpot):
             raise BadInput(f"dissipation = {lo.scene.dissipation} has no constant saltation; the second route knows "
                            "linear and none.")
-        rows = len(x)
         before = velocity_from_w(lo, x)
-        tangent = VelocityTangent(before, np.zeros((STAGES + 1, lo.bodies - 1)), np.zeros((STAGES, rows, rows)),
-                                  np.zeros((rows, rows)), float(jumps))
+        tangent = new_velocity_tangent(before, lo.bodies, float(jumps))
         self._run(x, tangent)
         return np.linalg.solve(velocity_from_w(lo, self.inner(self.engine.y)), tangent.matrix)
 
@@ -123,18 +120,6 @@ class StroboscopicMap:
                                        engine.counts.array, engine.stop.flag)
         engine.raise_for(status, done)
         return float(trace)
-
-
-def _tangent(start: np.ndarray, contacts: int, first_contact: int) -> Tangent:
-    """The workspace of the tangents that begin with the columns of `start`, eight in a block."""
-    rows, columns = start.shape
-    blocks = -(-columns // LANES)
-    matrix = aligned(blocks * rows)
-    padded = np.zeros((rows, blocks * LANES))
-    padded[:, :columns] = start
-    matrix[:] = padded.reshape(rows, blocks, LANES).transpose(1, 0, 2).reshape(blocks * rows, LANES)
-    return Tangent(matrix, np.zeros((STAGES + 1, contacts)), np.zeros((STAGES, contacts)), np.zeros((STAGES, contacts)),
-                   aligned(STAGES * rows), aligned(rows), np.zeros((STAGES + 1, STAGES)), first_contact)
 
 
 def velocity_from_w(lowered: Lowered, x: np.ndarray) -> np.ndarray:
@@ -162,18 +147,8 @@ def relative_change(change: np.ndarray, x: np.ndarray) -> float:
 
 
 def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int) -> int:
-    """The smallest part of `period` drive periods after which a state is back at x; `after(n)` is that n periods later.
-
-    `period` itself where no part of it is enough.
-    """
+    """Smallest divisor n of `period` with Pⁿ(x) = x, or `period` itself; `after(n)` is Pⁿ(x)."""
     for shorter in range(1, period):
         if period % shorter == 0 and relative_change(after(shorter) - x, x) < _BACK:
             return shorter
     return period
-
-
-def _columns(tangent: Tangent, columns: int) -> np.ndarray:
-    """The tangents as an ordinary matrix (2N, columns)."""
-    rows = len(tangent.state)
-    blocks = tangent.matrix.reshape(-1, rows, LANES)
-    return np.ascontiguousarray(blocks.transpose(1, 0, 2).reshape(rows, -1)[:, :columns])

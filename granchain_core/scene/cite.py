@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..version import __version__
 from .description import Description
+from .effects import effects_of
 
 _SOFTWARE = f"The granchain authors. granchain: driven granular chains, simulated to a stated accuracy, {__version__}."
 _PAPER = ("Y. Zhang, D. Pozharskiy, D. M. McFarland, P. G. Kevrekidis, I. G. Kevrekidis, A. F. Vakakis. Experimental "
@@ -35,6 +36,7 @@ def citations(scene: Description) -> list[tuple[str, str]]:
     found = [("software", _SOFTWARE), ("model", _PAPER), ("contact", _HERTZ)]
     if scene.has_dissipation and scene.dissipation in _LAWS:
         found.append((f"{scene.dissipation} damping", _LAWS[scene.dissipation]))
+    found += [(effect.title, effect.source) for effect in effects_of(scene) if effect.source]
     if not scene.is_driven and scene.F0 == 0.0:
         found.append(("solitary wave", _NESTERENKO))
     if scene.dimer != 1.0:

@@ -1,7 +1,7 @@
 """The effects of a scene, each once: its knobs, when it is present, its term in the equation, and its names.
 
 `Scene.effects`, the equation on screen, the slots that are filled (lower.py), the names of compiled kernels (warm.py),
-`--explain`, the page's switches and the kernels whose cost is measured are all read from this table.
+`--explain`, `granchain cite`, the page's switches and the kernels whose cost is measured are all read from this table.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Effect:
     `slot` is its field of the kernels' `Slots`. `off` are the knob values that switch it off; `knobs` are those that
     come back when it is switched on, and `usual` their values where neither the visitor nor the scene has set them.
     `latex` puts its term into the equation. `label` names it in a scene, `key` in the name of a compiled kernel, which
-    names the law too. Where it is not `possible`, `refusal` says why.
+    names the law too. `source` is the publication to cite for it. Where it is not `possible`, `refusal` says why.
     """
 
     name: str
@@ -48,6 +48,7 @@ class Effect:
     key_of: Callable[[Description], str] | None = None
     possible: Callable[[Description], bool] = lambda scene: True
     refusal: str = ""
+    source: str = ""
 
     def __post_init__(self) -> None:
         for knob in (*self.knobs, *self.off, *self.usual):

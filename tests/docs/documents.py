@@ -33,9 +33,12 @@ class Block:
         return self.before.startswith("New file")
 
 
-def blocks(page: Path) -> list[Block]:
-    """All fenced blocks of a page, in order."""
+def blocks(page: Path, until: str = "") -> list[Block]:
+    """All fenced blocks of a page, in order, or those before the heading `until`."""
     text = page.read_text(encoding="utf-8")
+    if until:
+        assert text.count(until) == 1, f"{page.name} has no one place {until!r}"
+        text = text.partition(until)[0]
     found = []
     for match in _FENCE.finditer(text):
         paragraphs = [p for p in text[: match.start()].split("\n\n") if p.strip()]

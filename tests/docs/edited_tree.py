@@ -13,14 +13,14 @@ from documents import ROOT, blocks, edited
 _PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml")
 
 
-def files_of(page: Path) -> tuple[set[str], set[str]]:
-    """The files a page edits, and those it writes."""
-    found = [block for block in blocks(page) if block.language != "console"]
+def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:
+    """The files a page edits, and those it writes, before the heading `until`."""
+    found = [block for block in blocks(page, until) if block.language != "console"]
     return {block.path for block in found if not block.is_new_file}, {block.path for block in found if block.is_new_file}
 
 
-def edited_copy(page: Path, copy: Path) -> Path:
-    """A copy of the repository with the page's edits made, each of which must fit at exactly one place."""
+def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
+    """A copy of the repository with the page's edits before the heading `until` made; each fits at exactly one place."""
     for part in _PARTS:
         source, target = ROOT / part, copy / part
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -28,7 +28,7 @@ def edited_copy(page: Path, copy: Path) -> Path:
             shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy(source, target)
-    for block in blocks(page):
+    for block in blocks(page, until):
         if block.language == "console":
             continue
         file = copy / block.path

@@ -9,23 +9,35 @@ from documents import ROOT
 from edited_tree import edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
+#: The heading under which the force becomes one that is not linear in the velocity.
+NONLINEAR = "## 5. A force that is not linear in the velocity: edit 5 of these files, write 1"
 
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made."""
-    return edited_copy(PAGE, tmp_path_factory.mktemp("effect") / "tree")
+    return edited_copy(PAGE, tmp_path_factory.mktemp("effect") / "tree", NONLINEAR)
 
 
 def test_the_page_edits_and_writes_as_many_files_as_it_says() -> None:
-    edits, new = files_of(PAGE)
-    assert (len(edits), len(new)) == (8, 3)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 8 files, write 3, mention it in 4"
+    edits, new = files_of(PAGE, NONLINEAR)
+    assert (len(edits), len(new)) == (6, 3)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 6 files, write 3, mention it in 4"
+    all_edits, all_new = files_of(PAGE)
+    assert all_edits <= edits | new | all_new and len(all_new - new) == 1
+    text = PAGE.read_text(encoding="utf-8").partition(NONLINEAR)[2]
+    assert text.count("```diff") == 5
+
+
+def test_a_force_that_is_not_linear_in_the_velocity_passes_the_tests_the_page_writes(tmp_path: Path) -> None:
+    """The whole page: tangent against differences and the second route, energy, stable step, stated error."""
+    whole = edited_copy(PAGE, tmp_path / "tree")
+    assert "6 passed" in follow(whole, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics/test_quadratic_drag.py")
 
 
 def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
     """Force, energy and tangent of the page's effect are right in every kernel."""
-    assert "3 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics/test_drag.py")
+    assert "4 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics/test_drag.py")
 
 
 def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
@@ -62,11 +74,13 @@ from granchain_core.lower import lower
 one = scene("drag")
 print(one.effects, one.equation_latex(), one.evolve(c=0.0).effects)
 print(lower(one.evolve(c=0.0)).slots.drag)
+from granchain_core.scene.cite import citations
+print(dict(citations(one))["ground drag"])
 print(explanation(one, None, 96))
 """)
-    first, absent, *explained = told.splitlines()
+    first, absent, source, *explained = told.splitlines()
     assert "ground drag" in first.split("]")[0] and r"- c\,\dot u_i" in first
-    assert "ground drag" not in first.rsplit("[", 1)[1] and absent == "None"
+    assert "ground drag" not in first.rsplit("[", 1)[1] and absent == "None" and "Stokes" in source
     assert "ground drag (Drag)" in explained[0]
 
 

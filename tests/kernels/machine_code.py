@@ -1,11 +1,13 @@
-"""Program: vector instructions in the machine code of the two SIMD steps, effect by effect, as JSON.
+"""Program: what compiled kernels consist of, effect by effect, as JSON.
 
     python machine_code.py types > types.pickle
     NUMBA_CPU_NAME=… NUMBA_CPU_FEATURES=… GRANCHAIN_CACHE=<empty folder> python machine_code.py < types.pickle
 
-{kernel: {case: counts}} for `chain` (one chain in a register, its split step included) and `batch` (eight chains), with
-nothing but contacts and driver and with one effect more. Only code that is fresh can be read: what comes from the cache
-has none.
+{kernel: {case: counts}}. Of `chain` (one chain in a register, its split step included) and `batch` (eight chains) vector
+instructions are counted in the machine code, with nothing but contacts and driver and with one effect more. Of `flow`
+(Dormand and Prince's method with tangents) multiplications are counted in LLVM's optimised code, with nothing and
+with all effects; `by_zero` are those by a constant 0. Only code that is fresh can be read: what comes
+from the cache has none.
 
 The first call runs kernels, to learn the types of their arguments; the second only compiles, for whatever processor it
 is told, and that need not be the one it runs on.
@@ -21,13 +23,18 @@ from collections import Counter
 
 import llvmlite.binding
 import numba
+import numpy as np
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch.run import batch_steps
+from granchain_core.kernels.flow.attempt import Course
+from granchain_core.kernels.flow.run import run_flow
+from granchain_core.kernels.flow.tangent import new_tangent
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
 from granchain_core.kernels.samples import Output
+from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.stop import Stop
 
 # A loop is read once: how many of its first rounds the compiler writes out is its own choice, case by case.
@@ -35,6 +42,7 @@ llvmlite.binding.set_option("machine_code", "-unroll-allow-peeling=false")
 
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
 NOTHING = {"dissipation": "none"}
+EVERYTHING = {knob: value for knobs in EFFECTS.values() for knob, value in knobs.items()}
 #: Instructions by what they do; a multiplication and an addition in one count as both.
 KINDS = {"mul": "multiply", "add": "add", "sub": "add", "fmadd": "both", "fmsub": "both", "fnmadd": "both",
          "fnmsub": "both", "sqrt": "root", "div": "divide", "rsqrt14": "root", "max": "choose", "min": "choose",
@@ -76,6 +84,27 @@ def counts(kernel, arguments) -> dict:
     return {"packed": dict(found), "all": sum(mnemonics.values()), "mnemonics": dict(sorted(mnemonics.items()))}
 
 
+_PRODUCT = re.compile(r"= fmul (?:\w+ )*(?:double|<\d+ x double>) (.*)$", re.MULTILINE)
+_ZERO = ("0.000000e+00", "-0.000000e+00", "zeroinitializer")
+
+
+def products(kernel, arguments) -> dict:
+    """Multiplications in LLVM's optimised code of a kernel, and how many of them have a constant 0 as a factor."""
+    kernel.compile(arguments)
+    found = _PRODUCT.findall(kernel.inspect_llvm(kernel.signatures[-1]))
+    by_zero = [pair for pair in found if any(one.strip() in _ZERO for one in pair.partition(", !")[0].split(","))]
+    return {"products": len(found), "by_zero": len(by_zero)}
+
+
+def flow_types(knobs: dict) -> tuple:
+    """Types of the arguments of the flow with tangents for section 2's chain with these knobs."""
+    stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=3, **knobs), 1)
+    e = stroboscopic_map.engine
+    course = Course(e.stepper.trajectory(e.y)._replace(work=stroboscopic_map._work), stroboscopic_map._contacts,
+                    new_tangent(np.eye(6), e.lowered.bodies, 0))
+    return tuple(map(numba.typeof, (e.stepper.method, course, 1, e.counts.array, e.stop.flag)))
+
+
 def argument_types(knobs: dict) -> dict[str, tuple]:
     """Types of the arguments of both kernels for section 2's chain with these knobs."""
     chain = scene("sec2").evolve(**knobs)
@@ -90,14 +119,20 @@ def cases() -> dict[str, dict]:
     return {"nothing": NOTHING, **{effect: {**NOTHING, **knobs} for effect, knobs in EFFECTS.items()}}
 
 
+FLOWS = {"nothing": NOTHING, "everything": EVERYTHING}
+
+
 def main() -> None:
     """Write the types, or read them and print the counts."""
     if sys.argv[1:] == ["types"]:
-        sys.stdout.buffer.write(pickle.dumps({case: argument_types(knobs) for case, knobs in cases().items()}))
+        types = {case: argument_types(knobs) for case, knobs in cases().items()}
+        flows = {case: flow_types(knobs) for case, knobs in FLOWS.items()}
+        sys.stdout.buffer.write(pickle.dumps((types, flows)))
         return
     kernels = {"chain": run_short_chain, "batch": batch_steps}
-    signatures = pickle.loads(sys.stdin.buffer.read())
+    signatures, flows = pickle.loads(sys.stdin.buffer.read())
     found = {name: {case: counts(kernel, signatures[case][name]) for case in signatures} for name, kernel in kernels.items()}
+    found["flow"] = {case: products(run_flow, flows[case]) for case in flows}
     print(json.dumps(found))
 
 

@@ -1,4 +1,4 @@
-"""An effect that is off leaves no trace in the machine code of the SIMD kernels, nor in their arrays.
+"""An effect that is off leaves no trace in the code of the SIMD kernels and of the flow, nor in the arrays of the former.
 
 What is counted is code for a processor whose registers hold a whole vector of eight doubles. It is compiled for that
 processor wherever the test runs, and not run. With narrower registers the compiler has too few of them for a step and
@@ -47,7 +47,7 @@ def code() -> dict:
 def program(*words: str, environment: dict, given: bytes = b"") -> bytes:
     """What machine_code.py writes."""
     done = subprocess.run([sys.executable, PROGRAM, *words], env=environment, input=given, capture_output=True,
-                          timeout=300, check=False)
+                          timeout=900, check=False)
     assert done.returncode == 0, done.stderr.decode()
     return done.stdout
 
@@ -91,6 +91,14 @@ def test_switching_an_effect_on_adds_nothing_else_to_a_batch():
         assert a_root[1][kind] > a_root[0][kind]
     assert a_root[2]["add"] > a_root[1]["add"] and a_root[2]["multiply"] <= a_root[0]["multiply"]
     assert a_root[3]["multiply"] > a_root[1]["multiply"] and a_root[3]["add"] > a_root[2]["add"]
+
+
+def test_nothing_is_multiplied_by_an_absent_effect_in_the_flow_with_tangents():
+    """`x * 0.0` is what an absent effect leaves where its zero is multiplied, since the compiler may not drop it. The
+    method's table has zeros of its own, so products by zero are compared with those where every effect is present."""
+    nothing, everything = code()["flow"]["nothing"], code()["flow"]["everything"]
+    assert everything["products"] > nothing["products"] > 100
+    assert nothing["by_zero"] <= everything["by_zero"] > 0
 
 
 def test_absent_effects_have_no_arrays_in_the_simd_workspaces():

@@ -87,5 +87,5 @@ def test_certified_steps_end_on_the_events():
         if t >= engine.lowered.period * (1 - 1e-12):
             break
     assert len(landed) > 5
-    # land_behind stops at 100 times 1e-14 or a thousandth of the tolerance; some events are too slow for Newton
+    # the search for the end just past an event stops at 100 times 1e-14 or a thousandth of the tolerance; some events are too slow for Newton
     assert np.median(landed) < 1e-11

@@ -10,10 +10,10 @@ _FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", 
 _MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
 
 #: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.
-_WITHOUT_SALTATION = """from .effects.dissipation import damping
+_WITHOUT_SALTATION = """from ..effects.dissipation import damping
 
 
-@saltate.of(Tangent)
+@apply_saltation.of(Tangent)
 def _(tangent, slots, c, closes):
     n = tangent.state.shape[0] // 2
     shear = damping(slots.dissipation, 1.0) if closes else -damping(slots.dissipation, 1.0)
@@ -51,7 +51,7 @@ FLOW = (
 )
 
 TANGENTS = (
-    Mutant("no-saltation", _FLOW, "@saltate.of(Tangent)\ndef _(tangent, slots, c, closes):\n    pass\n", _WITHOUT_SALTATION,
+    Mutant("no-saltation", _FLOW, "@apply_saltation.of(Tangent)\ndef _(tangent, slots, c, closes):\n    pass\n", _WITHOUT_SALTATION,
            "tangents go on across an event as if the dashpot's force did not jump there", k.COLUMNS, blind=k.LIOUVILLE),
     Mutant("no-saltation-in-second-route", _SALTATION, "shear = tangent.jumps * damping(slots.dissipation, 1.0)",
            "shear = 0.0 * tangent.jumps", "the (u, v) form without its jumps", k.ROUTES),
@@ -67,17 +67,17 @@ TANGENTS = (
            "assert np.abs(wrong - right.derivative).max() > 0.05 * np.abs(right.derivative).max()",
            "assert abs(np.linalg.det(wrong) / np.linalg.det(right.derivative) - 1.0) > 0.05",
            "a missing saltation is looked for in the determinant", k.ROUTES),
-    Mutant("tangent-stiffness", _TANGENT, "s = rate * elastic_slope(", "s = rate / 1.5 * elastic_slope(", "K √δ in place of (3/2) K √δ", k.COLUMNS),
-    Mutant("tangent-without-damping", _TANGENT, "g = rate * damping(slots.dissipation, d + TINY)", "g = 0.0 * d",
+    Mutant("tangent-stiffness", _TANGENT, "= rate * elastic_slope(", "= rate / 1.5 * elastic_slope(", "K √δ in place of (3/2) K √δ", k.COLUMNS),
+    Mutant("tangent-without-damping", _TANGENT, "g = rate * damping(law, d + TINY)", "g = 0.0 * d",
            "neighbours are not damped", k.COLUMNS),
     Mutant("trace-of-one-bead", _TANGENT, "(inverse_mass[c] + inverse_mass[c + 1])", "inverse_mass[c]",
            "∫ trace counts one of a contact's two beads", k.LIOUVILLE),
-    Mutant("tangent-without-last-contact", _TANGENT, "if contacts.closed[c] != 0 and c >= tangent.first_contact:",
-           "if contacts.closed[c] != 0 and tangent.first_contact <= c < tangent.gaps.shape[1] - 1:",
+    Mutant("tangent-without-last-contact", _TANGENT, "acts = contacts.closed[c] != 0 and c >= tangent.first_contact",
+           "acts = contacts.closed[c] != 0 and tangent.first_contact <= c < inverse_mass.size - 2",
            "neighbours do not feel the wall", k.COLUMNS),
-    Mutant("observer-held-by-the-driver", _TANGENT, "and c >= tangent.first_contact:", "and c >= 0:",
+    Mutant("observer-held-by-the-driver", _TANGENT, "and c >= tangent.first_contact", "and c >= 0",
            "an observer's multipliers are those of its chain", k.OBSERVER_ORBIT),
-    Mutant("tangent-foundation-in-plain-time", _TANGENT, "pull = rate * foundation_pull", "pull = foundation_pull",
+    Mutant("tangent-foundation-in-plain-time", "kernels/equations/body_forces.py", "slope, du, inverse_mass * rate)", "slope, du, inverse_mass)",
            "the foundation's share of the tangents is not taken in the step's own time", k.FOUNDED_COLUMNS),
     Mutant("tangent-stage-weight", _TANGENT, "weights[stage, earlier] = h * A[stage, earlier]",
            "weights[stage, earlier] = h * A[STAGES, earlier] if stage > 6 else h * A[stage, earlier]",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_BATCH_STEP, _BATCH_RUN, _BESIDE = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
+_BATCH_STEP, _BATCH_RUN, _CORRECTION = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
 _LOOKS, _WIDE, _RUN, _ALONG = "kernels/batch/period_end.py", "kernels/rk4/short_chain.py", "kernels/rk4/short_chain_steps.py", "kernels/rk4/long_chain.py"
 _MATH = "kernels/simd/functions.py"
 
@@ -19,21 +19,21 @@ IN_BATCHES = (
            "chains in batches do not feel the wall", k.BATCH),
     Mutant("batch-damping-of-one-side", _BATCH_STEP, "batch_velocity(values.law, values.unequal, i, bead.w, bead.G - G)",
            "batch_velocity(values.law, values.unequal, i, bead.w, bead.G)", "a bead in batches is damped by one of its contacts", k.BATCH),
-    Mutant("batch-output-force", _BATCH_STEP, "dashpot_force(values.law, last.gap, last.rate)", "0.0 * last.rate",
+    Mutant("batch-output-force", _BATCH_STEP, "dashpot_force(values.law, last.overlap, last.rate)", "0.0 * last.rate",
            "the largest output force in batches leaves out the wall's dashpot", k.BATCH_FORCES),
-    Mutant("batch-impulse-sign", _BESIDE, "correct_state(values, y, c, m, gate(changed, impulse))",
-           "correct_state(values, y, c, m, gate(changed, blank(gap) - impulse))",
+    Mutant("batch-impulse-sign", _CORRECTION, "correct_state(values, y, c, m, gate(changed, impulse))",
+           "correct_state(values, y, c, m, gate(changed, blank(overlap) - impulse))",
            "what a step beside an event gives too much is given once more", k.BATCH),
-    Mutant("batch-events-not-corrected", _BESIDE, "if positive_mask(changed) != 0:", "if positive_mask(changed) < 0:",
+    Mutant("batch-events-not-corrected", _CORRECTION, "if positive_mask(changed) != 0:", "if positive_mask(changed) < 0:",
            "batches are of order 2", k.BATCH),
-    Mutant("batch-path-of-dashpot", _BESIDE, "- 1.0 / (2.0 + exponent(law)) * r * here", "- 0.5 / (2.0 + exponent(law)) * r * here",
+    Mutant("batch-path-of-dashpot", _CORRECTION, "- 1.0 / (2.0 + exponent(law)) * r * here", "- 0.5 / (2.0 + exponent(law)) * r * here",
            "what is taken back of a dashpot's path is wrong", k.BATCH_CHECKS),
-    Mutant("batch-path-of-tsuji", _BESIDE, "- 1.0 / (2.0 + exponent(law)) * r * here", "- 0.5 * r * here",
+    Mutant("batch-path-of-tsuji", _CORRECTION, "- 1.0 / (2.0 + exponent(law)) * r * here", "- 0.5 * r * here",
            "what is taken back of the path is wrong for Tsuji's law", k.BATCH_CHECKS),
-    Mutant("batch-path-of-kuwabara-kono", _BESIDE, "return primitive_factor(law) * law.coefficient * h * primitive_power(law, speed * h)",
+    Mutant("batch-path-of-kuwabara-kono", _CORRECTION, "return primitive_factor(law) * law.coefficient * h * primitive_power(law, speed * h)",
            "return law.coefficient * h * primitive_power(law, speed * h)",
            "what is taken back of the path is wrong for Kuwabara and Kono's law", k.BATCH_CHECKS),
-    Mutant("batch-wall-not-corrected", _BESIDE, "for c in range(values.last + 1):", "for c in range(values.last):",
+    Mutant("batch-wall-not-corrected", _CORRECTION, "for c in range(values.last + 1):", "for c in range(values.last):",
            "touches of the wall in batches are not corrected", k.BATCH_ONE),
     Mutant("batch-t-plus-dt", _LOOKS, "state.phase[0, member], state.phase[1, member] = 0.0, 1.0", "state.peaks[0, member] = 0.0",
            "the phase in batches turns on from period to period and is never set right", k.BATCH_PHASE),

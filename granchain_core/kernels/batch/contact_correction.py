@@ -4,7 +4,8 @@ A contact is closed for a part r of the step, at its beginning or at its end, an
 Simpson's rule integrates its force and its damping through the kink; the quadrature errors are
 
     impulse  K v^{3/2} h^{5/2} (B_{3/2}(r) + E(r)),   displacement  c v^p h^{p+1} B_p(r)   for G = c δ^p, p = 1 + a
-    B_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1),   E: that of s^{3/2} over the whole step on the closed side
+    B_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1)
+    E: Simpson's error of s^{3/2} over the whole step on the closed side
 
 and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/model.md).
 """
@@ -26,8 +27,8 @@ def momentum_error(r, power, half_power):
     inside = (power + 4.0 * half_power) * (1.0 / 6.0) - 0.4 * r * power
     one = r + 1.0
     far = three_halves(one)
-    beside = (power + 4.0 * three_halves(r + 0.5) + far) * (1.0 / 6.0) - 0.4 * (one * far - r * power)
-    return inside + beside
+    closed = (power + 4.0 * three_halves(r + 0.5) + far) * (1.0 / 6.0) - 0.4 * (one * far - r * power)
+    return inside + closed
 
 
 @by_slot
@@ -55,7 +56,7 @@ def _(law, values, y, c, changed, shift):
 
 @inline_llvm
 def correct_state(values, y, c, row, excess):
-    """Correct the beads beside contact c by the error `excess`, in the row of y that begins at `row`."""
+    """Correct the two beads of contact c by the error `excess`, in the row of y that begins at `row`."""
     if c > 0:
         store(y, row + c, load_batch(y, row + c) + over_mass(values.unequal, c, excess))
     if c < values.last:
@@ -63,20 +64,20 @@ def correct_state(values, y, c, row, excess):
 
 
 @inline_llvm
-def correct_contacts(values, y, gaps, h, u0):
-    """Correct the last step at contacts that changed in it; `gaps` are the overlaps before it."""
+def correct_contacts(values, y, overlaps, h, u0):
+    """Correct the last step at contacts that changed in it; `overlaps` are the overlaps before it."""
     m = values.last + 2
     left = u0
     for c in range(values.last + 1):
         right = load_batch(y, c + 1)
-        gap = batch_overlap(values.preload, left, right, c)
-        before = load_batch(gaps, c)
-        store(gaps, c, gap)
-        changed = blank(gap) - before * gap
+        overlap = batch_overlap(values.preload, left, right, c)
+        before = load_batch(overlaps, c)
+        store(overlaps, c, overlap)
+        changed = blank(overlap) - before * overlap
         if positive_mask(changed) != 0:
-            rise = gap - before
-            speed = larger(rise, blank(gap) - rise) / h
-            r = larger(gap, before) / (speed * h)
+            rise = overlap - before
+            speed = larger(rise, blank(overlap) - rise) / h
+            r = larger(overlap, before) / (speed * h)
             half = clip(r - 0.5)
             power, half_power = three_halves(r), three_halves(half)
             impulse = h * three_halves(speed * h) * momentum_error(r, power, half_power)

@@ -1,10 +1,10 @@
 """The end of a batch member's drive period: its strobe is kept, its regime checked, its transient extrapolated.
 
-A coarse member is extrapolated no further than its decay predicts; if the change after the extrapolation is not smaller
-than before, it is undone. A chain may approach an unstable orbit before it leaves it, and an extrapolation could end
-there. So an orbit found by extrapolation is disturbed, and accepted only if the
-disturbance decays; if it decays slowly, multipliers decide (steady/batch/settle.py). A fine member starts on the
-coarse orbit and is extrapolated to its own, each extrapolation checked in the same way.
+A coarse member is extrapolated no further than its decay predicts. The extrapolation is undone if the change after it
+is not smaller than before. A chain may approach an unstable orbit before it leaves it, and an extrapolation could end
+there. So an orbit found by extrapolation is disturbed, and accepted only if the disturbance decays; if it decays
+slowly, multipliers decide (steady/batch/settle.py). A fine member starts on the coarse orbit and is extrapolated to its
+own, each extrapolation checked in the same way.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def place_member(state, member, where):
     for i in range(1, m - 1):
         state.y[i, member], state.y[m + i, member] = where[0, i], where[1, i]
     for c in range(m - 1):
-        state.gaps[c, member] = 0.0
+        state.overlaps[c, member] = 0.0
     for row in range(4):
         state.ends[row, member] = 1.0  # counts as closed, so that no closing is recorded here
     state.kept[member] = 0

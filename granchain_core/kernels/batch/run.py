@@ -48,7 +48,7 @@ class BatchState(NamedTuple):
     """State of the members, L of them.
 
     y (2(N+2), L)            displacements and w
-    gaps (N+1, L)            overlaps one step ago
+    overlaps (N+1, L)            overlaps one step ago
     ends (4, L)              overlap and rate of the first and of the last contact one step ago
     phase (2, L)             sin and cos of the drive phase
     peaks (17, L)            largest forces
@@ -60,7 +60,7 @@ class BatchState(NamedTuple):
     due (L,)                 1 where a check is due, else 0
     kept (L,)                number of strobes
     slowest (L,)             slowest decay known
-    change_before_extrapolation (L,)   that before an extrapolation that is not yet confirmed, else 0
+    change_before_extrapolation (L,)   change before the last unconfirmed extrapolation, else 0
     testing (L,)             period of an orbit that is being disturbed, else 0
     before (L, 2, N+2)       state before the last extrapolation
     fine_record (L, 7)       record of a fine member (period_end.py)
@@ -72,7 +72,7 @@ class BatchState(NamedTuple):
     """
 
     y: np.ndarray
-    gaps: np.ndarray
+    overlaps: np.ndarray
     ends: np.ndarray
     phase: np.ndarray
     peaks: np.ndarray
@@ -113,11 +113,11 @@ def batch_steps(members, state, count):
     for _ in range(count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
         end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
-        correct_contacts(values, y, state.gaps, h, sine)
-        gap_first = batch_overlap(values.preload, sine, load_batch(y, 1), 0)
-        gap_last = batch_overlap(values.preload, load_batch(y, last), load_batch(y, last + 1), last)
+        correct_contacts(values, y, state.overlaps, h, sine)
+        first_overlap = batch_overlap(values.preload, sine, load_batch(y, 1), 0)
+        last_overlap = batch_overlap(values.preload, load_batch(y, last), load_batch(y, last + 1), last)
         ends = batch_step(values, y, h, sine, middle, end)
-        watch_batch_ends(values, h, gap_first, gap_last, beta * cosine, ends, state.ends, state.peaks)
+        watch_batch_ends(values, h, first_overlap, last_overlap, beta * cosine, ends, state.ends, state.peaks)
         sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
     store(state.phase, 1, cosine)

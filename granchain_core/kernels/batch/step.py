@@ -147,11 +147,11 @@ def batch_step(values, y, h, u0, middle, end):
 
 
 @inline_llvm
-def watch_batch_ends(values, h, gap_first, gap_last, v0, ends, before, peaks):
+def watch_batch_ends(values, h, first_overlap, last_overlap, v0, ends, before, peaks):
     """Follow input force, output force and its elastic part in all members, where a step began."""
-    first, last = Approach(gap_first, v0 - ends.v_first), Approach(gap_last, ends.v_last)
-    watch_batch(peaks, INPUT, ends.pushed + dashpot_force(values.law, first.gap, first.rate))
-    watch_batch(peaks, OUTPUT, ends.passed + dashpot_force(values.law, last.gap, last.rate))
+    first, last = Approach(first_overlap, v0 - ends.v_first), Approach(last_overlap, ends.v_last)
+    watch_batch(peaks, INPUT, ends.pushed + dashpot_force(values.law, first.overlap, first.rate))
+    watch_batch(peaks, OUTPUT, ends.passed + dashpot_force(values.law, last.overlap, last.rate))
     watch_batch(peaks, OUTPUT_ELASTIC, ends.passed)
     watch_jumps(values.law, values, h, first, last, before, peaks)
 
@@ -173,16 +173,16 @@ watch_jumps.absent_for(*SMOOTH_LAWS)
 @inline_llvm
 def watch_jump(law, own, h, approach, before, row, peaks, peak):
     """Follow the jump of one contact; overlap and rate a step ago are rows of `before`, and become those of now."""
-    gap, rate = approach
-    gap_before, rate_before = load_batch(before, row), load_batch(before, row + 1)
-    store(before, row, gap)
+    overlap, rate = approach
+    overlap_before, rate_before = load_batch(before, row), load_batch(before, row + 1)
+    store(before, row, overlap)
     store(before, row + 1, rate)
-    zero, was, now = blank(gap), positive_mask(gap_before), positive_mask(gap)
+    zero, was, now = blank(overlap), positive_mask(overlap_before), positive_mask(overlap)
     if now & ~was != 0:
-        _, closing = closing_rate(gap_before, gap, rate_before, rate + own * clip(gap), own, h)
-        closed = gate(zero - gap_before, gate(gap, law.coefficient * closing))
+        _, closing = closing_rate(overlap_before, overlap, rate_before, rate + own * clip(overlap), own, h)
+        closed = gate(zero - overlap_before, gate(overlap, law.coefficient * closing))
         store(peaks, peak, larger(load_batch(peaks, peak), closed))
     if ~now & ~was & positive_mask(rate_before) & positive_mask(zero - rate) != 0:
-        touched = law.coefficient * brief_touch(gap_before, gap, rate_before, rate, h)
-        open_still = gate(zero - gap_before, gate(zero - gap, gate(rate_before, gate(zero - rate, touched))))
+        touched = law.coefficient * brief_touch(overlap_before, overlap, rate_before, rate, h)
+        open_still = gate(zero - overlap_before, gate(zero - overlap, gate(rate_before, gate(zero - rate, touched))))
         store(peaks, peak, larger(load_batch(peaks, peak), open_still))

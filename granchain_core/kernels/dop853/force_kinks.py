@@ -104,11 +104,14 @@ def _(tension, trajectory):
 
 @by_slot
 def first_kink(tension, step, until, counts, again):
-    """Fraction, up to `until`, of the accepted step at which a contact first stops pushing or pushes again; else 2.
+    """Fraction of the accepted step, up to `until`, at which the force of a contact first reaches F = 0.
 
-    0 where the step must be repeated: rounding put a contact on the wrong side of F = 0 at the start. All such contacts
-    change sides together, to keep a symmetric motion symmetric. Done once a step (`again`); where F is only rounding,
-    either choice is right. Absent: forces have no such kink.
+    Returns one of three values:
+        a fraction  a contact stops pushing or pushes again there
+        0           repeat the step: rounding put a contact on the wrong side of F = 0 at the start. All such contacts
+                    change sides together, to keep a symmetric motion symmetric, once a step (`again`); where F is only
+                    rounding, either choice is right
+        2           there is no such kink. Absent: always
     """
     return 2.0
 

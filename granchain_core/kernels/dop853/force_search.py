@@ -44,17 +44,17 @@ class Force(NamedTuple):
 def forces_of(slots, y, dy):
     """Input, output and elastic output force at state y, velocities in dy."""
     last = slots.chain.stiffness.size - 1
-    first_gap, last_gap = overlap(slots.preload, y, 0), overlap(slots.preload, y, last)
-    elastic = elastic_force(slots.chain.stiffness[0], positive_part(first_gap))
-    input_force = elastic + dashpot_force(slots.dissipation, first_gap, dy[0] - dy[1])
-    elastic = elastic_force(slots.chain.stiffness[last], positive_part(last_gap))
-    output_force = elastic + dashpot_force(slots.dissipation, last_gap, dy[last] - dy[last + 1])
+    first_overlap, last_overlap = overlap(slots.preload, y, 0), overlap(slots.preload, y, last)
+    elastic = elastic_force(slots.chain.stiffness[0], positive_part(first_overlap))
+    input_force = elastic + dashpot_force(slots.dissipation, first_overlap, dy[0] - dy[1])
+    elastic = elastic_force(slots.chain.stiffness[last], positive_part(last_overlap))
+    output_force = elastic + dashpot_force(slots.dissipation, last_overlap, dy[last] - dy[last + 1])
     return cut_at_zero(slots.tension, input_force), cut_at_zero(slots.tension, output_force), elastic
 
 
 @internal
 def forces_in_step(step, x):
-    """The same at fraction x of the step, whose dense output is prepared."""
+    """The three forces at fraction x of the step, whose dense output is prepared."""
     slots, drive, y, work = step.trajectory
     interpolate(y, work, x)
     evaluate(slots, drive.beta, step.t + x * step.h, work.probe, work.slope, work.forces)
@@ -73,15 +73,15 @@ def keep_end_forces(slots, y, dy, e):
     last = slots.chain.stiffness.size - 1
     for q in range(4):
         c = min(q, last) if q < 2 else max(last + q - 3, 0)
-        gap = overlap(slots.preload, y, c)
-        damped = dashpot_force(slots.dissipation, gap, dy[c] - dy[c + 1])
-        elastic = elastic_force(slots.chain.stiffness[c], positive_part(gap))
+        delta = overlap(slots.preload, y, c)
+        damped = dashpot_force(slots.dissipation, delta, dy[c] - dy[c + 1])
+        elastic = elastic_force(slots.chain.stiffness[c], positive_part(delta))
         e[c] = cut_at_zero(slots.tension, elastic + damped) - damped
 
 
 @internal
 def slopes_of(slots, y, dy, work):
-    """Ḟ of the same at state y."""
+    """Slopes Ḟ of the three forces at state y."""
     last = slots.chain.stiffness.size - 1
     keep_end_forces(slots, y, dy, work.forces.e)
     e, d = work.forces.e, positive_part(overlap(slots.preload, y, last))

@@ -57,8 +57,7 @@ _BEHIND_CUT = 1e-14
 _NEAR_CUT = 100.0
 #: A step that is to end at an event may become longer by this factor.
 _LONGER = 1.01
-#: Spacing of floating-point numbers at 1: how well a time is known, relative to the time since the period began plus a
-#: sixth of the period, 1/β.
+#: ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
 _RESOLUTION = 2.2e-16
 
 

@@ -108,7 +108,7 @@ def shrunk(h, error):
 
 @internal
 def growth(error):
-    """The next step over one whose error was tolerable."""
+    """Step-size factor after an accepted step."""
     return min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
 
 

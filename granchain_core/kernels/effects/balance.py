@@ -1,6 +1,7 @@
-"""The energy account: the work of the driver and the energy lost in the contacts, integrated beside the motion.
+"""The energy account: the work of the driver and the energy lost in the contacts, integrated with the motion.
 
 Equation   Ẇ = F_0 v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
+           What forces from outside the chain take away is added by equations/body_forces.py.
 Method     Both integrands jump with the dashpot force. Integrated by parts they do not: with dG = g δ̇ dt,
              W = ∫ (e_0 v_0 − G_0 v̇_0) dt + G_0 v_0
              Q = −∫ Σ_c G_c (ẇ_c − ẇ_{c+1}) dt + Σ_c G_c (δ̇_c − γ_c/2),   γ_c = δ̇_c − (w_c − w_{c+1}),
@@ -15,6 +16,7 @@ from typing import NamedTuple
 
 from ..jit import by_slot, internal
 from .contact import elastic_force, positive_part
+from .dissipation import times_primitive
 from .driver import driver_acceleration
 from .preload import overlap
 from .tension import contact_primitive, lost_in, unless_force_free
@@ -42,9 +44,9 @@ def _(balance, slots, y, dy, e):
         G = contact_primitive(slots.tension, slots, y, c, d)
         # the elastic energy that a force-free contact loses is known at the step's end: `lost_in`
         cut = e[c] - unless_force_free(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
-        lost += cut * (dy[c] - dy[c + 1]) - G * (dy[m + c] - dy[m + c + 1])
+        lost += cut * (dy[c] - dy[c + 1]) - times_primitive(slots.dissipation, G, dy[m + c] - dy[m + c + 1])
         if c == 0:
-            work = e[0] * dy[0] - G * acceleration
+            work = e[0] * dy[0] - times_primitive(slots.dissipation, G, acceleration)
     dy[m] = 0.0
     dy[dy.size - 2] = work
     dy[dy.size - 1] = lost
@@ -82,9 +84,9 @@ def account_ends(slots, y, dy):
         left = dy[0] if c == 0 else y[m + c]
         approach = dy[c] - dy[c + 1]
         gamma = approach - (left - y[m + c + 1])
-        lost += G * (approach - 0.5 * gamma)
+        lost += times_primitive(slots.dissipation, G, approach - 0.5 * gamma)
         if c == 0:
-            work = G * dy[0]
+            work = times_primitive(slots.dissipation, G, dy[0])
     return work, lost
 
 

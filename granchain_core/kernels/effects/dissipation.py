@@ -6,9 +6,9 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
 Values     coefficient: λ in scaled units, at an overlap of one length unit where a > 0
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
-Terms      damping, dashpot_force, damping_slope, primitive, shape = G/λ, velocity and its inverse shifted (absent:
-           v = w); keep_primitive, put_primitive and put_prescribed_primitive write into the array of G, batch_values
-           reads the values of a batch
+Terms      damping, damping_slope, dashpot_force, onset_force, dashpot_slope, primitive, times_primitive, shape = G/λ,
+           velocity and its inverse shifted (absent: v = w); keep_primitive, put_primitive and put_prescribed_primitive
+           write into the array of G, batch_values reads the values of a batch
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..contact_cubic import TINY
 from ..jit import by_slot, by_slot_inlined, in_simd_kernels, inline_llvm, require_terms
 from ..simd.functions import clip, gate, root
 from ..simd.vector import load_batch
@@ -120,10 +121,26 @@ def _(law, d):
     return law.coefficient * power(law, d, root(d))
 
 
-@inline_llvm
-def dashpot_force(law, gap, rate):
-    """F_d = g([δ]_+) δ̇, what a contact's force has beside its elastic part; for numbers and vectors."""
-    return damping(law, clip(gap)) * rate
+@by_slot_inlined
+def dashpot_force(law, overlap, rate):
+    """F_d = g([δ]_+) δ̇, which adds to a contact's elastic force; for numbers and vectors."""
+    return 0.0
+
+
+@dashpot_force.of(*LAWS)
+def _(law, overlap, rate):
+    return damping(law, clip(overlap)) * rate
+
+
+@by_slot
+def onset_force(law, rate):
+    """g(0+) δ̇, the force just after an onset."""
+    return 0.0
+
+
+@onset_force.of(*LAWS)
+def _(law, rate):
+    return damping(law, TINY) * rate
 
 
 @by_slot
@@ -138,6 +155,17 @@ damping_slope.absent_for(*JUMP_LAWS)
 @damping_slope.of(*SMOOTH_LAWS)
 def _(law, d):
     return gate(d, exponent(law) * law.coefficient * power(law, d, root(d)) / d)
+
+
+@by_slot
+def dashpot_slope(law, d, rate, change):
+    """Ḟ_d = g'(d) δ̇² + g(d) δ̈ from d = [δ]_+, δ̇ and δ̈."""
+    return 0.0
+
+
+@dashpot_slope.of(*LAWS)
+def _(law, d, rate, change):
+    return damping_slope(law, d) * rate * rate + damping(law, d) * change
 
 
 @inline_llvm
@@ -161,6 +189,17 @@ def primitive(law, d):
 @primitive.of(*LAWS)
 def _(law, d):
     return primitive_factor(law) * law.coefficient * d * power(law, d, root(d))
+
+
+@by_slot
+def times_primitive(law, G, rate):
+    """G times a rate, for the energy account."""
+    return 0.0
+
+
+@times_primitive.of(*LAWS)
+def _(law, G, rate):
+    return G * rate
 
 
 @by_slot

@@ -54,11 +54,11 @@ def _(foundation):
 
 
 @by_slot
-def foundation_pull(foundation):
-    """The pull per displacement, for tangents."""
-    return 0.0
+def add_foundation_slope(foundation, slope, du, factor):
+    """A tangent's slope with the change of the force, −k δu, times `factor` added. Absent: the slope itself."""
+    return slope
 
 
-@foundation_pull.of(Foundation)
-def _(foundation):
-    return foundation.stiffness
+@add_foundation_slope.of(Foundation)
+def _(foundation, slope, du, factor):
+    return slope - du * (factor * foundation.stiffness)

@@ -2,7 +2,8 @@
 
     w_i = v_i − (G_{i-1} − G_i)/m_i          the dashpot is an exact derivative (docs/model.md)
     u̇_i = w_i + (G_{i-1} − G_i)/m_i
-    m_i ẇ_i = F^el_{i-1} − F^el_i − k u_i     continuous: no Heaviside function, no velocity differences
+    m_i ẇ_i = F^el_{i-1} − F^el_i + P_i       continuous: no Heaviside function, no velocity differences;
+                                              P_i, such as −k u_i, from body_forces.py
 
 One flat array y holds u_0..u_{N+1}, then w_0..w_{N+1}, then (with a balance) work and loss; driver and wall are
 the ends of both rows, so that every loop runs over all contacts without special cases.
@@ -18,11 +19,11 @@ from ..effects.balance import account
 from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
 from ..effects.dissipation import dashpot_force, keep_primitive, shifted, velocity
 from ..effects.driver import driver_displacement, driver_velocity
-from ..effects.foundation import add_foundation_force, foundation_energy
 from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
 from ..effects.tension import cut_tension, keep_force_free_primitive, unless_force_free
 from ..jit import check_effects, internal, kernel
+from .body_forces import account_for_bodies, force_on_bead, stored_on_bead
 
 
 class Slots(NamedTuple):
@@ -64,12 +65,6 @@ check_effects("granchain_core.kernels.effects")
 
 
 @internal
-def force_on_bead(slots, contacts, u, v):
-    """Force on a bead at displacement u and velocity v, on which its two contacts act with `contacts`."""
-    return add_foundation_force(slots.foundation, contacts, u)
-
-
-@internal
 def motion(slots, u0, v0, y, dy, forces):
     """dy/dτ at state y with the driver at (u0, v0); leaves the contact forces in `forces`."""
     inverse_mass, stiffness = slots.chain.inverse_mass, slots.chain.stiffness
@@ -90,6 +85,7 @@ def motion(slots, u0, v0, y, dy, forces):
     for i in range(1, m - 1):
         dy[m + i] = inverse_mass[i] * force_on_bead(slots, e[i - 1] - e[i], y[i], dy[i])
     account(slots.balance, slots, y, dy, e)
+    account_for_bodies(slots.balance, slots, dy)
 
 
 @internal
@@ -139,5 +135,5 @@ def stored_energy(slots, y, dy):
     for c in range(m - 1):
         energy += elastic_energy(slots.chain.stiffness[c], positive_part(overlap(slots.preload, y, c)))
     for i in range(1, m - 1):
-        energy += 0.5 * dy[i] * dy[i] / inverse_mass[i] + foundation_energy(slots.foundation, y[i])
+        energy += 0.5 * dy[i] * dy[i] / inverse_mass[i] + stored_on_bead(slots, y[i])
     return energy

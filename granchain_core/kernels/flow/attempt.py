@@ -1,7 +1,7 @@
 """One attempt of the flow's step: Dormand–Prince 8 in the time in which the motion is smooth, and what changes in it.
 
-Which contacts are closed is kept beside the state (`Held` in the workspace's forces) and does not change within a step,
-so that neither the motion's nor the tangents' slopes jump there. An onset is located from before it, where nothing is
+Which contacts are closed is part of the state (`Held` in the workspace's forces) and does not change within a step, so
+that neither the motion's nor the tangents' slopes jump there. An onset is located from before it, where nothing is
 singular yet. The time of a release is estimated, the step ends there in a time variable that is the root of the
 distance, and Newton's method on the resulting overlap corrects the estimate.
 """
@@ -33,7 +33,7 @@ from .time_map import Time, rate_at, slope_in_x, time_at
 
 
 class ContactStatus(NamedTuple):
-    """Beside the workspace: slope in t at the step's start (M,), and which contacts are closed (N+1,).
+    """State of the contacts: `first` (M,) is dy/dt at the step's start, `closed` (N+1,) 1 where a contact is closed.
 
     `log` (events, 2) has contact + 1 with the sign of onset or release and the time of each event, `logged` (1,) their
     number.
@@ -67,8 +67,8 @@ def _(step, x):
 
 
 @by_slot
-def keep_gaps(tangent, slots, state, slope, stage):
-    """Keep what tangents need of one stage, its overlaps; `slope` has its velocities. Absent: there are no tangents."""
+def keep_stage(tangent, state, slope, stage):
+    """Keep what tangents need of one stage: displacements, and velocities from `slope`. Absent: there are none."""
 
 
 @internal
@@ -82,11 +82,11 @@ def attempt_in_time(method, course, time, h):
     rate = rate_at(time, 0.0)
     for i in range(y.size):
         work.k[0, i] = rate * contacts.first[i]
-    keep_gaps(tangent, slots, y, contacts.first, 0)
+    keep_stage(tangent, y, contacts.first, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, work.k, s, work.end)
         slope_in_x(slots, drive.beta, time, C[s] * h, work.end, s, work)
-        keep_gaps(tangent, slots, work.end, work.slope, s)
+        keep_stage(tangent, work.end, work.slope, s)
     return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
 
 

@@ -60,7 +60,7 @@ def locate_change(method, course, time, h, c, counts):
 
 
 @inline_numba
-def aim(method, course, t, goal, c, counts):
+def step_to_release(method, course, t, goal, c, counts):
     """Step from t towards the release of contact c, estimated at `goal`: onto it, or part of the way.
 
     Returns (status, time, size, c or −1, goal), with a status of LOST where the contact does not open there.
@@ -121,7 +121,7 @@ def flow_step(method, course, t, onset, counts):
     for _ in range(_ATTEMPTS):
         landed, error = -1, 0.0
         if aiming:
-            status, time, h, landed, goal = aim(method, course, t, goal, target, counts)
+            status, time, h, landed, goal = step_to_release(method, course, t, goal, target, counts)
             if status == LOST:
                 aiming, lost = False, True
                 time, h = usual, size_of(usual, dt)

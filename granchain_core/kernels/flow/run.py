@@ -15,7 +15,7 @@ from ..jit import by_slot, internal, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
 from .events import flow_step
-from .tangent import Tangent, carry
+from .tangent import Tangent, propagate
 from .time_map import time_at
 
 #: Most steps in one drive period.
@@ -23,11 +23,11 @@ _MOST_STEPS = 5_000_000
 
 
 @by_slot
-def saltate(tangent, slots, c, closes):
+def apply_saltation(tangent, slots, c, closes):
     """Let tangents jump where contact c opens or closes. Absent: there are none, or they are continuous in w."""
 
 
-@saltate.of(Tangent)
+@apply_saltation.of(Tangent)
 def _(tangent, slots, c, closes):
     pass
 
@@ -44,7 +44,7 @@ def change(slots, contacts, tangent, c, t):
     """Change contact c at time t; returns whether it closed."""
     closes = contacts.closed[c] == 0
     contacts.closed[c] = 1 if closes else 0
-    saltate(tangent, slots, c, closes)
+    apply_saltation(tangent, slots, c, closes)
     row = contacts.logged[0]
     contacts.log[row, 0], contacts.log[row, 1] = c + 1.0 if closes else -c - 1.0, t
     contacts.logged[0] = row + 1
@@ -53,7 +53,7 @@ def change(slots, contacts, tangent, c, t):
 
 @kernel
 def run_flow(method, course, periods, counts, stop):
-    """Carry motion and tangents through whole periods from phase 0.
+    """Propagate motion and tangents through whole periods from phase 0.
 
     Returns (status, periods done, ∫ trace); the log's times count from the first period's start.
     """
@@ -75,7 +75,7 @@ def run_flow(method, course, periods, counts, stop):
             if status != DONE:
                 return status, p, trace
             if h > 0.0:
-                trace += carry(tangent, slots, time, h, contacts)
+                trace += propagate(tangent, slots, time, h, contacts)
                 copy(work.end, y)
                 new_scale(y, work, m)
                 end = time_at(time, h)

@@ -1,8 +1,8 @@
 """The tangent flow in (u, v), the second route: tangents jump where a dashpot contact opens or closes.
 
-Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + λ_{i-1} δδ̇_{i-1} − λ_i δδ̇_i − k δu_i,   δu̇_i = δv_i
+Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + λ_{i-1} δδ̇_{i-1} − λ_i δδ̇_i + δP_i,   δu̇_i = δv_i
 Saltation  at the onset of contact c   δv_c −= (λ/m_c) δδ_c,   δv_{c+1} += (λ/m_{c+1}) δδ_c,   at release the reverse:
-           the velocity of neighbouring motions changes its slope there at another time than that of this one
+           neighbouring trajectories cross the event at different times
 Source     saltation matrices: Leine & Nijmeijer 2004, chapter 7; for this force they are constant shears
 Use        a check of flow/tangent.py that shares the motion and its steps with it. The shear has determinant 1, so
            Liouville's formula cannot see whether it is there; the columns do. Linear dashpot or no damping.
@@ -18,11 +18,12 @@ from ..contact_cubic import TINY
 from ..dop853.tableau import STAGES, A, C
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import damping
-from ..effects.foundation import foundation_pull
+from ..effects.preload import overlap
+from ..equations.body_forces import add_force_slope
 from ..jit import inline_numba
-from .attempt import keep_gaps
-from .run import saltate
-from .tangent import carry, stage_gaps
+from .attempt import keep_stage
+from .run import apply_saltation
+from .tangent import Stages, new_stages, propagate, write_stage
 from .time_map import rate_at
 
 
@@ -33,29 +34,35 @@ class VelocityTangent(NamedTuple):
     """
 
     matrix: np.ndarray
-    gaps: np.ndarray
+    stages: Stages
     slopes: np.ndarray
     state: np.ndarray
     jumps: float
 
 
-@keep_gaps.of(VelocityTangent)
-def _(tangent, slots, state, slope, stage):
-    stage_gaps(slots, state, stage, tangent.gaps)
+def new_velocity_tangent(start, bodies, jumps):
+    """The workspace of the tangents that begin with the columns of `start` (2N, columns)."""
+    return VelocityTangent(start, new_stages(bodies), np.zeros((STAGES, *start.shape)), np.zeros(start.shape), jumps)
+
+
+@keep_stage.of(VelocityTangent)
+def _(tangent, state, slope, stage):
+    write_stage(tangent.stages, state, slope, stage)
 
 
 @inline_numba
-def velocity_slope(slots, rate, gaps, closed, T, out):
-    """Slope of all columns T at one stage, times dt/dx."""
+def velocity_slope(slots, rate, u, v, closed, T, out):
+    """Slope of all columns T at one stage with displacements u and velocities v, times dt/dx."""
     n, columns = T.shape[0] // 2, T.shape[1]
     for i in range(n):
         for q in range(columns):
             out[i, q] = rate * T[n + i, q]
-            out[n + i, q] = -rate * slots.chain.inverse_mass[i + 1] * foundation_pull(slots.foundation) * T[i, q]
+            out[n + i, q] = add_force_slope(slots, 0.0, u[i + 1], v[i + 1], T[i, q], out[i, q],
+                                            slots.chain.inverse_mass[i + 1], rate)
     for c in range(n + 1):
         if closed[c] == 0:
             continue
-        d = positive_part(gaps[c])
+        d = positive_part(overlap(slots.preload, u, c))
         s, g = elastic_slope(slots.chain.stiffness[c], d), damping(slots.dissipation, d + TINY)
         for q in range(columns):
             push = 0.0
@@ -69,7 +76,7 @@ def velocity_slope(slots, rate, gaps, closed, T, out):
                 out[n + c, q] += rate * slots.chain.inverse_mass[c + 1] * push
 
 
-@carry.of(VelocityTangent)
+@propagate.of(VelocityTangent)
 def _(tangent, slots, time, h, contacts):
     rows, columns = tangent.matrix.shape
     for stage in range(STAGES + 1):
@@ -80,15 +87,15 @@ def _(tangent, slots, time, h, contacts):
                     value += h * A[stage, earlier] * tangent.slopes[earlier, i, q]
                 tangent.state[i, q] = value
         if stage < STAGES:
-            velocity_slope(slots, rate_at(time, C[stage] * h), tangent.gaps[stage], contacts.closed, tangent.state,
-                           tangent.slopes[stage])
+            velocity_slope(slots, rate_at(time, C[stage] * h), tangent.stages.u[stage], tangent.stages.v[stage],
+                           contacts.closed, tangent.state, tangent.slopes[stage])
     for i in range(rows):
         for q in range(columns):
             tangent.matrix[i, q] = tangent.state[i, q]
     return 0.0
 
 
-@saltate.of(VelocityTangent)
+@apply_saltation.of(VelocityTangent)
 def _(tangent, slots, c, closes):
     T, n = tangent.matrix, tangent.matrix.shape[0] // 2
     shear = tangent.jumps * damping(slots.dissipation, 1.0)

@@ -1,11 +1,13 @@
 """The tangent flow in (u, w): how neighbouring motions grow or shrink along one.
 
 Equation   δu̇_i = δw_i + (g_{i-1} δδ_{i-1} − g_i δδ_i)/m_i
-           m_i δẇ_i = s_{i-1} δδ_{i-1} − s_i δδ_i − k δu_i,   δδ_c = δu_c − δu_{c+1},   s = (3/2) K √δ
+           m_i δẇ_i = s_{i-1} δδ_{i-1} − s_i δδ_i + δP_i,   δδ_c = δu_c − δu_{c+1},   s = (3/2) K √δ
+           with δP_i, such as −k δu_i, from equations/body_forces.py
 Method     The right-hand side is continuous in w, so the tangents cross contact events without a jump (the saltation of
            the (u, v) form is inside the change of variables). They are integrated with the stages of the accepted
            step of the motion itself, eight columns in one vector.
-Check      ∫ trace = −∫ Σ_c g_c (1/m_c + 1/m_{c+1}) dt is the logarithm of the determinant (Liouville).
+Check      ∫ trace = ∫ (Σ_i ∂P_i/∂v_i/m_i − Σ_c g_c (1/m_c + 1/m_{c+1})) dt is the logarithm of the
+           determinant (Liouville).
 """
 
 from __future__ import annotations
@@ -17,26 +19,46 @@ import numpy as np
 from ..contact_cubic import TINY
 from ..dop853.tableau import STAGES, A, C
 from ..effects.contact import elastic_slope, positive_part
-from ..effects.dissipation import damping
-from ..effects.foundation import foundation_pull
+from ..effects.dissipation import LAWS, damping
 from ..effects.preload import overlap
-from ..jit import by_slot, inline_llvm, inline_numba, internal
-from ..simd.vector import blank, load, store
-from .attempt import keep_gaps
+from ..equations.body_forces import add_force_slope, add_force_trace
+from ..jit import by_slot, by_slot_inlined, inline_llvm, inline_numba, internal
+from ..simd.vector import LANES, aligned, blank, load, store
+from .attempt import keep_stage
 from .time_map import rate_at
+
+
+class Stages(NamedTuple):
+    """Displacements u and velocities v of all bodies, (stages + 1, N + 2) each, in the stages of a step."""
+
+    u: np.ndarray
+    v: np.ndarray
+
+
+def new_stages(bodies):
+    """Room for the stages of a step."""
+    return Stages(np.zeros((STAGES + 1, bodies)), np.zeros((STAGES + 1, bodies)))
+
+
+@internal
+def write_stage(stages, state, slope, stage):
+    """Write one stage: its displacements from the state, its velocities from the state's slope."""
+    for i in range(stages.u.shape[1]):
+        stages.u[stage, i], stages.v[stage, i] = state[i], slope[i]
 
 
 class Tangent(NamedTuple):
     """Tangent vectors as columns in blocks of eight, and workspaces.
 
     `matrix` (blocks · 2N, 8): rows δu_1..δu_N, then δw_1..δw_N of the first eight columns, then of the next.
-    `gaps`, `stiffness`, `damping` (stages, N+1); `slopes` (2N · stages, 8) and `state` (2N, 8) of one block; `weights`
+    `stages` has the motion; `stiffness`, `damping` (stages, N+1) are those of the contacts;
+    `slopes` (2N · stages, 8) and `state` (2N, 8) of one block; `weights`
     (stages + 1, stages) are the step's size times the tableau.
     `first_contact` is 0, or 1 for the observer, on which the driver acts by a given force.
     """
 
     matrix: np.ndarray
-    gaps: np.ndarray
+    stages: Stages
     stiffness: np.ndarray
     damping: np.ndarray
     slopes: np.ndarray
@@ -45,25 +67,37 @@ class Tangent(NamedTuple):
     first_contact: int
 
 
-@internal
-def stage_gaps(slots, state, stage, gaps):
-    """Write the overlaps of one stage's state."""
-    for c in range(gaps.shape[1]):
-        gaps[stage, c] = overlap(slots.preload, state, c)
+def new_tangent(start, bodies, first_contact):
+    """The workspace of the tangents that begin with the columns of `start` (2N, columns), eight in a block."""
+    rows, columns = start.shape
+    blocks, contacts = -(-columns // LANES), bodies - 1
+    matrix = aligned(blocks * rows)
+    padded = np.zeros((rows, blocks * LANES))
+    padded[:, :columns] = start
+    matrix[:] = padded.reshape(rows, blocks, LANES).transpose(1, 0, 2).reshape(blocks * rows, LANES)
+    return Tangent(matrix, new_stages(bodies), np.zeros((STAGES, contacts)), np.zeros((STAGES, contacts)),
+                   aligned(STAGES * rows), aligned(rows), np.zeros((STAGES + 1, STAGES)), first_contact)
 
 
-@keep_gaps.of(Tangent)
-def _(tangent, slots, state, slope, stage):
-    stage_gaps(slots, state, stage, tangent.gaps)
+def columns_of(tangent, columns):
+    """The first tangents as an ordinary matrix (2N, columns)."""
+    rows = len(tangent.state)
+    blocks = tangent.matrix.reshape(-1, rows, LANES)
+    return np.ascontiguousarray(blocks.transpose(1, 0, 2).reshape(rows, -1)[:, :columns])
+
+
+@keep_stage.of(Tangent)
+def _(tangent, state, slope, stage):
+    write_stage(tangent.stages, state, slope, stage)
 
 
 @by_slot
-def carry(tangent, slots, time, h, contacts):
-    """Carry the tangents through the accepted step of size h; returns its share of ∫ trace. Absent: there are none."""
+def propagate(tangent, slots, time, h, contacts):
+    """Take the tangents through the accepted step of size h; returns its share of ∫ trace. Absent: there are none."""
     return 0.0
 
 
-@carry.of(Tangent)
+@propagate.of(Tangent)
 def _(tangent, slots, time, h, contacts):
     share = linearise(slots, time, h, contacts, tangent)
     for stage in range(STAGES + 1):
@@ -71,29 +105,43 @@ def _(tangent, slots, time, h, contacts):
             tangent.weights[stage, earlier] = h * A[stage, earlier]
     rows = tangent.state.shape[0]
     for first in range(0, tangent.matrix.shape[0], rows):
-        carry_block(slots, time, h, tangent, first)
+        propagate_block(slots, time, h, tangent, first)
     return share
 
 
 @inline_numba
 def linearise(slots, time, h, contacts, tangent):
-    """Tangent stiffness s and damping g of every contact in every stage, times dt/dx; returns ∫ trace over the step.
-
-    A contact that is closed has the damping of one though rounding may have its overlap below zero.
-    """
-    trace, inverse_mass = 0.0, slots.chain.inverse_mass
+    """Tangent stiffness s and damping g of every contact in every stage, times dt/dx; returns ∫ trace over the step."""
+    trace, inverse_mass, stages = 0.0, slots.chain.inverse_mass, tangent.stages
     for stage in range(STAGES):
         rate = rate_at(time, C[stage] * h)
         share = h * A[STAGES, stage]
-        for c in range(tangent.gaps.shape[1]):
-            s, g = 0.0, 0.0
-            if contacts.closed[c] != 0 and c >= tangent.first_contact:
-                d = positive_part(tangent.gaps[stage, c])
-                s = rate * elastic_slope(slots.chain.stiffness[c], d)
-                g = rate * damping(slots.dissipation, d + TINY)
-            tangent.stiffness[stage, c], tangent.damping[stage, c] = s, g
-            trace -= share * g * (inverse_mass[c] + inverse_mass[c + 1])
+        for c in range(inverse_mass.size - 1):
+            acts = contacts.closed[c] != 0 and c >= tangent.first_contact
+            d = positive_part(overlap(slots.preload, stages.u[stage], c)) if acts else 0.0
+            tangent.stiffness[stage, c] = rate * elastic_slope(slots.chain.stiffness[c], d) if acts else 0.0
+            weight = share * (inverse_mass[c] + inverse_mass[c + 1])
+            trace -= linearise_dashpot(slots.dissipation, tangent.damping[stage], c, d, rate if acts else 0.0, weight)
+        for i in range(1, inverse_mass.size - 1):
+            u, v = stages.u[stage, i], stages.v[stage, i]
+            trace = add_force_trace(slots, trace, u, v, share * rate * inverse_mass[i])
     return trace
+
+
+@by_slot_inlined
+def linearise_dashpot(law, dampings, c, d, rate, weight):
+    """Store the damping g of contact c, times dt/dx, 0 where it is open; returns it times `weight`. Absent: 0.
+
+    A closed contact stays damped even if rounding makes its overlap negative.
+    """
+    return 0.0
+
+
+@linearise_dashpot.of(*LAWS)
+def _(law, dampings, c, d, rate, weight):
+    g = rate * damping(law, d + TINY)
+    dampings[c] = g
+    return g * weight
 
 
 @inline_llvm
@@ -105,27 +153,39 @@ def stage_value(tangent, stage, i, first):
     return value
 
 
+@by_slot_inlined
+def add_dashpot_slope(law, slope, left, right, inverse_mass, g, i):
+    """The slope of bead i's δu with the share of its two dashpots added. Absent: the slope itself."""
+    return slope
+
+
+@add_dashpot_slope.of(*LAWS)
+def _(law, slope, left, right, inverse_mass, g, i):
+    return slope + left * (inverse_mass * g[i]) - right * (inverse_mass * g[i + 1])
+
+
 @inline_llvm
 def block_slope(slots, tangent, stage, rate):
     """Slope of a block at its stage state."""
-    inverse_mass, s, g = slots.chain.inverse_mass, tangent.stiffness, tangent.damping
+    inverse_mass, s, g, stages = slots.chain.inverse_mass, tangent.stiffness, tangent.damping[stage], tangent.stages
     n = tangent.state.shape[0] // 2
-    pull = rate * foundation_pull(slots.foundation)
     here = load(tangent.state, 0)
     left = blank(here) - here
     for i in range(n):
         ahead = load(tangent.state, i + 1) if i + 1 < n else blank(here)
         right, inverse = here - ahead, inverse_mass[i + 1]
-        store(tangent.slopes, i * STAGES + stage, load(tangent.state, n + i) * rate
-              + left * (inverse * g[stage, i]) - right * (inverse * g[stage, i + 1]))
-        store(tangent.slopes, (n + i) * STAGES + stage, left * (inverse * s[stage, i])
-              - right * (inverse * s[stage, i + 1]) - here * (inverse * pull))
+        moving = add_dashpot_slope(slots.dissipation, load(tangent.state, n + i) * rate, left, right, inverse, g, i)
+        pushed = left * (inverse * s[stage, i]) - right * (inverse * s[stage, i + 1])
+        u, v = stages.u[stage, i + 1], stages.v[stage, i + 1]
+        store(tangent.slopes, i * STAGES + stage, moving)
+        store(tangent.slopes, (n + i) * STAGES + stage,
+              add_force_slope(slots, pushed, u, v, here, moving, inverse, rate))
         here, left = ahead, right
 
 
 @inline_numba
-def carry_block(slots, time, h, tangent, first):
-    """Carry eight columns, whose rows begin at `first`, through the step."""
+def propagate_block(slots, time, h, tangent, first):
+    """Take eight columns, whose rows begin at `first`, through the step."""
     rows = tangent.state.shape[0]
     for stage in range(STAGES):
         for i in range(rows):

@@ -1,4 +1,4 @@
-"""Time as a power of the distance from a contact event, in which the motion beside it is smooth.
+"""Time as a power of the distance from a contact event, in which the motion next to it is smooth.
 
 After the onset t_e of a contact the overlap grows as t − t_e and the elastic force as its power 3/2, so the motion has
 no Taylor series in t there. It has one in s, where
@@ -35,7 +35,7 @@ class Time(NamedTuple):
 
 @by_slot
 def smooth_power(dissipation):
-    """The power p in which motion and tangents beside an event are smooth."""
+    """The power p in which motion and tangents next to an event are smooth."""
     return 2
 
 
@@ -55,7 +55,7 @@ def distance_root(distance, power):
 
 @internal
 def time_from(kind, event, start, power):
-    """Time of a step from `start` beside `event`."""
+    """Time of a step from `start`, next to `event`."""
     return Time(kind, event, start, distance_root(kind * (start - event), power), power)
 
 

@@ -19,7 +19,7 @@ from .largest import UNRESOLVED, note_closing
 class Approach(NamedTuple):
     """Overlap of a contact and its rate, numbers or vectors."""
 
-    gap: Any
+    overlap: Any
     rate: Any
 
 
@@ -36,8 +36,8 @@ def closing_rate(before, after, rate, open_rate, own, h):
     for _ in range(2):
         bend = 6.0 * ((after + own * h * closed - before) / h - 0.5 * (rate + open_rate))
         for _ in range(2):
-            gap = before + h * s * (rate + s * (0.5 * (open_rate - rate + bend) - s * (bend * (1.0 / 3.0))))
-            s = s - gap / (h * (rate + s * (open_rate - rate + bend - s * bend)))
+            delta = before + h * s * (rate + s * (0.5 * (open_rate - rate + bend) - s * (bend * (1.0 / 3.0))))
+            s = s - delta / (h * (rate + s * (open_rate - rate + bend - s * bend)))
         there = rate + s * (open_rate - rate + bend - s * bend)
         left = 1.0 - s
         # ∫δ over the closed part, over h: the trapezium with its slopes at both ends
@@ -82,9 +82,9 @@ def watch_crossings(law, slots, before, end, span, log):
 @watch_crossings.of(*JUMP_LAWS)
 def _(law, slots, before, end, span, log):
     first, last = before
-    if first.gap <= 0.0:
+    if first.overlap <= 0.0:
         watch_crossing(law, slots, 0, first, end, span, log)
-    if last.gap <= 0.0:
+    if last.overlap <= 0.0:
         watch_crossing(law, slots, slots.chain.stiffness.size - 1, last, end, span, log)
 
 
@@ -92,12 +92,12 @@ def _(law, slots, before, end, span, log):
 def watch_crossing(law, slots, c, before, end, span, log):
     """Record whether contact c, open at the start of the step, closed in it or touched."""
     after, h, last = approach_of(slots, end, c), span.h, slots.chain.stiffness.size - 1
-    if after.gap > 0.0:
+    if after.overlap > 0.0:
         own = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])
-        s, jump = closing_rate(before.gap, after.gap, before.rate, after.rate + own * after.gap, own, h)
+        s, jump = closing_rate(before.overlap, after.overlap, before.rate, after.rate + own * after.overlap, own, h)
         note_closing(law, jump, c, last, span.theta + s * span.dtheta, log)
     elif before.rate > 0.0 and after.rate < 0.0:
-        jump = brief_touch(before.gap, after.gap, before.rate, after.rate, h)
+        jump = brief_touch(before.overlap, after.overlap, before.rate, after.rate, h)
         note_closing(law, jump, c, last, span.theta + 0.5 * span.dtheta, log)
         log.counts[UNRESOLVED] += jump > 0.0
 

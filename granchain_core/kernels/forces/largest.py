@@ -14,13 +14,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact_cubic import GAP, RATE, TINY, hermite_turn
+from ..contact_cubic import OVERLAP, RATE, TINY, hermite_turn
 from ..effects.contact import elastic_force, elastic_slope, positive_part
-from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, damping, damping_slope, dashpot_force
+from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, dashpot_force, dashpot_slope, onset_force
 from ..effects.driver import driver_acceleration
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
-from ..equations.motion import contact_force, force_on_bead
+from ..equations.body_forces import force_on_bead
+from ..equations.motion import contact_force
 from ..jit import by_slot, inline_numba, internal
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
 
@@ -79,13 +80,13 @@ def reach(peaks, row, value):
 
 
 @internal
-def force_beside(slots, y, dy, e, c, event, closed):
-    """Total force of contact c beside the event of contact `event`, which is closed or open there as `closed` says."""
+def force_at_event(slots, y, dy, e, c, event, closed):
+    """Total force of contact c; if c is `event`, its one-sided limit at the event. `closed` selects the side."""
     if c != event:
         return contact_force(slots, y, dy, e, c)
     if not closed:
         return 0.0
-    return cut_at_zero(slots.tension, damping(slots.dissipation, TINY) * (dy[c] - dy[c + 1]))
+    return cut_at_zero(slots.tension, onset_force(slots.dissipation, dy[c] - dy[c + 1]))
 
 
 @internal
@@ -95,7 +96,7 @@ def acceleration(slots, y, dy, e, i, event, closed):
         return driver_acceleration(slots.driver, y[0])
     if slots.chain.inverse_mass[i] == 0.0:
         return 0.0
-    force = force_beside(slots, y, dy, e, i - 1, event, closed) - force_beside(slots, y, dy, e, i, event, closed)
+    force = force_at_event(slots, y, dy, e, i - 1, event, closed) - force_at_event(slots, y, dy, e, i, event, closed)
     return slots.chain.inverse_mass[i] * force_on_bead(slots, force, y[i], dy[i])
 
 
@@ -106,8 +107,7 @@ def force_slope(slots, y, dy, e, c, event, closed):
     if c == event:
         d = TINY if closed else 0.0
     change = acceleration(slots, y, dy, e, c, event, closed) - acceleration(slots, y, dy, e, c + 1, event, closed)
-    return (elastic_slope(slots.chain.stiffness[c], d) * rate + damping_slope(slots.dissipation, d) * rate * rate
-            + damping(slots.dissipation, d) * change)
+    return elastic_slope(slots.chain.stiffness[c], d) * rate + dashpot_slope(slots.dissipation, d, rate, change)
 
 
 @internal
@@ -124,7 +124,7 @@ def cubic_top(f0, s0, f1, s1, h):
 
 @internal
 def track_force(log, q, value, slope, h):
-    """Follow force number q to its value at a state that lies h after the last one."""
+    """Update the maximum of force q over the step of size h."""
     peaks, last = log.peaks, log.last
     row = q * OUTPUT
     reach(peaks, row, cubic_top(last[q, 0], last[q, 1], value, slope, h) if h > 0.0 else value)
@@ -132,12 +132,12 @@ def track_force(log, q, value, slope, h):
 
 
 @internal
-def watch_beside(slots, y, dy, e, h, event, closed, log):
+def watch_at_event(slots, y, dy, e, h, event, closed, log):
     """Follow the three forces to state y, whose slope is dy, h after the last one; h = 0 begins anew there."""
     last = e.size - 1
     for q in range(2):
         c = 0 if q == 0 else last
-        value, slope = force_beside(slots, y, dy, e, c, event, closed), np.nan
+        value, slope = force_at_event(slots, y, dy, e, c, event, closed), np.nan
         if value > _FOLLOWED_WITH_SLOPE * log.peaks[q * OUTPUT]:
             slope = force_slope(slots, y, dy, e, c, event, closed)
         track_force(log, q, value, slope, h)
@@ -151,13 +151,13 @@ def watch_beside(slots, y, dy, e, h, event, closed, log):
 
 @internal
 def watch_state(slots, y, dy, e, h, log):
-    """The same where no contact changes; only the values where none of the three can be part of a maximum."""
+    """`watch_at_event` where no contact changes; values alone where none of the forces can be near a maximum."""
     last, peaks = e.size - 1, log.peaks
     input_force, output_force = contact_force(slots, y, dy, e, 0), contact_force(slots, y, dy, e, last)
     elastic = elastic_force(slots.chain.stiffness[last], positive_part(overlap(slots.preload, y, last)))
     if (input_force > _FOLLOWED_WITH_SLOPE * peaks[INPUT] or output_force > _FOLLOWED_WITH_SLOPE * peaks[OUTPUT]
             or elastic > _FOLLOWED_WITH_SLOPE * peaks[OUTPUT_ELASTIC]):
-        watch_beside(slots, y, dy, e, h, -1, False, log)
+        watch_at_event(slots, y, dy, e, h, -1, False, log)
     else:
         log.last[0, 0], log.last[1, 0], log.last[2, 0] = input_force, output_force, elastic
         log.last[0, 1] = log.last[1, 1] = log.last[2, 1] = np.nan
@@ -167,8 +167,8 @@ def watch_state(slots, y, dy, e, h, log):
 def watch_event(slots, y, dy, e, h, c, theta, log):
     """Follow the forces up to the event of contact c at drive phase θ, and begin anew after it."""
     rate = dy[c] - dy[c + 1]
-    watch_beside(slots, y, dy, e, h, c, rate < 0.0, log)
-    watch_beside(slots, y, dy, e, 0.0, c, rate > 0.0, log)
+    watch_at_event(slots, y, dy, e, h, c, rate < 0.0, log)
+    watch_at_event(slots, y, dy, e, 0.0, c, rate > 0.0, log)
     note_closing(slots.dissipation, rate, c, e.size - 1, theta, log)
 
 
@@ -178,9 +178,9 @@ def watch_ends_at_event(slots, ends, c, theta, log):
     last = slots.chain.stiffness.size - 1
     for q in range(2):
         contact = 0 if q == 0 else last
-        gap = ends[GAP, contact]
-        force = elastic_force(slots.chain.stiffness[contact], positive_part(gap))
-        reach(log.peaks, q * OUTPUT, force + dashpot_force(slots.dissipation, gap, ends[RATE, contact]))
+        delta = ends[OVERLAP, contact]
+        force = elastic_force(slots.chain.stiffness[contact], positive_part(delta))
+        reach(log.peaks, q * OUTPUT, force + dashpot_force(slots.dissipation, delta, ends[RATE, contact]))
         if q == 1:
             reach(log.peaks, OUTPUT_ELASTIC, force)
     note_closing(slots.dissipation, ends[RATE, c], c, last, theta, log)

@@ -1,4 +1,4 @@
-"""Contact events inside a step of fixed size: their times, and the quadrature error of a step beside one.
+"""Contact events inside a step of fixed size: their times, and the quadrature error of a step next to one.
 
 An overlap is a cubic in between, from its values and rates at the step's two ends. After an onset at s = 0 the
 elastic force grows like s^{3/2}, whose integral Simpson's rule (and RK4 with it) misses by a part of h^{5/2}: that
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from math import copysign, sqrt
 
-from ..contact_cubic import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END, TINY, contact_root
+from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END, TINY, contact_root
 from ..effects.contact import three_halves
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power
 from ..jit import by_slot, inline_llvm, inline_numba, internal
@@ -24,7 +24,7 @@ def first_event(ends, contacts, h):
     """Fraction of a step of size h at which the first contact opens or closes and that contact; (2, −1) if none."""
     first, contact = 2.0, -1
     for c in range(contacts):
-        root = contact_root(ends[GAP, c], h * ends[RATE, c], ends[GAP_END, c], h * ends[RATE_END, c])
+        root = contact_root(ends[OVERLAP, c], h * ends[RATE, c], ends[OVERLAP_END, c], h * ends[RATE_END, c])
         if root < first:
             first, contact = root, c
     return first, contact
@@ -44,7 +44,7 @@ def nearer_event(law, ends, c, last, part, most, h):
 def _(law, ends, c, last, part, most, h):
     rate = ends[RATE, c]
     if rate > 0.0 and (c == 0 or c == last):
-        nearer = part - ends[GAP, c] / (h * rate)
+        nearer = part - ends[OVERLAP, c] / (h * rate)
         if 0.0 < nearer < most:
             return nearer
     return part
@@ -68,7 +68,7 @@ def add_quadrature_errors(law, stiffness, ends, c, h, done):
     Simpson's rule fails over the part of the step on the contact's closed side and over the whole steps beyond it.
     """
     rate = ends[RATE, c]
-    ends[GAP, c] = copysign(TINY, rate)  # the cubic's remainder must not count as a second event
+    ends[OVERLAP, c] = copysign(TINY, rate)  # the cubic's remainder must not count as a second event
     speed, part = abs(rate), 1.0 - done if rate > 0.0 else done
     ends[MOMENTUM_ERROR, c] += stiffness * speed * sqrt(speed) * h * h * sqrt(h) * three_halves_excess(part)
     add_displacement_error(law, ends, c, speed, h, part)

@@ -24,8 +24,9 @@ from .step import tabulated_displacement, tabulated_velocity
 class LongChain(NamedTuple):
     """Workspace in blocks of eight bodies: states (2B, 8) hold B blocks of displacements, then B of w.
 
-    Chain values are padded with zeros: inverse mass, stiffness and static overlap (B, 8). `gap`, `slope` and `elastic`
-    (B, 8) are overlaps, velocities and elastic forces at the last step's start, `signs` (B,) the overlaps' signs.
+    Chain values are padded with zeros: inverse mass, stiffness and static overlap (B, 8). `overlap`, `velocity` and
+    `elastic` (B, 8) are overlaps, velocities of the bodies and elastic forces at the last step's start, `signs` (B,)
+    the overlaps' signs.
     """
 
     inverse_mass: np.ndarray
@@ -36,8 +37,8 @@ class LongChain(NamedTuple):
     acc: np.ndarray
     first: np.ndarray
     second: np.ndarray
-    gap: np.ndarray
-    slope: np.ndarray
+    overlap: np.ndarray
+    velocity: np.ndarray
     elastic: np.ndarray
     signs: np.ndarray
 
@@ -84,17 +85,17 @@ def first_stage(simd, slots, u0, h):
     half, sixth = 0.5 * h, h / 6.0
     for b in range(blocks):
         ahead = load(now, b + 1) if b + 1 < blocks else splat(0.0)
-        gap = batch_overlap(simd.preload, here, from_right(here, ahead), b)
-        signs = positive_mask(gap)
+        overlap = batch_overlap(simd.preload, here, from_right(here, ahead), b)
+        signs = positive_mask(overlap)
         changed |= signs ^ simd.signs[b]
         simd.signs[b] = signs
-        d = positive_part(gap)
+        d = positive_part(overlap)
         e, G = elastic_force(load(simd.stiffness, b), d), primitive(law, d)
         inverse = load(simd.inverse_mass, b)
         du = long_chain_velocity(law, load(now, blocks + b), inverse, G_before, G)
         dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
-        store(simd.gap, b, gap)
-        store(simd.slope, b, du)
+        store(simd.overlap, b, overlap)
+        store(simd.velocity, b, du)
         store(simd.elastic, b, e)
         for row, slope in ((b, du), (blocks + b, dw)):
             start = load(now, row)
@@ -139,9 +140,9 @@ def _(law, w, inverse_mass, before, G):
 def comes_nearer(simd, slots, v0):
     """Whether the overlaps of the first and of the last contact move towards zero at the last step's start."""
     last = slots.chain.stiffness.size - 1
-    first_gap, last_gap = simd.gap[0, 0], simd.gap[last // LANES, last % LANES]
-    first_rate, last_rate = v0 - simd.slope[0, 1], simd.slope[last // LANES, last % LANES]
-    return (first_rate > 0.0) != (first_gap > 0.0), (last_rate > 0.0) != (last_gap > 0.0)
+    first_overlap, last_overlap = simd.overlap[0, 0], simd.overlap[last // LANES, last % LANES]
+    first_rate, last_rate = v0 - simd.velocity[0, 1], simd.velocity[last // LANES, last % LANES]
+    return (first_rate > 0.0) != (first_overlap > 0.0), (last_rate > 0.0) != (last_overlap > 0.0)
 
 
 @internal
@@ -149,10 +150,11 @@ def watch_long_chain_ends(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
     block, lane = last // LANES, last % LANES
-    damped = dashpot_force(slots.dissipation, simd.gap[0, 0], v0 - simd.slope[0, 1])
+    damped = dashpot_force(slots.dissipation, simd.overlap[0, 0], v0 - simd.velocity[0, 1])
     watch(peaks, INPUT, simd.elastic[0, 0] + damped)
     elastic = simd.elastic[block, lane]
-    watch(peaks, OUTPUT, elastic + dashpot_force(slots.dissipation, simd.gap[block, lane], simd.slope[block, lane]))
+    damped = dashpot_force(slots.dissipation, simd.overlap[block, lane], simd.velocity[block, lane])
+    watch(peaks, OUTPUT, elastic + damped)
     watch(peaks, OUTPUT_ELASTIC, elastic)
 
 

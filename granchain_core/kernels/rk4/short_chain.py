@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact_cubic import GAP, RATE
+from ..contact_cubic import OVERLAP, RATE
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, shape
 from ..effects.foundation import add_foundation_force
@@ -83,7 +83,7 @@ class ChainState(NamedTuple):
     w: Any
     du: Any
     net_force: Any
-    gap: Any
+    overlap: Any
     rate: Any
     elastic: Any
 
@@ -143,20 +143,20 @@ def chain_values(wide, slots):
 def chain_slope(values, u0, u, w):
     """Overlaps, elastic forces, velocities and forces on the beads; the driver's own velocity is left at zero."""
     here = with_first(u, u0)
-    gap = row_overlap(values.preload, here, from_right(here, blank(here)))
-    d = positive_part(gap)
+    overlap = row_overlap(values.preload, here, from_right(here, blank(here)))
+    d = positive_part(overlap)
     r = root(d)
     e = values.stiffness * d * r
     du = chain_velocity(values.dissipation, w, values.damping_over_mass, shape(values.dissipation, d, r))
-    return gap, e, du, add_foundation_force(values.foundation, from_left(blank(e), e) - e, here)
+    return overlap, e, du, add_foundation_force(values.foundation, from_left(blank(e), e) - e, here)
 
 
 @inline_llvm
 def chain_at(values, u0, v0, u, w):
     """The chain in state (u, w) with the driver at u0, moving at v0."""
-    gap, e, du, net_force = chain_slope(values, u0, u, w)
+    overlap, e, du, net_force = chain_slope(values, u0, u, w)
     moving = with_first(du, v0)
-    return ChainState(u, w, du, net_force, gap, moving - from_right(moving, blank(moving)), e)
+    return ChainState(u, w, du, net_force, overlap, moving - from_right(moving, blank(moving)), e)
 
 
 @inline_llvm
@@ -183,7 +183,7 @@ def store_state(wide, end, x):
     store(wide.rows, first + DU, x.du)
     store(wide.rows, first + NET_FORCE, x.net_force)
     store(wide.rows, first + ELASTIC, x.elastic)
-    store(wide.ends, 2 * end + GAP, x.gap)
+    store(wide.ends, 2 * end + OVERLAP, x.overlap)
     store(wide.ends, 2 * end + RATE, x.rate)
 
 
@@ -193,7 +193,7 @@ def load_state(wide, end):
     width, rows, first = wide.width, wide.rows, KEPT * end
     return ChainState(
         load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
-        load_row(width, rows, first + NET_FORCE), load_row(width, wide.ends, 2 * end + GAP),
+        load_row(width, rows, first + NET_FORCE), load_row(width, wide.ends, 2 * end + OVERLAP),
         load_row(width, wide.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
 
 

@@ -83,9 +83,9 @@ def split_row(wide, trajectory, j, u_end, v_end, out):
 @inline_llvm
 def keep_forces(wide, values, last, k, x):
     """Write input force, output force and its elastic part at step k of a block; returns them."""
-    gap, rate, elastic = at(x.gap, last), at(x.rate, last), at(x.elastic, last)
-    input_force = at(x.elastic, 0) + dashpot_force(values.dissipation, at(x.gap, 0), at(x.rate, 0))
-    output_force = elastic + dashpot_force(values.dissipation, gap, rate)
+    overlap, rate, elastic = at(x.overlap, last), at(x.rate, last), at(x.elastic, last)
+    input_force = at(x.elastic, 0) + dashpot_force(values.dissipation, at(x.overlap, 0), at(x.rate, 0))
+    output_force = elastic + dashpot_force(values.dissipation, overlap, rate)
     wide.forces[0, k], wide.forces[1, k], wide.forces[2, k] = input_force, output_force, elastic
     return input_force, output_force, elastic
 
@@ -141,7 +141,7 @@ def run_short_chain(wide, trajectory, j, count, out):
     slots, drive, _, _ = trajectory
     values, before, last = chain_values(wide, slots), flush_subnormals(), slots.chain.stiffness.size - 1
     x = start_chain(wide, values, trajectory, j)
-    closed, rising, nothing = positive_mask(x.gap), positive_mask(x.rate), blank(x.w)
+    closed, rising, nothing = positive_mask(x.overlap), positive_mask(x.rate), blank(x.w)
     taken = count
     for first in range(j, j + count, STEPS_IN_BLOCK):
         block = min(STEPS_IN_BLOCK, j + count - first)
@@ -151,14 +151,14 @@ def run_short_chain(wide, trajectory, j, count, out):
             ua, ub = tabulated_displacement(slots, drive, i + 1), tabulated_displacement(slots, drive, i + 2)
             vb = tabulated_velocity(slots, drive, i + 2)
             end = chain_step(values, ua, ub, vb, drive.h, x, nothing, nothing)
-            closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
+            closed_after, rising_after = positive_mask(end.overlap), positive_mask(end.rate)
             # another sign, or moving towards zero at the start and away from it at the end
             if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
                 store_state(wide, BEGIN, x)
                 store_state(wide, END, end)
                 split_row(wide, trajectory, first + k, ub, vb, out)
                 end = load_state(wide, END)
-                closed_after, rising_after = positive_mask(end.gap), positive_mask(end.rate)
+                closed_after, rising_after = positive_mask(end.overlap), positive_mask(end.rate)
             x, closed, rising = end, closed_after, rising_after
             input_force, output_force, elastic = keep_forces(wide, values, last, k, x)
             top_in, top_out = larger(top_in, input_force), larger(top_out, output_force)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact_cubic import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END
+from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END
 from ..effects.balance import Balance
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
@@ -55,9 +55,9 @@ class Stages(NamedTuple):
 
 
 class DriveTable(NamedTuple):
-    """The driver in equal steps: (u_0, v_0) at every half step of a period, a step's share of the phase, and its size.
+    """The driver in equal steps: its (u_0, v_0) at every half step of a period, the phase per step, the step's size.
 
-    `values` has no rows if a period has too many steps for it; the driver is evaluated then.
+    `values` has no rows if a period has too many steps for a table; the driver is then evaluated at each step.
     """
 
     values: np.ndarray
@@ -120,7 +120,7 @@ def keep_overlaps(slots, y, slope, ends, overlaps, rates):
 
 @internal
 def correct_state(slots, ends, v0, y):
-    """Subtract the quadrature errors beside contact events from y; the driver moves at v0."""
+    """Subtract the quadrature errors next to contact events from y; the driver moves at v0."""
     inverse_mass = slots.chain.inverse_mass
     m = inverse_mass.size
     for i in range(1, m - 1):
@@ -131,7 +131,7 @@ def correct_state(slots, ends, v0, y):
 
 @by_slot
 def correct_work(balance, excess, y):
-    """Subtract the error of its contact's impulse from the driver's work. Absent: no work is recorded."""
+    """Subtract the error of contact 0's impulse, times v_0, from the driver's work. Absent: no work is recorded."""
 
 
 @correct_work.of(Balance)
@@ -141,7 +141,7 @@ def _(balance, excess, y):
 
 @by_type_inlined
 def step(method, trajectory, j, out):
-    """Advance y by one step from half-step index 2j of the drive; slope in stages.k[0] before and after.
+    """Advance y by one step from half-step index 2j of the drive; stages.k[0] is dy/dt at y before and after.
 
     Largest forces and jumps inside the step go into the log. Returns the time from the last state at which they were
     followed to the step's end.
@@ -203,9 +203,9 @@ def split(trajectory, j, u_end, v_end, out):
     ends, end, k, h, dtheta = stages.ends, stages.end, stages.k, drive.h, drive.dtheta
     theta, done, last = j * dtheta, 0.0, slots.chain.stiffness.size - 1
     reset_corrections(ends)
-    keep_overlaps(slots, y, k[0], ends, GAP, RATE)
+    keep_overlaps(slots, y, k[0], ends, OVERLAP, RATE)
     for _ in range(MOST_SPLITS):
-        keep_overlaps(slots, end, k[3], ends, GAP_END, RATE_END)
+        keep_overlaps(slots, end, k[3], ends, OVERLAP_END, RATE_END)
         first, contact = first_event(ends, last + 1, h * (1.0 - done))
         if first > 1.0:
             break
@@ -217,7 +217,7 @@ def split(trajectory, j, u_end, v_end, out):
             rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
                 u, v, h * part, y, stages)
             motion(slots, u, v, end, k[3], stages.forces)
-            keep_overlaps(slots, end, k[3], ends, GAP, RATE)
+            keep_overlaps(slots, end, k[3], ends, OVERLAP, RATE)
             out.counts[EVALUATIONS] += 4
             part = nearer_event(slots.dissipation, ends, contact, last, part, 1.0 - done, h)
             if part == stepped:

@@ -104,7 +104,7 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
     def codegen(context, builder, sig, args):
         a, b, c, d, e, top = args
         kind = sig.return_type.ir
-        near = builder.fmul(c, ir.Constant(kind, [BESIDE] * kind.count))
+        near = builder.fmul(c, ir.Constant(kind, [ADJACENT] * kind.count))
         far = builder.fmul(c, ir.Constant(kind, [BEYOND] * kind.count))
         smooth = builder.and_(builder.fcmp_ordered(">", c, b), builder.fcmp_ordered(">=", c, d))
         for value, least in ((b, near), (d, near), (a, far), (e, far)):
@@ -115,14 +115,14 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
 
 
 #: A maximum is smooth if its two neighbours are above this part of it: the jump of a dashpot force is not one.
-BESIDE = 0.8
-#: The same for the two values beyond them.
+ADJACENT = 0.8
+#: The part for the two values beyond the neighbours.
 BEYOND = 0.4
 
 
 def choose_peak(a, b, c, d, e, top):
     """`top` where c is a smooth maximum of five successive values, else c."""
-    smooth = b < c >= d and b > BESIDE * c and d > BESIDE * c and a > BEYOND * c and e > BEYOND * c
+    smooth = b < c >= d and b > ADJACENT * c and d > ADJACENT * c and a > BEYOND * c and e > BEYOND * c
     return top if smooth else c
 
 

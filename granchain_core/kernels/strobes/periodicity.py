@@ -1,7 +1,7 @@
-"""Decisions on stroboscopic states, compiled because a curve needs thousands: changes, decay, the shortest period.
+"""Periodicity of stroboscopic states: changes, their decay, the shortest period. Compiled, as a curve needs thousands.
 
-States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one a drive period; all changes are
-relative to the largest of either in the record.
+States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one per drive period. A change of
+displacements is relative to the largest displacement in the record, one of velocities (or w) to the largest of them.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ LEAST_WINDOW = 8
 SETTLED_DISTANCE = 1e-6
 #: Changes below this are rounding of a fixed-step map.
 ROUNDING = 1e-12
-#: A larger change cannot have a bound that small: nothing decays a thousandfold in one period.
+#: A state with a larger change is not settled: nothing decays a thousandfold in one period.
 _NOT_SETTLED = 1e-3
-#: A change this much smaller than the required distance is accepted without a steady rate: a slow mode below it
-#: would have to decay a hundred times more slowly than what is observed.
+#: A change below this part of the required distance is accepted without a steady rate: a slow mode hidden in it would
+#: have to decay a hundred times more slowly than what is observed.
 _DEEP = 1e-2
 #: Changes over q periods that decay faster than this, per q periods, go to zero; else they may be those of a longer
 #: orbit.

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 
 from granchain_core.kernels import contact_cubic
-from granchain_core.kernels.contact_cubic import DISPLACEMENT_ERROR, GAP, GAP_END, MOMENTUM_ERROR, RATE, RATE_END
+from granchain_core.kernels.contact_cubic import (
+    DISPLACEMENT_ERROR,
+    MOMENTUM_ERROR,
+    OVERLAP,
+    OVERLAP_END,
+    RATE,
+    RATE_END,
+)
 from granchain_core.kernels.dop853 import run as certified
 from granchain_core.kernels.effects.balance import Balance
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
@@ -48,7 +55,7 @@ def test_the_turn_is_where_the_slope_is_zero() -> None:
 def test_the_first_of_several_contacts_is_taken() -> None:
     ends = np.zeros((contact_cubic.ENDS, 3))
     for c, root in enumerate((0.6, 0.25, 0.8)):
-        ends[GAP, c], ends[RATE, c], ends[GAP_END, c], ends[RATE_END, c] = ends_of(root)
+        ends[OVERLAP, c], ends[RATE, c], ends[OVERLAP_END, c], ends[RATE_END, c] = ends_of(root)
     ends[[RATE, RATE_END]] /= 0.5  # rates are in time, for a step of 0.5
     found, contact = events.first_event.py_func(ends, 3, 0.5)
     assert (found, contact) == (pytest.approx(0.25, rel=1e-11), 1)
@@ -78,7 +85,7 @@ def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None
     events.add_quadrature_errors.py_func(law, 1.4, ends, 1, h, 0.25)
     assert ends[MOMENTUM_ERROR, 1] == pytest.approx(1.4 * 0.7**1.5 * h**2.5 * excess(1.5, part), rel=1e-9)
     assert ends[DISPLACEMENT_ERROR, 1] == pytest.approx(scale * 0.7**power * h ** (power + 1.0) * excess(power, part), rel=1e-9)
-    assert ends[GAP, 1] * rate > 0.0 and not ends[[MOMENTUM_ERROR, DISPLACEMENT_ERROR], 0].any()
+    assert ends[OVERLAP, 1] * rate > 0.0 and not ends[[MOMENTUM_ERROR, DISPLACEMENT_ERROR], 0].any()
 
 
 @pytest.mark.parametrize(("before", "after", "rising", "risen", "seen"), [

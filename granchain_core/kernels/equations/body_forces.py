@@ -1,0 +1,62 @@
+"""Forces that act on single bodies from outside the chain: every term the equations need of them.
+
+Equation   m_i ẇ_i = F^el_{i-1} − F^el_i + P_i(u_i, v_i),   P = −k u for a foundation
+Terms      P itself; the energy stored in it; the power −P v that it takes away for good; its linearisation
+           δP = ∂P/∂u δu + ∂P/∂v δv for tangents; and ∂P/∂v for the trace, which is the rate at which volumes shrink
+Users      motion.py and naive.py (force), motion.py (energy), flow/tangent.py and flow/saltation.py (linearisation),
+           lower.py (linearisation, for the largest stable step). The SIMD kernels write out the terms that they have
+"""
+
+from __future__ import annotations
+
+from ..effects.balance import Balance
+from ..effects.foundation import add_foundation_force, add_foundation_slope, foundation_energy
+from ..jit import by_slot, inline_llvm, internal
+
+
+@internal
+def force_on_bead(slots, contacts, u, v):
+    """Force on a bead at displacement u and velocity v, on which its two contacts act with `contacts`."""
+    return add_foundation_force(slots.foundation, contacts, u)
+
+
+@internal
+def stored_on_bead(slots, u):
+    """Potential energy of these forces at displacement u."""
+    return foundation_energy(slots.foundation, u)
+
+
+@internal
+def power_lost_on_bead(slots, v):
+    """Power that these forces take from a bead with velocity v and do not store."""
+    return 0.0
+
+
+@inline_llvm
+def add_force_slope(slots, slope, u, v, du, dv, inverse_mass, rate):
+    """A tangent's slope d(δw)/dx with the share δP/m of a bead added, for numbers and vectors.
+
+    The bead is at displacement u with velocity v, its neighbouring motion δu = `du` away. `rate` is dt/dx, and `dv` is
+    d(δu)/dx, which is δv times `rate`.
+    """
+    return add_foundation_slope(slots.foundation, slope, du, inverse_mass * rate)
+
+
+@internal
+def add_force_trace(slots, trace, u, v, weight):
+    """A sum with ∂P/∂v times `weight` added: what a bead contributes to the trace of the equations' derivative."""
+    return trace
+
+
+@by_slot
+def account_for_bodies(balance, slots, dy):
+    """Add the power lost by all beads to the integrand of Q; needs the velocities in dy. Absent: nothing is
+    integrated."""
+
+
+@account_for_bodies.of(Balance)
+def _(balance, slots, dy):
+    lost = 0.0
+    for i in range(1, slots.chain.inverse_mass.size - 1):
+        lost += power_lost_on_bead(slots, dy[i])
+    dy[dy.size - 1] += lost
