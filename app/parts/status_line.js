@@ -4,6 +4,7 @@ import { button, element } from "./dom.js";
 
 const ENTRIES = [
   ["busy", (v) => v, "The server is busy: computations queue and intermediate pictures are skipped."],
+  ["force", (v) => v, ""], // its title comes with it
   ["start", (v) => v, "Where the steady state was started."],
   ["accuracy", (v) => v, ""], // its title comes with it
   [

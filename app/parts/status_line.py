@@ -8,6 +8,7 @@ from granchain_core import Run, Settled
 from granchain_core.steady.curve.resonance import Place, place_words, pushes
 
 from ..format import duration, short_error
+from ..pictures.axes import in_words
 from ..scripts import module
 from .component import Component, text
 
@@ -38,7 +39,14 @@ def regime_words(picture: Settled, place: Place | None) -> str:
 def accuracy_words(run: Run) -> str:
     """The accuracy asked for and reached, and the time that took."""
     reached = "not estimated" if run.error_estimate is None else f"reached {short_error(run.error_estimate)}"
-    return f"asked {short_error(run.scene.accuracy)} · {reached} · {duration(run.cost.wall_s)}"
+    return f"accuracy asked {short_error(run.scene.accuracy)} · {reached} · computed in {duration(run.cost.wall_s)}"
+
+
+def force_hint(run: Run) -> str:
+    """What the force of the line is, and its error."""
+    error = run.force_errors.output
+    known = "not estimated" if error is None else short_error(error)
+    return f"The largest output force in the periods shown, the dashpot's part included; its relative error is {known}."
 
 
 def errors_hint(run: Run) -> str:
@@ -50,8 +58,10 @@ def errors_hint(run: Run) -> str:
 
 
 def run_entries(run: Run) -> dict[str, Any]:
-    """Accuracy, method and effects of a run."""
+    """Largest output force, accuracy, method and effects of a run."""
     return {
+        "force": f"{in_words(run.max_output_force, 'N')} at the wall",
+        "force_hint": force_hint(run),
         "accuracy": accuracy_words(run),
         "accuracy_hint": errors_hint(run),
         "energy": "" if run.energy_residual is None else f"energy residual {short_error(run.energy_residual)}",

@@ -7,15 +7,15 @@ import { button, element } from "../../parts/dom.js";
 const FIGURE = "resonance curve"; // the name of its model
 const ABOVE = 9; // px between a point and its name
 const STEP = 6; // px by which a name moves up
-const ASIDE = [0, -8, 8, -16, 16]; // px to the side
+const ASIDE = { peak: [0, -8, 8, -16, 16], band: [0, -8, 8, -16, 16], valley: [0, -4, 4] }; // px to the side
 const ORDER = { peak: 0, band: 1, valley: 2 };
 
 const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
 
 // The lowest box from `lowest` upwards in which `free` holds, straight over the point or a little beside it.
-function freeBox({ left, right, top, x, lowest }, free, wide, tall) {
+function freeBox({ left, right, top, x, lowest, sideways }, free, wide, tall) {
   for (let y = lowest; y >= top; y -= STEP)
-    for (const aside of ASIDE) {
+    for (const aside of sideways) {
       const at = Math.max(left, Math.min(right, x + aside));
       const box = { left: at, right: at + wide, top: y, bottom: y + tall };
       if (free(box)) return box;
@@ -76,14 +76,14 @@ export class ChapterLabels {
         ORDER[this.chapters[a].kind] - ORDER[this.chapters[b].kind] || this.chapters[b].force - this.chapters[a].force,
     );
     for (const i of order) {
-      const { f, height } = this.chapters[i];
+      const { f, height, kind } = this.chapters[i];
       const label = this.root.children[i];
       label.hidden = false;
       const wide = label.offsetWidth,
         tall = label.offsetHeight;
       const x = frame.x_scale.compute(f) - wide / 2;
       const lowest = Math.min(bottom, frame.y_scale.compute(height) - ABOVE) - tall;
-      const place = { left, right: right - wide, top, x, lowest };
+      const place = { left, right: right - wide, top, x, lowest, sideways: ASIDE[kind] };
       const box = freeBox(place, (one) => kept.every((other) => apart(one, other)), wide, tall);
       label.hidden = !box;
       if (!box) continue;

@@ -103,7 +103,7 @@ class Curve:
         self._pin_names = plot.text("frequency", "force", "name", source=self._pins, text_align="center",
                                     text_baseline="top", y_offset=10, text_font_size="13px",
                                     text_font_style="bold", level="overlay")
-        self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=OUTPUT,
+        self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=None,
                                  line_width=3, level="overlay")
 
     def fit(self, narrow: bool) -> None:
