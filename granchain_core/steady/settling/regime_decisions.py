@@ -15,7 +15,7 @@ from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
 from ..lyapunov import exponents
-from ..regime import agree, clearly_chaotic, departing, regime_from_exponents, slowing, undecided
+from ..regime import agree, changes, clearly_chaotic, departing, regime_from_exponents, slowing, undecided
 from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
@@ -40,6 +40,8 @@ CLEAR_DECAY = 0.9
 _PATIENCE = 4
 #: Largest |μ| of a settled motion, by differences at its own state, below which Newton's method is not needed.
 _CLEAR = 0.97
+#: Largest relative change over a part of a period with which the motion may have the shorter period.
+_NEAR = 0.1
 #: How often the departure of a motion from an orbit is enlarged.
 _MOST_DEPARTURES = 6
 
@@ -65,7 +67,7 @@ class Decisions:
     def next(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """The next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
         if regime.name == "periodic":
-            return self._confirmed(engine, regime)
+            return self._confirmed(engine, strobes, regime)
         if self.scene.N <= MOST_BEADS:
             for orbit in orbits_beside(self.scene, strobes, scaled(engine), engine.stop):
                 found = self._beside(orbit, regime)
@@ -77,8 +79,12 @@ class Decisions:
             return Decision()
         return self._measure(engine, strobes, regime)
 
-    def _confirmed(self, engine: Engine, regime: Regime) -> Decision:
+    def _confirmed(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """A motion that seems settled: on an orbit that is stable, or near one that it will leave.
+
+        A motion that settles alternating about an orbit is nearer to itself after two of its periods than after one,
+        and may be taken for one of twice the period: where a part of the period almost repeats it, Newton's method
+        finds the orbit and its least period.
 
         Where Newton's method finds no orbit, a doubtful claim is withdrawn and a clear decay from rest is accepted.
         """
@@ -87,13 +93,14 @@ class Decisions:
         if (MOST_BEADS if doubtful else _ALWAYS) < self.scene.N:
             return Decision(regime)
         seen = seen_modulus(self.scene, regime.period, scaled(engine), engine.stop, refine=4.0)
-        if seen <= _CLEAR:
+        if seen <= _CLEAR and not _may_repeat_sooner(strobes, regime.period):
             return Decision(replace(regime, multiplier=seen))
         orbit = orbit_of(self.scene, regime.period, scaled(engine), engine.stop)
         if orbit is None:
             return Decision(replace(regime, name="unsettled", period=None, distance=None) if doubtful else regime)
         if orbit.stable:
-            found = replace(regime, period=orbit.period, multiplier=orbit.modulus)
+            decay = regime.decay if orbit.period == regime.period else None  # it is that of the longer period
+            found = replace(regime, period=orbit.period, multiplier=orbit.modulus, decay=decay)
             return Decision(found, orbit.point.x if doubtful else None)
         return self._beside(orbit, regime) or Decision(
             replace(regime, name="unsettled", period=None, distance=None, decay=None, approaches=orbit.period,
@@ -134,6 +141,11 @@ class Decisions:
             return Decision(now)
         self._measured = now
         return Decision(strobes=passed)
+
+
+def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
+    """Whether a part of the period almost repeats the state."""
+    return any(period % n == 0 and float(changes(strobes, n, n).max()) <= _NEAR for n in range(1, period))
 
 
 def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
