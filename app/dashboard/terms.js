@@ -23,9 +23,9 @@ const hide = () => {
 document.addEventListener("keydown", ({ key }) => key === "Escape" && hide());
 document.addEventListener("scroll", hide, true);
 
-function termOf(words, meaning) {
+function termOf(words, name, meaning) {
   const term = element("dfn", { textContent: words, tabIndex: 0, ariaDescription: meaning });
-  term.dataset.meaning = `${words}: ${meaning}`;
+  term.dataset.meaning = `${name}: ${meaning}`;
   for (const begin of ["pointerenter", "focus", "click"]) term.addEventListener(begin, () => explain(term));
   for (const end of ["pointerleave", "blur"]) term.addEventListener(end, hide);
   return term;
@@ -34,7 +34,7 @@ function termOf(words, meaning) {
 let pattern = null;
 // The terms as one pattern, with their plurals; the longest come first.
 function terms() {
-  pattern ??= new RegExp(`(?<![\\w-])(${Object.keys(window.granchain.terms).join("|")})(?=e?s?(?![\\w-]))`, "i");
+  pattern ??= new RegExp(`(?<![\\w-])(${Object.keys(window.granchain.terms).join("|")})(?:e?s)?(?![\\w-])`, "i");
   return pattern;
 }
 
@@ -43,8 +43,8 @@ function inText(node, seen) {
   if (!found) return;
   const word = found[1].toLowerCase();
   const after = node.splitText(found.index);
-  const rest = after.splitText(found[1].length);
-  if (!seen.has(word)) after.replaceWith(termOf(found[1], window.granchain.terms[word]));
+  const rest = after.splitText(found[0].length);
+  if (!seen.has(word)) after.replaceWith(termOf(found[0], found[1], window.granchain.terms[word]));
   seen.add(word);
   inText(rest, seen);
 }
