@@ -39,7 +39,7 @@ def regime_words(picture: Settled, place: Place | None) -> str:
 def accuracy_words(run: Run) -> str:
     """The accuracy asked for and reached, and the time that took."""
     reached = "not estimated" if run.error_estimate is None else f"reached {short_error(run.error_estimate)}"
-    return f"accuracy asked {short_error(run.scene.accuracy)} · {reached} · computed in {duration(run.cost.wall_s)}"
+    return f"asked {short_error(run.scene.accuracy)} · {reached} · in {duration(run.cost.wall_s)}"
 
 
 def force_hint(run: Run) -> str:
