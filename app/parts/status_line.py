@@ -1,4 +1,4 @@
-"""The status line, which is always there: regime, error reached, time per picture, method, effects."""
+"""The status line, which is always there: regime, force at the wall, error reached, computing time, method, effects."""
 
 from __future__ import annotations
 
@@ -36,25 +36,29 @@ def regime_words(picture: Settled, place: Place | None) -> str:
     return ready + (f"{counted}, " if counted else "") + picture.regime.sentence
 
 
+def error_words(error: float | None, before: str = "") -> str:
+    """A relative error with what stands before it, or that there is none."""
+    return "not estimated" if error is None else before + short_error(error)
+
+
 def accuracy_words(run: Run) -> str:
     """The accuracy asked for and reached, and the time that took."""
-    reached = "not estimated" if run.error_estimate is None else f"reached {short_error(run.error_estimate)}"
+    reached = error_words(run.error_estimate, "reached ")
     return f"asked {short_error(run.scene.accuracy)} · {reached} · in {duration(run.cost.wall_s)}"
 
 
 def force_hint(run: Run) -> str:
     """What the force of the line is, and its error."""
-    error = run.force_errors.output
-    known = "not estimated" if error is None else short_error(error)
-    return f"The largest output force in the periods shown, the dashpot's part included; its relative error is {known}."
+    return ("The largest output force in the periods shown, the dashpot's part included; relative error "
+            f"{error_words(run.force_errors.output)}.")
 
 
 def errors_hint(run: Run) -> str:
     """The error of each quantity: displacements, and the three largest forces."""
-    said = [f"{name} {'not estimated' if error is None else short_error(error)}" for name, error in (
+    errors = [f"{name} {error_words(error)}" for name, error in (
         ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
-    return f"Relative errors: {', '.join(said)}. Click to see what accuracy costs."
+    return f"Relative errors: {', '.join(errors)}. Click to see what accuracy costs."
 
 
 def run_entries(run: Run) -> dict[str, Any]:

@@ -24,9 +24,9 @@ from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point,
 MOST_BEADS = 100
 #: |μ| is not known better than this.
 UNSURE = 1e-5
-#: A motion that changes by more over n periods is not near an orbit of period n, nor is one this far from the orbit
-#: that was found.
-_BESIDE = 0.1
+#: Largest relative change over n periods with which a motion may be near an orbit of period n, and its largest distance
+#: from the orbit that is then found.
+NEAR = 0.1
 #: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _AS_SMALL = 3.0
 #: Factor between the tested distances. Near an orbit that has just become stable there may be a closed curve on which
@@ -86,7 +86,7 @@ class NearbyOrbit:
 
     def approached(self) -> bool:
         """Whether the motion goes to this orbit: from where it is and from all shorter distances it comes nearer."""
-        if not self.stable or self.away > _BESIDE:
+        if not self.stable or self.away > NEAR:
             return False
         rows = _slow_coordinates(self.point.derivative, max(_SLOW, _SLOW * self.modulus))
         orbits = min(_MOST_ORBITS, int(_TAKEN / (1.0 - self.modulus)))
@@ -158,11 +158,11 @@ def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: f
 def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) -> Iterator[NearbyOrbit]:
     """Orbits near a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
     moved = [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]
-    if not moved or min(moved) > _BESIDE:
+    if not moved or min(moved) > NEAR:
         return
     tried = {next(n for n, change in enumerate(moved, 1) if change <= _AS_SMALL * min(moved)),
              1 + int(np.argmin(moved))}
     for n in sorted(tried):
         found = orbit_of(scene, n, x, stop)
-        if found is not None and found.away <= _BESIDE:
+        if found is not None and found.away <= NEAR:
             yield found

@@ -16,7 +16,7 @@ from ...regime import Regime
 from ...scene import Scene
 from ..lyapunov import exponents
 from ..regime import agree, changes, clearly_chaotic, departing, regime_from_exponents, slowing, undecided
-from .nearby_orbit import MOST_BEADS, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
+from .nearby_orbit import MOST_BEADS, NEAR, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
 EXAMINED_AFTER = 400
@@ -40,8 +40,6 @@ CLEAR_DECAY = 0.9
 _PATIENCE = 4
 #: Largest |μ| of a settled motion, by differences at its own state, below which Newton's method is not needed.
 _CLEAR = 0.97
-#: Largest relative change over a part of a period with which the motion may have the shorter period.
-_NEAR = 0.1
 #: How often the departure of a motion from an orbit is enlarged.
 _MOST_DEPARTURES = 6
 
@@ -145,7 +143,7 @@ class Decisions:
 
 def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
     """Whether a part of the period almost repeats the state."""
-    return any(period % n == 0 and float(changes(strobes, n, n).max()) <= _NEAR for n in range(1, period))
+    return any(period % n == 0 and float(changes(strobes, n, n).max()) <= NEAR for n in range(1, period))
 
 
 def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
