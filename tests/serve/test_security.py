@@ -10,7 +10,6 @@ import logging
 import re
 import socket
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -21,12 +20,11 @@ from bokeh.util.token import generate_jwt_token, generate_session_id
 from tornado.ioloop import IOLoop
 
 from app import server
-from app.cli import main
 from app.dashboard.main_picture import PICTURES_SHARED
 from app.pages.curve.sweep import CURVES_SHARED
 from app.serve import guard
 from app.serve.compiler import Compiler
-from app.server import Access, is_loopback, server_at
+from app.server import Access, server_at
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
 from app.session.share import LONGEST
 from granchain_core.experiment.measured import MOST_BYTES
@@ -277,46 +275,6 @@ def test_a_flood_of_messages_closes_the_connection(monkeypatch: pytest.MonkeyPat
     assert one.closed == 1008 and one.taken == pytest.approx(guard.FRAMES_AT_ONCE / (1.0 - 1e-3 * guard.FRAMES_A_SECOND), rel=1e-3)
 
 
-@pytest.mark.parametrize(("address", "only_here"), [
-    ("127.0.0.1", True), ("localhost", True), ("::1", True), ("127.8.8.8", True), ("0.0.0.0", False), ("", False),
-    ("::", False), ("192.168.1.4", False), ("granchain.example.org", False)])
-def test_which_addresses_are_public(address: str, only_here: bool) -> None:
-    assert is_loopback(address) is only_here
-
-
-@pytest.mark.parametrize("words", [
-    [], ["--allow-websocket-origin", "granchain.example.org"], ["--generate-secret"]])
-def test_a_public_address_needs_origins_and_a_secret(words: list[str], capsys: pytest.CaptureFixture[str],
-                                                     monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("BOKEH_SECRET_KEY", raising=False)
-    assert main(["serve", "--address", "0.0.0.0", "--port", "6199", *words]) == 2
-    said = capsys.readouterr().err
-    assert "--allow-websocket-origin" in said and "--generate-secret" in said and "docs/security.md" in said
-
-
-def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
-    asked: list[Any] = []
-    monkeypatch.setattr(server, "serve", lambda *words, **named: asked.append((words, named)))
-    (tmp_path / "secret").write_bytes(SECRET + b"\n")
-    (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
-    assert main(["serve", "--address", "0.0.0.0", "--allow-websocket-origin", "a.example.org", "--secret-file",
-                 str(tmp_path / "secret"), "--basic-auth", str(tmp_path / "users.json"), "--most-visitors", "9"]) == 0
-    (words, named), = asked
-    access = named["access"]
-    assert words == (5006, "0.0.0.0") and access.secret == SECRET and access.most_visitors == 9
-    assert access.origins == ("a.example.org",) and dict(access.sign_in)["basic_auth"] == str(tmp_path / "users.json")
-    assert len(dict(access.sign_in)["cookie_secret"]) == 64
-
-
-@pytest.mark.parametrize(("words", "sentence"), [
-    (["--secret-file", "/nowhere/secret"], "cannot be read"), (["--oauth-provider", "github"], "PANEL_OAUTH_KEY"),
-    (["--most-visitors", "0"], "outside 1 to 10000"), (["--basic-auth", "/nowhere"], "cannot be read")])
-def test_what_cannot_be_used_is_refused_with_a_sentence(words: list[str], sentence: str,
-                                                        capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["serve", *words]) == 2
-    assert sentence in capsys.readouterr().err
-
-
 def test_with_basic_auth_a_page_asks_who_it_is(tmp_path: Any) -> None:
     (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
     one = Listening(Access(secret=SECRET, sign_in=(("basic_auth", str(tmp_path / "users.json")), ("cookie_secret", "x" * 32))))
@@ -339,13 +297,3 @@ def test_the_metrics_have_the_format_of_prometheus(dashboard: Listening) -> None
     for name in ("visitors", "pictures_total", "answer_seconds_bucket", "queue", "cancelled_total", "picture_cache_hits_total",
                  "resident_memory_bytes"):
         assert f"granchain_{name}" in text
-
-
-def test_a_line_of_the_log_is_json_with_the_requests_id() -> None:
-    from app.serve.logs import Lines
-
-    record = logging.LogRecord("granchain", logging.WARNING, __file__, 1, "refused: %s", ("why",), None)
-    record.request = "0123456789ab"
-    said = json.loads(Lines().format(record))
-    assert said["message"] == "refused: why" and said["request"] == "0123456789ab" and said["level"] == "warning"
-    assert time.strptime(said["time"][:19], "%Y-%m-%dT%H:%M:%S")

@@ -1,0 +1,54 @@
+"""Who may use the server, as the command line says it: addresses, origins, secrets and ways of signing in."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from app import server
+from app.cli import main
+from app.server import is_loopback
+
+_SECRET = b"a secret of this test alone, long enough"
+
+
+@pytest.mark.parametrize(("address", "only_here"), [
+    ("127.0.0.1", True), ("localhost", True), ("::1", True), ("127.8.8.8", True), ("0.0.0.0", False), ("", False),
+    ("::", False), ("192.168.1.4", False), ("granchain.example.org", False)])
+def test_which_addresses_are_public(address: str, only_here: bool) -> None:
+    assert is_loopback(address) is only_here
+
+
+@pytest.mark.parametrize("words", [
+    [], ["--allow-websocket-origin", "granchain.example.org"], ["--generate-secret"]])
+def test_a_public_address_needs_origins_and_a_secret(words: list[str], capsys: pytest.CaptureFixture[str],
+                                                     monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("BOKEH_SECRET_KEY", raising=False)
+    assert main(["serve", "--address", "0.0.0.0", "--port", "6199", *words]) == 2
+    said = capsys.readouterr().err
+    assert "--allow-websocket-origin" in said and "--generate-secret" in said and "docs/security.md" in said
+
+
+def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(server, "serve", lambda *words, **named: asked.append((words, named)))
+    (tmp_path / "secret").write_bytes(_SECRET + b"\n")
+    (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
+    assert main(["serve", "--address", "0.0.0.0", "--allow-websocket-origin", "a.example.org", "--secret-file",
+                 str(tmp_path / "secret"), "--basic-auth", str(tmp_path / "users.json"), "--most-visitors", "9"]) == 0
+    (words, named), = asked
+    access = named["access"]
+    assert words == (5006, "0.0.0.0") and access.secret == _SECRET and access.most_visitors == 9
+    assert access.origins == ("a.example.org",) and dict(access.sign_in)["basic_auth"] == str(tmp_path / "users.json")
+    assert len(dict(access.sign_in)["cookie_secret"]) == 64
+
+
+@pytest.mark.parametrize(("words", "sentence"), [
+    (["--secret-file", "/nowhere/secret"], "cannot be read"), (["--oauth-provider", "github"], "PANEL_OAUTH_KEY"),
+    (["--most-visitors", "0"], "outside 1 to 10000"), (["--basic-auth", "/nowhere"], "cannot be read")])
+def test_what_cannot_be_used_is_refused_with_a_sentence(words: list[str], sentence: str,
+                                                        capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serve", *words]) == 2
+    assert sentence in capsys.readouterr().err
