@@ -98,7 +98,7 @@ def in_background(work: Callable[[Any], T]) -> T:
 
     announce_compiling()
     thread = threading.Thread(target=target, daemon=True)
-    with ending.told(stop.set) as asked:
+    with ending.asking(stop.set) as asked:
         thread.start()
         try:
             while thread.is_alive() and not asked():
@@ -116,7 +116,7 @@ def in_background(work: Callable[[Any], T]) -> T:
 @contextmanager
 def unbroken() -> Iterator[None]:
     """Finish this block, which writes a result, before a signal ends the command."""
-    with ending.told() as asked:
+    with ending.asking() as asked:
         yield
         if asked():
             raise Cancelled

@@ -17,11 +17,11 @@ def announce_compiling() -> None:
     from numba.core import event  # with the compiler: a second that commands without kernels do not wait
 
     class Listener(event.Listener):
-        told = False
+        announced = False
 
         def on_start(self, event: event.Event) -> None:
-            if not Listener.told:
-                Listener.told = True
+            if not Listener.announced:
+                Listener.announced = True
                 print(WORDS, file=sys.stderr, flush=True)
 
         def on_end(self, event: event.Event) -> None:

@@ -2,7 +2,7 @@
 
 Python would raise `KeyboardInterrupt` wherever the main thread happens to be: in an import, in a callback that swallows
 it, or only after a compiler has come back. Here a thread waits for the signals instead. While nothing is to be kept it
-ends the process at once. Inside `told` it asks the computation to end and gives it some time to keep what it has.
+ends the process at once. Inside `asking` it asks the computation to end and gives it some time to keep what it has.
 Processes that were started end with this one by themselves (granchain_core/children.py).
 
 The module is loaded before anything else and imports only what takes no time.
@@ -90,7 +90,7 @@ def _end() -> NoReturn:
 
 
 @contextmanager
-def told(tell: Callable[[], None] = lambda: None) -> Iterator[Callable[[], bool]]:
+def asking(tell: Callable[[], None] = lambda: None) -> Iterator[Callable[[], bool]]:
     """Within this block a signal calls `tell`, in another thread, and the block has some time to end.
 
     Gives a function that says whether a signal has come. A block inside another one changes nothing.

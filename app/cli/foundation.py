@@ -10,8 +10,8 @@ from granchain_core.scene.foundation import moved_kappa
 
 def kept_spring(before: Scene, after: Scene, named: Collection[str]) -> str:
     """How a new A0 changed kappa and how to keep it; empty if A0 is as before, or if k or kappa was set too."""
-    told = "" if {"k", "kappa"} & set(named) else moved_kappa(before, after)
-    return told and f"{told}. It is {after.kappa:.6g} now; --set kappa={before.kappa:.6g} keeps it."
+    notice = "" if {"k", "kappa"} & set(named) else moved_kappa(before, after)
+    return notice and f"{notice}. It is {after.kappa:.6g} now; --set kappa={before.kappa:.6g} keeps it."
 
 
 def kept_along(current: Scene, *knobs: str) -> str:

@@ -18,18 +18,18 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
     Returns the state in which the motion begins, None for rest, and a sentence for every field that was refused.
     """
     places = {"tab": tab_names(), "page": overlay_names(), "embed": ("1",)}
-    scene, said, sentences = decode(query, {**places, "story": story_places()})
-    view = {name: said.get(name, values[0]) for name, values in EXTRAS.items()}
+    scene, fields, sentences = decode(query, {**places, "story": story_places()})
+    view = {name: fields.get(name, values[0]) for name, values in EXTRAS.items()}
     session.scene = scene
     session.mode, session.start, session.scale = view["mode"], view["start"], view["scale"]
     session.curves, session.theme = view["curves"], view["look"]
     session.speed, session.account = float(view["speed"]), view["account"] == "on"
-    session.place = {name: said[name] for name in places if name in said}
-    session.story = said.get("story", "")
-    session.pins = tuple(_pins([said[name] for name in PINS if name in said], sentences))
+    session.place = {name: fields[name] for name in places if name in fields}
+    session.story = fields.get("story", "")
+    session.pins = tuple(_pins([fields[name] for name in PINS if name in fields], sentences))
     session.picture, session.started_from = None, None
     try:
-        start = read_start(said[START], scene) if START in said else None
+        start = read_start(fields[START], scene) if START in fields else None
     except BadInput as problem:
         sentences.append(str(problem))
         start = None

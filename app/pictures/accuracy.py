@@ -58,8 +58,8 @@ def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
     columns: dict[str, dict[str, list[Any]]] = {name: {column: [] for column in _COLUMNS} for name in ways()}
     for row in rows:
         if not row.failure and math.isfinite(row.error) and row.error > 0.0 and row.wall_s > 0.0:
-            told = f"error {row.error:.2g}, {duration(row.wall_s)}, {row.rhs} evaluations"
-            for name, value in zip(_COLUMNS, (1e3 * row.wall_s, min(row.error, _HIGHEST), row.setting, told),
+            words = f"error {row.error:.2g}, {duration(row.wall_s)}, {row.rhs} evaluations"
+            for name, value in zip(_COLUMNS, (1e3 * row.wall_s, min(row.error, _HIGHEST), row.setting, words),
                                    strict=True):
                 columns[row.method][name].append(value)
     return columns

@@ -205,14 +205,14 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
     """What a special point is, where, and how sure that is."""
     scale = knob_scale(branch.axis.knob, (branch.axis.high,))
     low, high = special.interval
-    told = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "
+    words = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "
             f"{0.5 * (high - low) / scale.factor:.4f} {scale.unit}")
     if special.contact is not None:
-        told += f": contact {special.contact} has one {special.event} more on one side"
+        words += f": contact {special.contact} has one {special.event} more on one side"
     elif special.kind == "neimark_sacker" and special.multiplier is not None:
-        told += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
+        words += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
                  "circle")
-    return told
+    return words
 
 
 def _orbit_words(point: BranchPoint, branch: Branch) -> tuple[Any, ...]:

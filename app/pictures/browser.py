@@ -81,8 +81,8 @@ def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
         plot.output_backend = "svg"
     page = page_of(figure, title).replace("</body>", _EXPORT)
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
-        told = _run(folder, page, "--dump-dom", f"--window-size={size[0]},{size[1]}")
-    found = re.search(r'<pre id="exported">(.*?)</pre>', told, re.DOTALL)
+        dom = _run(folder, page, "--dump-dom", f"--window-size={size[0]},{size[1]}")
+    found = re.search(r'<pre id="exported">(.*?)</pre>', dom, re.DOTALL)
     if found is None:
         raise BadInput(f"{browser()} drew no SVG; write an HTML file instead.")
     return _with_caption(html.unescape(found[1]), title, caption, theme)

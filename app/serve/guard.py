@@ -109,10 +109,10 @@ class Guard(RequestHandler):
     def write_error(self, status_code: int, **_: Any) -> None:
         """A line for the visitor; what happened is in the log under the same id."""
         self.set_header("Content-Type", "text/plain; charset=UTF-8")
-        said = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
+        sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
                 503: "As many visitors are here as this server can answer; please try again in a minute.",
                 500: "Something went wrong inside granchain."}
-        self.finish(f"{said.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n")
+        self.finish(f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n")
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
         """To the log, with the request's id."""

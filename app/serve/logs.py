@@ -16,12 +16,12 @@ class Lines(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         """Time in UTC, level, logger, message, the ids, and what failed."""
-        said = {"time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
+        line = {"time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
                 "level": record.levelname.lower(), "logger": record.name, "message": record.getMessage()}
-        said.update((name, getattr(record, name)) for name in _FIELDS if hasattr(record, name))
+        line.update((name, getattr(record, name)) for name in _FIELDS if hasattr(record, name))
         if record.exc_info:
-            said["failure"] = self.formatException(record.exc_info)
-        return json.dumps(said, ensure_ascii=False)
+            line["failure"] = self.formatException(record.exc_info)
+        return json.dumps(line, ensure_ascii=False)
 
 
 def begin(level: str) -> None:

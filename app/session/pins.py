@@ -47,11 +47,11 @@ def read_pin(text: str) -> Pin:
 
 def setting_words(pin: Scene, now: Scene) -> str:
     """The scene and the knobs by which a pinned scene differs from the present one."""
-    told = [pin.name] if pin.name != now.name else []
+    parts = [pin.name] if pin.name != now.name else []
     for name, value in pin.knobs.items():
         if value != now.knobs[name] and name != "kappa":
-            told.append(f"{QUANTITIES[name].symbol or name} = {_knob(name, value)}")
-    return ", ".join(told) or "the same knobs"
+            parts.append(f"{QUANTITIES[name].symbol or name} = {_knob(name, value)}")
+    return ", ".join(parts) or "the same knobs"
 
 
 def _knob(name: str, value: object) -> str:

@@ -100,12 +100,12 @@ def read_story(path: Path) -> Story:
     steps = data.get("steps")
     if not isinstance(steps, list) or not steps:
         raise BadInput("a story needs at least one [[steps]].")
-    told = [_step(number, one) for number, one in enumerate(steps, 1)]
+    read = [_step(number, one) for number, one in enumerate(steps, 1)]
     order = data.get("order", 100)
     if not isinstance(order, int):
         raise BadInput("order must be a whole number.")
-    story = Story(path.stem, _text(data, "title", "the story"), _text(data, "about", "the story"), order, tuple(told))
-    for number in range(1, len(told) + 1):
+    story = Story(path.stem, _text(data, "title", "the story"), _text(data, "about", "the story"), order, tuple(read))
+    for number in range(1, len(read) + 1):
         for words in ("say", "ask", "answer"):
             told_words(story, number, words)
     return story
@@ -141,17 +141,17 @@ def settled_step(step: Step, stop: Stop | None = None) -> Settled:
 
 def differences(step: Step, shown: Run) -> list[str]:
     """What of a run is not as the step tells, in sentences."""
-    found, told = [], step.expect
+    found, expected = [], step.expect
     regime = shown.regime.name if shown.regime.driven else UNDRIVEN
-    if (regime, shown.regime.period) != (told.regime, told.period):
-        found.append(f"it is {shown.regime.sentence}, not {told.regime} {told.period or ''}".rstrip() + ".")
-    numbers = [("largest output force", "N", told.output, shown.max_output_force),
-               ("largest input force", "N", told.input, shown.max_input_force)]
-    if told.pulse is not None and told.speed is not None:
+    if (regime, shown.regime.period) != (expected.regime, expected.period):
+        found.append(f"it is {shown.regime.sentence}, not {expected.regime} {expected.period or ''}".rstrip() + ".")
+    numbers = [("largest output force", "N", expected.output, shown.max_output_force),
+               ("largest input force", "N", expected.input, shown.max_input_force)]
+    if expected.pulse is not None and expected.speed is not None:
         first = pulse(run(step.scene, periods=0, record=1, samples=_PULSE_SAMPLES))
         middle = len(first.contact) // 2
-        numbers += [("pulse's force", "N", told.pulse, float(first.force[middle])),
-                    ("pulse's speed", "m/s", told.speed, float(first.speed_in_metres[middle]))]
+        numbers += [("pulse's force", "N", expected.pulse, float(first.force[middle])),
+                    ("pulse's speed", "m/s", expected.speed, float(first.speed_in_metres[middle]))]
     allowed = IRREGULAR if regime in ("quasi-periodic", "chaotic") else TOLERANCE
     return found + [f"the {name} is {computed:.4g} {unit}, not {number:.4g} {unit}."
                     for name, unit, number, computed in numbers if abs(computed - number) > allowed * computed]

@@ -110,9 +110,9 @@ from granchain import State, resonance_curve, scene, settle
 chain = {chain}'''
     picture = f"""{_start(screen.start)}
 run = settle(chain, start=start, samples={screen.run.samples}).run"""
-    told = {title: float(getattr(screen.run, field)) for title, field in _FORCES.items()}
+    forces = {title: float(getattr(screen.run, field)) for title, field in _FORCES.items()}
     numbers = f"""# What the page showed, and what was computed now.
-page = {pprint.pformat(told, sort_dicts=False, width=100)}
+page = {pprint.pformat(forces, sort_dicts=False, width=100)}
 fields = {pprint.pformat(_FORCES, sort_dicts=False, width=100)}
 here = {{name: float(getattr(run, field)) for name, field in fields.items()}}
 print(run.regime.sentence)

@@ -125,7 +125,7 @@ class Attractors(list[Attractor], Labelled):
 
     def summary(self) -> list[str]:
         """How many, and a line for each."""
-        return [f"{len(self)} found", *(f"{i}: {said}" for i, said in enumerate(listing(self), 1))]
+        return [f"{len(self)} found", *(f"{i}: {line}" for i, line in enumerate(listing(self), 1))]
 
     def __repr__(self) -> str:
         return as_text(self.heading(), self.summary())

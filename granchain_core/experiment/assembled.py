@@ -112,8 +112,8 @@ def _series(at: Columns, layout: str, about: dict[str, Any]) -> Series:
         raise BadInput(f"Line {at.lines[-1]}: a series has at least {_FEWEST} samples; this one ends after "
                        f"{len(time)}.")
     at.check(np.diff(time, prepend=time[0] - 1.0) <= 0.0, "times must ascend.")
-    told = ", ".join(name.replace("_", " ") for name in at.values if name != "time")
+    quantities = ", ".join(name.replace("_", " ") for name in at.values if name != "time")
     found = {name: at.one(name) if at.has(name) else None for name in ("velocity", "input_force", "output_force")}
     return Series(time - time[0], found["velocity"], found["input_force"], found["output_force"],
-                  f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {told}; {layout}",
+                  f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {quantities}; {layout}",
                   at.one("displacement") if at.has("displacement") else None, **about)

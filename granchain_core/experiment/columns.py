@@ -95,9 +95,9 @@ def _check_places(name: str, places: list[tuple[int, str]], kind: str, asked: As
 def _missing(asked: Asked, wanted: Sequence[str]) -> str:
     unknown = [one.title for one in asked.guesses if one.quantity is None and one.title]
     several = "" if len(unknown) > 1 else "s"
-    said = (f"What {' and '.join(repr(one[:30]) for one in unknown[:4])} hold{several} is not clear" if unknown
+    sentence = (f"What {' and '.join(repr(one[:30]) for one in unknown[:4])} hold{several} is not clear" if unknown
             else "These columns are not enough")
-    return f"{said}: {'; '.join(_NEEDS[kind] for kind in wanted)}."
+    return f"{sentence}: {'; '.join(_NEEDS[kind] for kind in wanted)}."
 
 
 def answered(asked: Asked, answers: Answers) -> Chosen:

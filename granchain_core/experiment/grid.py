@@ -56,12 +56,12 @@ def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | No
     kept, comments = [], []
     for number, line in enumerate(lines, 1):
         plain = line.replace("\u00a0", " ").replace("\u202f", " ").replace("\u2009", " ").replace("\u2212", "-")
-        said = plain.strip()
+        text = plain.strip()
         if number == 1 and (found := re.fullmatch(r'"?sep=(.)"?', plain.strip("\ufeff \n"), re.IGNORECASE)):
             mark = mark or found[1]
-        elif said.startswith(_COMMENT) and not said.upper().startswith(_EXCEL_ERRORS):
-            comments.append(said.lstrip("#%/ ").strip())
-        elif said:
+        elif text.startswith(_COMMENT) and not text.upper().startswith(_EXCEL_ERRORS):
+            comments.append(text.lstrip("#%/ ").strip())
+        elif text:
             kept.append((number, plain))
     if not kept:
         raise BadInput("The file is empty; expected lines of numbers in columns.")

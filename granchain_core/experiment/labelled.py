@@ -89,10 +89,10 @@ def _guess(place: int, name: str, units: str | None) -> Guess:
 
 def _note(file: File) -> str:
     """What the file says about itself in the attributes that the CF conventions name."""
-    said = []
+    notes = []
     for name in ("title", "source", "comment", "history"):
         try:
-            said.append(file.text(name))
+            notes.append(file.text(name))
         except Refused:
             continue
-    return " ".join(said)[:500]
+    return " ".join(notes)[:500]

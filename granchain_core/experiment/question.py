@@ -62,15 +62,15 @@ class Question:
     @property
     def options(self) -> str:
         """The options of a command line that would answer it."""
-        said = []
+        options = []
         if "dataset" in self.about:
-            said.append(f"--dataset '{self.datasets[0]}'")
+            options.append(f"--dataset '{self.datasets[0]}'")
         if "decimal" in self.about:
-            said.append("--decimal comma or --decimal point")
+            options.append("--decimal comma or --decimal point")
         if "columns" in self.about:
             known = [one for one in self.columns if one.quantity] or [Guess(1, "", "frequency"), Guess(2, "", "force")]
-            said += [f"--column {one.quantity}={one.number}:{one.likely_unit}" for one in known]
-        return " ".join(said)
+            options += [f"--column {one.quantity}={one.number}:{one.likely_unit}" for one in known]
+        return " ".join(options)
 
     @property
     def table(self) -> str:

@@ -114,13 +114,13 @@ class Fit(Labelled):
 
     def summary(self) -> list[str]:
         """Each parameter with its interval, and the verdict."""
-        said = []
+        lines = []
         for i, one in enumerate(self.free):
             unit = "" if one.unit == "1" else f" {one.unit}"
             ends = (f", 95 %: {self.profiles[i].low:.5g} to {self.profiles[i].high:.5g}{unit}" if self.profiles else
                     ", no interval computed")
-            said.append(f"{one.name} = {self.best[i]:.5g}{unit}{ends}")
-        return [*said, self.sentence]
+            lines.append(f"{one.name} = {self.best[i]:.5g}{unit}{ends}")
+        return [*lines, self.sentence]
 
     def to_json(self) -> dict[str, Any]:
         """The result as plain data."""

@@ -143,8 +143,8 @@ def opened(path: str | Path, fault: str) -> Iterator[File]:
         source = Plain(str(path)) if is_sealed(Path(path)) else Child(str(path))
         yield File(source)
     except _LIBRARIES as problem:  # Refused and BadInput are ValueErrors
-        said = str(problem) if isinstance(problem, BadInput) else reason(problem)
-        raise BadInput(f"{str(path)[:200]} {fault}: {said.rstrip('.')}.") from None
+        cause = str(problem) if isinstance(problem, BadInput) else reason(problem)
+        raise BadInput(f"{str(path)[:200]} {fault}: {cause.rstrip('.')}.") from None
     finally:
         if source is not None:
             source.close()

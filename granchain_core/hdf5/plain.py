@@ -239,8 +239,8 @@ def limit(seconds: int, size: int) -> None:
     except ImportError:
         return
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
-    with contextlib.suppress(OSError), open("/proc/self/statm", encoding="ascii") as told:
-        most = int(told.read().split()[0]) * resource.getpagesize() + _BESIDE + 3 * size
+    with contextlib.suppress(OSError), open("/proc/self/statm", encoding="ascii") as pages:
+        most = int(pages.read().split()[0]) * resource.getpagesize() + _BESIDE + 3 * size
         resource.setrlimit(resource.RLIMIT_AS, (most, most))
 
 

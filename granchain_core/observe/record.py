@@ -147,16 +147,16 @@ def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
     if not len(gaps):
         return record
     at = int(gaps[0])
-    told = (f"{record.place(at + 1)}: {steps[at]:.4g} s after the sample before, where {usual:.4g} s is usual")
+    where = (f"{record.place(at + 1)}: {steps[at]:.4g} s after the sample before, where {usual:.4g} s is usual")
     if gap == "refuse":
         more = f" (and {len(gaps) - 1} more)" if len(gaps) > 1 else ""
-        raise BadInput(f"{told}: a gap{more}; choose zero (no force in it) or interpolate (a smooth curve across it).")
+        raise BadInput(f"{where}: a gap{more}; choose zero (no force in it) or interpolate (a smooth curve across it).")
     what = "taken as zero force" if gap == "zero" else "interpolated"
     notes.append(f"{len(gaps)} gap{'s' if len(gaps) > 1 else ''} {what}, the first at {record.time[at]:.6g} s")
     if gap == "interpolate":
         return record
     if record.output is not None:
-        raise BadInput(f"{told}: a gap in a record with an output force can only be interpolated, since there is no "
+        raise BadInput(f"{where}: a gap in a record with an output force can only be interpolated, since there is no "
                        "output force for samples that are put in.")
     inside = np.sort(np.concatenate([record.time[gaps] + np.minimum(usual, 0.4 * steps[gaps]),
                                      record.time[gaps + 1] - np.minimum(usual, 0.4 * steps[gaps])]))

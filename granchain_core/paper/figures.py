@@ -68,10 +68,10 @@ _TABLE = (
                 "(a) " + _FEATURES + "The curve is model (5) at a constant 7 µm from rest, with its regimes; "
                                      "it has its peak and valley elsewhere. (b) Model (5) at 60 Hz with 11 "
                                      "µm. " + _IMAGES,
-                lambda given, stop, said: by.response(given, False, stop, said), ("curve", "series"), (60.0,)),
+                lambda given, stop, progress: by.response(given, False, stop, progress), ("curve", "series"), (60.0,)),
     PaperFigure("7", "Force trains at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
                 _AMPLITUDES + _IMAGES,
-                lambda given, stop, said: by.trains((90.0, 100.0), given, False, stop, said), ("series",),
+                lambda given, stop, progress: by.trains((90.0, 100.0), given, False, stop, progress), ("series",),
                 (90.0, 100.0)),
     PaperFigure("8", "The chain of models (3) to (5): every bead on a weak foundation",
                 "The scene rig to scale; the springs, which stand for the flexures, are symbols. κ = 0.001 is "
@@ -83,7 +83,7 @@ _TABLE = (
                                      "at the frequencies that the paper names. (b) Model (3) fed with a measured input "
                                      "force or, without one, with that of model (5). "
                 + _IMAGES,
-                lambda given, stop, said: by.response(given, True, stop, said), ("curve", "series"), (60.0,)),
+                lambda given, stop, progress: by.response(given, True, stop, progress), ("curve", "series"), (60.0,)),
     PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
                 "Model (3) from rest, fed with "
                 "a measured input force or, "
@@ -91,7 +91,7 @@ _TABLE = (
                 "model (5), and shown after 60 "
                 "periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable and does not find "
                                                      "the chain's motion. " + _IMAGES,
-                lambda given, stop, said: by.trains((90.0, 100.0), given, True, stop, said), ("series",),
+                lambda given, stop, progress: by.trains((90.0, 100.0), given, True, stop, progress), ("series",),
                 (90.0, 100.0)),
     PaperFigure("11", "Stability of model (4): multipliers, and the first beads of both chains",
                 "Top κ = 0, bottom κ = 0.001; multipliers of chain and observer, then bead 1 of the chain and of the "
@@ -105,7 +105,7 @@ _TABLE = (
                 "touch), then input and "
                 "output force. " + _AMPLITUDES + "Dotted at 100 Hz: a shaker with 6.5 µm, which has the same "
                                                  "velocity amplitude. " + _IMAGES,
-                lambda given, stop, said: by.trains((60.0, 90.0, 100.0), given, False, stop, said), ("series",),
+                lambda given, stop, progress: by.trains((60.0, 90.0, 100.0), given, False, stop, progress), ("series",),
                 (60.0, 90.0, 100.0)),
 )
 #: By number, in the order of the paper.

@@ -31,8 +31,8 @@ class Statement:
         """Where the row does not say what was found: another word, or a number off by more than its last digit."""
         if len(found) != len(self.computed):
             return [f"{self.key}: {len(found)} values for {len(self.computed)} in bold"]
-        return [f"{self.key}: {said} is {value}" for said, value in zip(self.computed, found, strict=True)
-                if not (said == value if isinstance(value, str) else abs(float(said) - value) <= unit_of(said))]
+        return [f"{self.key}: {shown} is {value}" for shown, value in zip(self.computed, found, strict=True)
+                if not (shown == value if isinstance(value, str) else abs(float(shown) - value) <= unit_of(shown))]
 
 
 def unit_of(number: str) -> float:

@@ -59,15 +59,15 @@ def load_branch(path: str | Path) -> Branch:
 
 
 def _read(file: File) -> Branch:
-    told, scene = _told(file.json("branch")), file.scene()
+    header, scene = _header(file.json("branch")), file.scene()
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
-    axis = KnobAxis.of(scene, told["knob"], told["start"], told["end"], amplitude)
+    axis = KnobAxis.of(scene, header["knob"], header["start"], header["end"], amplitude)
     points = _read_orbits(file, "branch", scene.N)
-    place = _places(file, "branch/arm", len(points), len(told["arms"]))
+    place = _places(file, "branch/arm", len(points), len(header["arms"]))
     special = _read_special(file, scene.N)
-    special_place = _places(file, "special/arm", len(special), len(told["arms"]))
+    special_place = _places(file, "special/arm", len(special), len(header["arms"]))
     arms = []
-    for number, arm in enumerate(told["arms"]):
+    for number, arm in enumerate(header["arms"]):
         mine = [p for p, where in zip(points, place, strict=True) if where == number]
         if not mine:
             raise Refused(f"arm {number} has no orbits")
@@ -76,25 +76,25 @@ def _read(file: File) -> Branch:
         arms.append(Arm(arm["direction"], mine,
                         [s for s, where in zip(special, special_place, strict=True) if where == number],
                         arm["step"], arm["ended"], arm["reason"]))
-    return Branch(axis, told["period"], tuple(arms))
+    return Branch(axis, header["period"], tuple(arms))
 
 
-def _told(found: Any) -> dict[str, Any]:
+def _header(found: Any) -> dict[str, Any]:
     """The attribute `branch`, each entry of its kind; one or two arms."""
     arms = found.pop("arms", None) if isinstance(found, dict) else None
-    told = entries("branch", found, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
+    header = entries("branch", found, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
     if not isinstance(arms, list) or not 1 <= len(arms) <= 2:
         raise Refused("its attribute branch does not have one arm or two")
-    if not 1 <= told["period"] <= LONGEST_PERIOD:
-        raise Refused(f"its period {told['period']} is outside 1 to {LONGEST_PERIOD}")
-    told["arms"] = [entries("arm", arm, {"direction": "number", "step": "text", "ended": "text", "reason": "text"})
+    if not 1 <= header["period"] <= LONGEST_PERIOD:
+        raise Refused(f"its period {header['period']} is outside 1 to {LONGEST_PERIOD}")
+    header["arms"] = [entries("arm", arm, {"direction": "number", "step": "text", "ended": "text", "reason": "text"})
                     for arm in arms]
-    for arm in told["arms"]:
+    for arm in header["arms"]:
         arm["step"] = finite("step", float.fromhex(arm["step"]))
         if arm["direction"] not in (-1, 1):
             raise Refused(f"direction {arm['direction']} is neither 1 nor -1")
         one_of("ended", arm["ended"], _ENDS)
-    return told
+    return header
 
 
 def _places(file: File, path: str, count: int, arms: int) -> np.ndarray:

@@ -95,16 +95,16 @@ def _regime(file: File) -> Regime:
         found["decay"] = found.pop("multiplier", None)
     lyapunov, ratios = ((found.pop(name, None) for name in ("lyapunov", "window_ratios")) if isinstance(found, dict)
                         else (None, None))
-    told = entries("regime", found, {
+    values = entries("regime", found, {
         "name": "text", "period": "whole?", "decay": "number?", "distance": "number?", "periods_run": "whole",
         "multiplier": "number?", "followed": "flag?", "approaches": "whole?", "driven": "flag?",
         "return_distance": "number?", "return_limit": "number?"})
-    one_of("regime", told["name"], NAMES)
+    one_of("regime", values["name"], NAMES)
     if lyapunov is not None:
-        told["lyapunov"] = _pair("regime.lyapunov", lyapunov, "mean", "error")
+        values["lyapunov"] = _pair("regime.lyapunov", lyapunov, "mean", "error")
     if ratios is not None:
-        told["window_ratios"] = _pair("regime.window_ratios", ratios, "smallest", "largest")
-    return Regime(**{**told, "followed": bool(told["followed"]), "driven": told["driven"] is not False})
+        values["window_ratios"] = _pair("regime.window_ratios", ratios, "smallest", "largest")
+    return Regime(**{**values, "followed": bool(values["followed"]), "driven": values["driven"] is not False})
 
 
 def _pair(place: str, found: object, first: str, second: str) -> tuple[float, ...]:

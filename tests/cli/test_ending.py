@@ -129,7 +129,7 @@ def test_the_page_of_hard_cases_leaves_no_process_either(started: Callable[..., 
 
 
 def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[..., Command]) -> None:
-    program = ("import time\nfrom app.cli import ending\nending.begin()\nwith ending.told():\n"
+    program = ("import time\nfrom app.cli import ending\nending.begin()\nwith ending.asking():\n"
                "    print('inside', flush=True)\n    time.sleep(1000)\n")
     command = started(program=("-c", program))
     assert command.process.stdout is not None and command.process.stdout.readline() == "inside\n"

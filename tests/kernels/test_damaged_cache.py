@@ -50,16 +50,16 @@ def flipped(content: bytes) -> bytes:
 
 @pytest.mark.parametrize("damage", [lambda _: b"", halved, flipped, lambda _: b"x"], ids=["empty", "halved", "flipped", "short"])
 def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, tmp_path: Path) -> None:
-    told, said = used(tmp_path)
-    assert told["right"] and told["loaded"] == 0 and said == []
+    answer, messages = used(tmp_path)
+    assert answer["right"] and answer["loaded"] == 0 and messages == []
     files = list(tmp_path.rglob("*.nbc"))
     assert len(files) == 1
     files[0].write_bytes(damage(files[0].read_bytes()))
-    told, said = used(tmp_path)
-    assert told["right"] and told["loaded"] == 0
-    assert len(said) == 1 and "Damaged kernels" in said[0] and "compiled again" in said[0]
-    told, said = used(tmp_path)
-    assert told["right"] and told["loaded"] == 1 and said == []
+    answer, messages = used(tmp_path)
+    assert answer["right"] and answer["loaded"] == 0
+    assert len(messages) == 1 and "Damaged kernels" in messages[0] and "compiled again" in messages[0]
+    answer, messages = used(tmp_path)
+    assert answer["right"] and answer["loaded"] == 1 and messages == []
 
 
 def test_every_flipped_bit_is_seen(tmp_path: Path) -> None:
@@ -120,10 +120,10 @@ def denied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_where_nothing_can_be_written_the_temporary_folder_is_ours_alone(denied: Path, tmp_path: Path) -> None:
-    told, said = used(denied)
+    answer, messages = used(denied)
     ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
-    assert told["right"] and Path(told["folder"]).parent == ours and said == []
-    assert [folder.stat().st_mode & 0o777 for folder in (ours, Path(told["folder"]))] == [0o700, 0o700]
+    assert answer["right"] and Path(answer["folder"]).parent == ours and messages == []
+    assert [folder.stat().st_mode & 0o777 for folder in (ours, Path(answer["folder"]))] == [0o700, 0o700]
     assert used(denied)[0]["loaded"] == 1
 
 
@@ -141,9 +141,9 @@ def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denie
         inside.mkdir(mode=0o700)
         {"open to all": ours, "readable by all": ours, "open inside": inside}[planted].chmod(
             0o755 if planted == "readable by all" else 0o777)
-    told, said = used(denied)
-    assert told["right"] and told["folder"] == "None" and told["loaded"] == 0
-    assert len(said) == 1 and "not a folder of ours with mode 700" in said[0]
+    answer, messages = used(denied)
+    assert answer["right"] and answer["folder"] == "None" and answer["loaded"] == 0
+    assert len(messages) == 1 and "not a folder of ours with mode 700" in messages[0]
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")

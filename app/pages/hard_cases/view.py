@@ -61,9 +61,9 @@ def value_beside(value: float, limit: float) -> str:
     if not math.isfinite(value):
         return "no number" if math.isnan(value) else "infinite"
     for digits in range(2, 17):
-        told = digits_of(value, digits)
-        if (float(told) <= limit) == (value <= limit):
-            return told
+        shown = digits_of(value, digits)
+        if (float(shown) <= limit) == (value <= limit):
+            return shown
     return repr(value)
 
 

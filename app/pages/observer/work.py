@@ -151,12 +151,12 @@ class ObserverRun:
         if mu is None or factor is None:
             return self.failure or ("The multiplier's prediction appears once the picture has settled to a periodic "
                                     "motion.")
-        told = f"Observer |μ| = {abs(mu):.4g}:"
+        beginning = f"Observer |μ| = {abs(mu):.4g}:"
         if factor < 1.0:
             tenfold = np.log(0.1) / np.log(factor)
-            return (f"{told} it synchronises with its chain: the distance falls tenfold every {tenfold:.3g} drive "
+            return (f"{beginning} it synchronises with its chain: the distance falls tenfold every {tenfold:.3g} drive "
                     "periods.")
         side = ", to the other side each time" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
         if self.drifts:
-            return f"{told} it drifts: an offset of its beads grows, because nothing pulls them back{side}."
-        return f"{told} it leaves its chain{side}."
+            return f"{beginning} it drifts: an offset of its beads grows, because nothing pulls them back{side}."
+        return f"{beginning} it leaves its chain{side}."

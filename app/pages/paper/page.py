@@ -65,13 +65,13 @@ class PaperPage(Page):
         for name, pieces in _KERNELS.get(figure.number, ()):
             job.compile(scene(name), *pieces)
         job.say("computing")
-        told = [0]
+        reported = [0]
 
         def report(done: float) -> None:
             if done < 1.0:
                 job.give_way()
-            if int(_STEPS * done) > told[0]:
-                told[0] = int(_STEPS * done)
+            if int(_STEPS * done) > reported[0]:
+                reported[0] = int(_STEPS * done)
                 job.next_tick(self._view.update_state, done=done)
 
         job.next_tick(self._arrived, figure, compute(figure.number, stop=job.stop, progress=report))

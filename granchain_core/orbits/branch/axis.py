@@ -98,7 +98,7 @@ class KnobAxis:
             return self.scene.evolve(**{self.knob: value})
         return self.scene.evolve(f=value, A0=self.amplitude.held(value))
 
-    def said(self, value: float) -> str:
+    def text(self, value: float) -> str:
         """A knob value in words."""
         unit = QUANTITIES[self.knob].unit
         return f"{self.knob} = {value:.8g}{'' if unit in ('', '1') else ' ' + unit}"

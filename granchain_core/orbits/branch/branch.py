@@ -94,20 +94,20 @@ class Branch(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Knob, ends and period as JSON, and where it comes from."""
-        told = {"knob": self.axis.knob, "start": self.axis.start, "end": self.axis.end, "period": self.period,
+        header = {"knob": self.axis.knob, "start": self.axis.start, "end": self.axis.end, "period": self.period,
                 "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
                          for arm in self.arms]}
-        return {**provenance(self.scene, CERTIFIED, None), "branch": json.dumps(told),
+        return {**provenance(self.scene, CERTIFIED, None), "branch": json.dumps(header),
                 **amplitude_attribute(self.axis.amplitude)}
 
     def summary(self) -> list[str]:
         """How many orbits, where it ended, and the special points."""
         ends = [f"{arm.ended}: {arm.reason}" if arm.reason else arm.ended for arm in self.arms if arm.ended]
-        kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.said(one.knob)}" for one in self.special
+        kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.text(one.knob)}" for one in self.special
                  if one.kind != "grazing"]
         grazings = sum(one.kind == "grazing" for one in self.special)
         return [f"{len(self.points)} orbits of period {self.period}, {sum(p.stable for p in self.points)} stable, from "
-                f"{self.axis.said(self.axis.start)} towards {self.axis.said(self.axis.end)}", *ends, *kinds,
+                f"{self.axis.text(self.axis.start)} towards {self.axis.text(self.axis.end)}", *ends, *kinds,
                 *([f"{grazings} grazings"] if grazings else [])]
 
 
@@ -171,7 +171,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
     seed_at = float(scene.knobs[knob]) if both else axis.start
     if not axis.contains(seed_at):
         nearest = min(max(seed_at, axis.low), axis.high)
-        raise BadInput(f"Both ways begin at the scene's own {axis.said(seed_at)}, which is outside {axis.low:g} to "
+        raise BadInput(f"Both ways begin at the scene's own {axis.text(seed_at)}, which is outside {axis.low:g} to "
                        f"{axis.high:g}; the nearest valid value is {nearest:g}.")
     # a scene whose orbits are not computed is refused before it settles
     BranchEquations(axis, 1).stroboscopic_map(seed_at)
@@ -256,5 +256,5 @@ def _refuse_shorter(equations: BranchEquations, x: np.ndarray, value: float) -> 
     """Raise `BadInput` where the orbit has a shorter period than the one asked for."""
     n, least = equations.period, equations.least_period(x, value)
     if least < n:
-        raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.said(value)} repeats after {least} "
+        raise BadInput(f"The orbit of {n} drive periods found at {equations.axis.text(value)} repeats after {least} "
                        f"already; give period {least}.")

@@ -35,7 +35,7 @@ def check_branch(branch: Branch) -> list[str]:
 
 
 def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
-    where, found = branch.axis.said(point.knob), []
+    where, found = branch.axis.text(point.knob), []
     if not point.residual <= ACCEPTED:
         found.append(f"residual {point.residual:.1e} at {where}")
     smallest, largest = np.abs(point.multipliers[-1]), max(1.0, float(np.abs(point.multipliers[0])))
@@ -47,7 +47,7 @@ def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
 
 def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
     a, b, found = arm.points[i - 1], arm.points[i], []
-    where = f"between {branch.axis.said(a.knob)} and {branch.axis.said(b.knob)}"
+    where = f"between {branch.axis.text(a.knob)} and {branch.axis.text(b.knob)}"
     moved = np.append((b.x - a.x) / np.sqrt(len(a.x)), branch.axis.coordinate(b.knob) - branch.axis.coordinate(a.knob))
     if np.linalg.norm(moved) > _APART * LONGEST or not b.arclength > a.arclength:
         found.append(f"neighbours are {np.linalg.norm(moved):.2g} apart {where}")
@@ -66,7 +66,7 @@ def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
 def _special_wrong(branch: Branch, arm: Arm) -> list[str]:
     found = []
     for s in arm.special:
-        where, (low, high) = f"{s.kind} at {branch.axis.said(s.knob)}", s.interval
+        where, (low, high) = f"{s.kind} at {branch.axis.text(s.knob)}", s.interval
         if not low <= s.knob <= high:
             found.append(f"{where} is outside its interval")
         if s.before.signature == s.after.signature:

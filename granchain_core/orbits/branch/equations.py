@@ -88,13 +88,13 @@ class BranchEquations:
             z = z - np.linalg.solve(matrix, np.append(flow.end - x, (z - start) @ normal))
             if not np.linalg.norm(z - start) <= farthest:
                 raise NumbersFailed(f"Newton's method went {np.linalg.norm(z - start):.1e} away after residuals "
-                                    f"{said(residuals)}.", "no-convergence")
+                                    f"{formatted(residuals)}.", "no-convergence")
             if residuals[-1] > _LAST:
                 change = self.stroboscopic_map(self.value(z)).end(self.state(z)) - self.state(z)
                 if relative_change(change, self.state(z)) < _NEAR:
                     z = z - np.linalg.solve(matrix, np.append(change, (z - start) @ normal))
         if not residuals[-1] <= ACCEPTED:
-            raise NumbersFailed(f"Newton's residuals were {said(residuals)}.", "no-convergence")
+            raise NumbersFailed(f"Newton's residuals were {formatted(residuals)}.", "no-convergence")
         return Solved(z, flow, self._knob_slope(self.state(z), self.value(z), flow), tuple(residuals))
 
     def tangent(self, solved: Solved, towards: np.ndarray) -> np.ndarray:
@@ -120,6 +120,6 @@ class BranchEquations:
         return (self.stroboscopic_map(moved).end(x) - flow.end) / (self.axis.coordinate(moved) - p)
 
 
-def said(residuals: list[float] | tuple[float, ...]) -> str:
+def formatted(residuals: list[float] | tuple[float, ...]) -> str:
     """Residuals in words."""
     return ", ".join(f"{r:.1e}" for r in residuals)

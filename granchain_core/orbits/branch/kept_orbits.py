@@ -67,13 +67,13 @@ class KeptOrbits:
         arms: dict[int, Arm] = {}
         period = 0
         for content in self.kept.blocks():
-            for told in json.loads(content):
-                arm = arms.setdefault(told["direction"], Arm(told["direction"], []))
-                if told["first"] == [len(arm.points), len(arm.special)]:
-                    arm.points += [_point(one) for one in told["points"]]
-                    arm.special += [_special(one) for one in told["special"]]
-                    arm.step, arm.ended, arm.reason = float.fromhex(told["step"]), told["ended"], told["reason"]
-                    period = told["period"]
+            for record in json.loads(content):
+                arm = arms.setdefault(record["direction"], Arm(record["direction"], []))
+                if record["first"] == [len(arm.points), len(arm.special)]:
+                    arm.points += [_point(one) for one in record["points"]]
+                    arm.special += [_special(one) for one in record["special"]]
+                    arm.step, arm.ended, arm.reason = float.fromhex(record["step"]), record["ended"], record["reason"]
+                    period = record["period"]
         arms = {direction: arm for direction, arm in arms.items() if arm.points}
         if len(arms) < self._arms:
             return None
@@ -86,21 +86,21 @@ def _packed(pieces: list[dict[str, Any]]) -> bytes:
 
 
 def _told(point: BranchPoint) -> dict[str, Any]:
-    told = {one.name: getattr(point, one.name) for one in fields(BranchPoint)}
+    record = {one.name: getattr(point, one.name) for one in fields(BranchPoint)}
     for name in _ARRAYS:
-        told[name] = np.asarray(told[name])
-    told["multipliers"] = np.stack([told["multipliers"].real, told["multipliers"].imag])
-    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in told.items()}
+        record[name] = np.asarray(record[name])
+    record["multipliers"] = np.stack([record["multipliers"].real, record["multipliers"].imag])
+    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in record.items()}
 
 
-def _point(told: dict[str, Any]) -> BranchPoint:
-    arrays: dict[str, Any] = {name: np.array(told[name], dtype=int if name == "closings" else float)
+def _point(record: dict[str, Any]) -> BranchPoint:
+    arrays: dict[str, Any] = {name: np.array(record[name], dtype=int if name == "closings" else float)
                               for name in _ARRAYS if name != "multipliers"}
-    real, imaginary = np.array(told["multipliers"])
+    real, imaginary = np.array(record["multipliers"])
     multipliers = np.empty(len(real), dtype=complex)
     multipliers.real, multipliers.imag = real, imaginary
     arrays["turns"] = arrays["turns"].reshape(-1, 4)
-    return BranchPoint(**{**told, **arrays, "multipliers": multipliers, "residuals": tuple(told["residuals"])})
+    return BranchPoint(**{**record, **arrays, "multipliers": multipliers, "residuals": tuple(record["residuals"])})
 
 
 def _special_told(one: SpecialPoint) -> dict[str, Any]:
@@ -109,7 +109,7 @@ def _special_told(one: SpecialPoint) -> dict[str, Any]:
             "after": _told(one.after), "multiplier": multiplier, "contact": one.contact, "event": one.event}
 
 
-def _special(told: dict[str, Any]) -> SpecialPoint:
-    multiplier = None if told["multiplier"] is None else complex(*told["multiplier"])
-    return SpecialPoint(**{**told, "interval": tuple(told["interval"]), "before": _point(told["before"]),
-                           "after": _point(told["after"]), "multiplier": multiplier})
+def _special(record: dict[str, Any]) -> SpecialPoint:
+    multiplier = None if record["multiplier"] is None else complex(*record["multiplier"])
+    return SpecialPoint(**{**record, "interval": tuple(record["interval"]), "before": _point(record["before"]),
+                           "after": _point(record["after"]), "multiplier": multiplier})

@@ -49,7 +49,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
             return Branch(branch.axis, 2 * branch.period, (_arm(twice, solved, direction),))
         tried.append("the orbit found repeats after half of its period.")
     raise NumbersFailed(f"No orbit of {2 * branch.period} drive periods was found beside the period doubling at "
-                        f"{branch.axis.said(special.knob)}: {tried[-1]}", "no-convergence")
+                        f"{branch.axis.text(special.knob)}: {tried[-1]}", "no-convergence")
 
 
 def _eigenvector(equations: BranchEquations, x: np.ndarray, value: float) -> np.ndarray:

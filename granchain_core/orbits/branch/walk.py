@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...errors import NumbersFailed
-from .equations import BranchEquations, Solved, said
+from .equations import BranchEquations, Solved, formatted
 from .point import BranchPoint, branch_point
 from .special import SpecialPoint, special_between
 
@@ -85,9 +85,9 @@ class Walk(Iterator[BranchPoint]):
         if not arm.ended:
             last = arm.points[-1]
             arm.ended = "lost"
-            arm.reason = (f"the branch could not be followed beyond {self.equations.axis.said(last.knob)} although "
+            arm.reason = (f"the branch could not be followed beyond {self.equations.axis.text(last.knob)} although "
                           f"steps were shortened to {SHORTEST:g}: {failure.rstrip('.')}; residuals at the last orbit: "
-                          f"{said(last.residuals)}")
+                          f"{formatted(last.residuals)}")
         raise StopIteration
 
     # --- one step ------------------------------------------------------------------------------------------
@@ -111,7 +111,7 @@ class Walk(Iterator[BranchPoint]):
             special[merging] = replace(special[merging], kind="period_doubling")
             ended = "merged"
             reason = (f"merged with the branch of period {equations.period // 2}, whose period doubles at "
-                      f"{equations.axis.said(special[merging].knob)}: beyond it are the same orbits, half a period "
+                      f"{equations.axis.text(special[merging].knob)}: beyond it are the same orbits, half a period "
                       "later")
         arm.special.extend(special)
         if point is not last:
@@ -169,14 +169,14 @@ class Walk(Iterator[BranchPoint]):
         axis = self.equations.axis
         closing = self._closing(last, point)
         if closing is not None:
-            return closing, "closed", (f"closed on itself at {axis.said(closing.knob)} after {closing.arclength:.3g} "
+            return closing, "closed", (f"closed on itself at {axis.text(closing.knob)} after {closing.arclength:.3g} "
                                        "of arclength: the orbit there is the seed's")
         if axis.contains(point.knob):
             return point, "", ""
         landed, first = self._landed(last, point), self.arm.points[0].knob
         if landed.knob == first:
-            return landed, "returned", f"came back to {axis.said(first)}"
-        return landed, "reached", f"reached {axis.said(landed.knob)}"
+            return landed, "returned", f"came back to {axis.text(first)}"
+        return landed, "reached", f"reached {axis.text(landed.knob)}"
 
     def _landed(self, last: BranchPoint, beyond: BranchPoint) -> BranchPoint:
         """The orbit exactly at the end of the axis that was passed."""

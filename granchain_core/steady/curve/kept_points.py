@@ -36,7 +36,7 @@ def kept_points(scene: Scene, frequencies: np.ndarray, start: str, out: str | Pa
 
 def points_in(kept: Kept[CurvePoint]) -> list[CurvePoint]:
     """The points in the blocks that are whole, in the order in which they were finished."""
-    return [_point(told) for content in kept.blocks() for told in json.loads(content)]
+    return [_point(record) for content in kept.blocks() for record in json.loads(content)]
 
 
 def _packed(points: list[CurvePoint]) -> bytes:
@@ -50,11 +50,11 @@ def _told(point: CurvePoint) -> dict[str, Any]:
             "state": [state.displacement.tolist(), state.velocity.tolist(), state.phase]}
 
 
-def _point(told: dict[str, Any]) -> CurvePoint:
-    regime = dict(told["regime"])
+def _point(record: dict[str, Any]) -> CurvePoint:
+    regime = dict(record["regime"])
     for name in ("lyapunov", "window_ratios"):  # the second is missing where an earlier version wrote
         regime[name] = tuple(regime[name]) if regime.get(name) else None
-    displacement, velocity, phase = told["state"]
-    return CurvePoint(**{name: told[name] for name in _NUMBERS}, regime=Regime(**regime),
-                      force_errors=ForceErrors(**told["force_errors"]), failure=told["failure"],
-                      status=told["status"], state=State(np.array(displacement), np.array(velocity), phase))
+    displacement, velocity, phase = record["state"]
+    return CurvePoint(**{name: record[name] for name in _NUMBERS}, regime=Regime(**regime),
+                      force_errors=ForceErrors(**record["force_errors"]), failure=record["failure"],
+                      status=record["status"], state=State(np.array(displacement), np.array(velocity), phase))
