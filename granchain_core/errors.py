@@ -15,6 +15,9 @@ class BadInput(ValueError):
     """A value from outside that cannot be used: the message says what, where, the allowed range and the nearest valid
     one.
 
+    Line ends and control characters of the value are written as escapes: it is one sentence, and a terminal would obey
+    them.
+
     Examples
     --------
     >>> from granchain_core import BadInput, scene
@@ -24,6 +27,10 @@ class BadInput(ValueError):
     ...     print(problem)
     number of beads N = 0 is outside 1 to 10000; the nearest valid value is 1.
     """
+
+    def __init__(self, sentence: str) -> None:
+        super().__init__("".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode()
+                                 for letter in sentence))
 
 
 class NumbersFailed(ArithmeticError):

@@ -88,6 +88,14 @@ def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, ca
     assert said == "The motion of bead 3 stopped being a finite number at about 1 s.\n"
 
 
+@pytest.mark.parametrize("words", [["run", "sec2", "a\nb\x1b[31m"], ["figure", "5", "--out", "a\nb\x1b[31m"],
+                                   ["observe", "sec2", "--input", "a\nb\x1b[31m"]])
+def test_a_sentence_repeats_no_control_characters(words, capsys):
+    """A line end would make two sentences of one, and a terminal obeys escapes."""
+    assert main(words) == 2
+    assert r"a\nb\x1b[31m" in (sentence := capsys.readouterr().err) and sentence.count("\n") == 1
+
+
 def test_stdout_of_a_process_is_one_json_object_and_nothing_else():
     """As a script sees it, --explain and all; progress and explanations go to stderr."""
     words = [sys.executable, "-m", "app.cli", "run", "sec2", *SHORT, "--json", "--explain"]
