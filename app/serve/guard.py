@@ -19,6 +19,7 @@ from bokeh.util.token import get_session_id
 from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 
 from .compressed import CompressedFiles
+from .message_rules import Refused, check
 from .meters import METERS
 
 log = logging.getLogger("granchain.requests")
@@ -125,10 +126,13 @@ class Guard(RequestHandler):
 
 
 class GuardedSocket(Guard):
-    """The same for a websocket: one connection for a session, and not too many messages."""
+    """The same for a websocket: one connection for a session, not too many messages, and none that no page sends."""
 
     _tokens = FRAMES_AT_ONCE
     _at = 0.0
+    #: Frames of a message that is not whole yet: header, metadata and content come one by one.
+    _frames: tuple[str, ...] = ()
+    _refused = False
 
     def check(self) -> None:
         """Also refuse a connection without a token of this server, or with one that was used before."""
@@ -142,15 +146,34 @@ class GuardedSocket(Guard):
             raise HTTPError(403, "a second connection to one session")
 
     async def on_message(self, fragment: str | bytes) -> None:
-        """Pass it on, unless there are too many."""
+        """Pass whole messages on, unless there are too many or one is not of a page; that closes the connection."""
+        if self._refused:  # what was under way when the connection was closed
+            return
         now = time.monotonic()
         self._tokens = min(FRAMES_AT_ONCE, self._tokens + (now - self._at) * FRAMES_A_SECOND) - 1.0
         self._at = now
-        if self._tokens < 0.0:
-            log.warning("too many messages", extra={"request": self.request_id, "remote": self.request.remote_ip})
-            self.close(1008, "too many messages")  # type: ignore[attr-defined]
+        try:
+            if self._tokens < 0.0:
+                raise Refused("too many messages")
+            if not isinstance(fragment, str):
+                raise Refused("binary data")
+            self._frames = (*self._frames, fragment)
+            if len(self._frames) < 3:
+                return
+            header, metadata, content = self._frames
+            self._frames = ()
+            check(header, content)
+        except Refused as reason:
+            self._refuse(str(reason))
             return
-        await super().on_message(fragment)  # type: ignore[misc]
+        for frame in (header, metadata, content):
+            await super().on_message(frame)  # type: ignore[misc]
+
+    def _refuse(self, reason: str) -> None:
+        self._refused, self._frames = True, ()
+        METERS.refused_messages += 1
+        log.warning("refused: %s", reason, extra={"request": self.request_id, "remote": self.request.remote_ip})
+        self.close(1008, reason)  # type: ignore[attr-defined]
 
     def on_close(self) -> None:
         """The visitor left: what is computed for the page ends at the next look, and is not kept for a minute."""

@@ -24,6 +24,14 @@ class Lines(logging.Formatter):
         return json.dumps(line, ensure_ascii=False)
 
 
+def is_ours(record: logging.LogRecord) -> bool:
+    """False for what Bokeh logs of a message that it cannot handle: the guard's own line says it, without a traceback.
+
+    A stranger can send such a message as often as he likes. With --log-level debug Bokeh's line is there, too.
+    """
+    return logging.getLogger().isEnabledFor(logging.DEBUG)
+
+
 def begin(level: str) -> None:
     """Everything that is logged in this process from `level` on goes to standard error in such lines."""
     handler = logging.StreamHandler(sys.stderr)
@@ -33,3 +41,4 @@ def begin(level: str) -> None:
         library = logging.getLogger(name)
         library.handlers, library.propagate = [], True
         library.setLevel(logging.NOTSET if level == "debug" else max(logging.WARNING, getattr(logging, level.upper())))
+    logging.getLogger("bokeh.server.protocol_handler").addFilter(is_ours)

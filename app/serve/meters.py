@@ -34,6 +34,7 @@ class Meters:
         self.cancelled = 0
         self.refused_visitors = 0
         self.refused_pictures = 0
+        self.refused_messages = 0
         self.errors = 0
         self.answers = [0] * (len(BUCKETS) + 1)
         self.answers_total = 0.0
@@ -79,6 +80,8 @@ class Meters:
         add("refused_visitors_total", "counter", "Visitors refused because there were too many.", self.refused_visitors)
         add("refused_pictures_total", "counter", "Pictures refused because they would take too long.",
             self.refused_pictures)
+        add("refused_messages_total", "counter", "Messages that no page sends; each closed its connection.",
+            self.refused_messages)
         add("errors_total", "counter", "Unexpected failures; each is in the log.", self.errors)
         add("event_loop_lateness_seconds", "gauge", "Mean delay of the event loop in the last ten seconds.",
             self.lateness)

@@ -44,7 +44,8 @@ def lower_pair(scene: Scene) -> Lowered:
 class Pair:
     """A chain and its observer, carried through time together at `samples` samples a period by the certified method.
 
-    Both go through the same arithmetic: an observer that starts where its chain is stays there to the last bit.
+    Both go through the same arithmetic, so an observer that starts where its chain is stays there, to rounding: the
+    compiler may sum the terms of one bead in another order than those of its twin.
     """
 
     def __init__(self, scene: Scene, samples: int, stop: Stop | None = None) -> None:

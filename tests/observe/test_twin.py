@@ -51,9 +51,10 @@ def test_an_observer_that_starts_where_its_chain_is_stays_there(changes) -> None
     pair.start(rest(shown), rest(shown))
     rows, n = pair.engine.record(96), shown.N
     assert np.abs(rows.displacement[:, :n]).max() > 0.01
-    assert np.array_equal(rows.displacement[:, :n], rows.displacement[:, n + 1 :])
+    # 2e-14 where the compiler sums the two halves in different orders, nothing where it does not
+    assert rows.displacement[:, n + 1 :] == pytest.approx(rows.displacement[:, :n], abs=1e-12)
     one, other = pair.states
-    assert np.array_equal(one.velocity, other.velocity)
+    assert other.velocity == pytest.approx(one.velocity, abs=1e-12 * np.abs(one.velocity).max())
 
 
 def test_the_chain_of_a_pair_moves_as_it_does_alone() -> None:

@@ -267,8 +267,10 @@ def test_a_flood_of_messages_closes_the_connection(monkeypatch: pytest.MonkeyPat
     one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
 
     async def flood() -> None:
-        while not one.closed:
-            await one.on_message("x")
+        for frame in itertools.cycle(('{"msgid": "1", "msgtype": "PULL-DOC-REQ"}', "{}", "{}")):
+            if one.closed:
+                break
+            await one.on_message(frame)
 
     asyncio.run(flood())
     # what is left of every message after a millisecond's allowance empties the store

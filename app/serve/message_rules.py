@@ -1,0 +1,67 @@
+"""Which websocket messages reach Bokeh: those that BokehJS sends for a page of ours, by their form alone.
+
+Bokeh decodes more than its browser side sends: compressed bytes, which a few kilobytes make gigabytes of, arrays of any
+shape, new models of any kind, a whole new document. A message is three texts, header, metadata and content; it is let
+through if it asks for the document or changes properties and sends events, in plain values that are not too deep.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+#: What BokehJS asks for: the document, and changes of it.
+KINDS = ("PULL-DOC-REQ", "PATCH-DOC")
+#: How it changes it: a property of a model, or an event of the document or of a model.
+CHANGES = ("ModelChanged", "MessageSent")
+#: Values that are not plain JSON: NaN and infinities, lists, sets and dictionaries, and events.
+TYPES = ("number", "array", "set", "map", "event")
+#: Lists and dictionaries within each other; a page of ours sends six.
+DEEPEST = 20
+
+
+class Refused(Exception):
+    """A message that no page of ours sends; the text says why."""
+
+
+def check(header: str, content: str) -> None:
+    """Raise `Refused` for a message that is not let through."""
+    asked = _object("header", header)
+    if not isinstance(asked.get("msgid"), str) or asked.get("msgtype") not in KINDS:
+        raise Refused("unknown kind of message")
+    if asked.get("num_buffers", 0) != 0:
+        raise Refused("binary data")
+    given = _object("content", content)
+    if asked["msgtype"] == "PULL-DOC-REQ":
+        return
+    events = given.get("events")
+    if not isinstance(events, list) or not events:
+        raise Refused("no events")
+    for event in events:
+        if not isinstance(event, dict) or event.get("kind") not in CHANGES:
+            raise Refused("unknown kind of event")
+        for value in event.values():
+            _check_value(value, DEEPEST)
+
+
+def _object(what: str, text: str) -> dict[str, Any]:
+    try:
+        found = json.loads(text)
+    except (ValueError, RecursionError):
+        raise Refused(f"unreadable {what}") from None
+    if not isinstance(found, dict):
+        raise Refused(f"unreadable {what}")
+    return found
+
+
+def _check_value(value: Any, deepest: int) -> None:
+    if not isinstance(value, (dict, list)):
+        return
+    if deepest == 0:
+        raise Refused("too deep a value")
+    if isinstance(value, dict):
+        if "type" in value and value["type"] not in TYPES:
+            raise Refused("a value of a kind that no page sends")
+        value = list(value.values())
+    for one in value:
+        _check_value(one, deepest - 1)

@@ -1,0 +1,80 @@
+"""What Bokeh would decode and no page sends does not reach it."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import gzip
+import json
+from typing import Any
+
+import pytest
+
+from app.serve import guard
+from app.serve.message_rules import DEEPEST, Refused, check
+
+ASKED = json.dumps({"msgid": "1", "msgtype": "PATCH-DOC"})
+
+
+def content(value: Any, kind: str = "ModelChanged") -> str:
+    """A change of one property to a value."""
+    return json.dumps({"events": [{"kind": kind, "model": {"id": "p1"}, "attr": "tags", "new": value}]})
+
+
+def nested(depth: int) -> list[Any]:
+    """Lists within each other."""
+    return [nested(depth - 1)] if depth > 1 else []
+
+
+@pytest.mark.parametrize("value", [
+    None, 5, "text", [1, [2]], {"type": "number", "value": "nan"}, {"type": "map", "entries": [["a", {"id": "p2"}]]}, nested(DEEPEST)])
+def test_plain_values_pass(value: Any) -> None:
+    check(ASKED, content(value))
+
+
+@pytest.mark.parametrize("value", [
+    {"type": "bytes", "data": base64.b64encode(gzip.compress(b"0" * 10**6)).decode()},  # a thousand times as large, decoded
+    {"type": "ndarray", "array": [], "dtype": "float64", "shape": [10**9], "order": "little"},
+    {"type": "object", "name": "CustomJS", "id": "x"}, {"type": "slice", "start": 0, "stop": 1, "step": 1}, {"type": []},
+    {"type": "map", "entries": [["a", {"type": "bytes", "data": "AAAA"}]]}, nested(DEEPEST + 1)])
+def test_values_that_no_page_sends_are_refused(value: Any) -> None:
+    with pytest.raises(Refused):
+        check(ASKED, content(value))
+
+
+@pytest.mark.parametrize(("header", "given"), [
+    ("{", "{}"), ("[" * 100_000, "{}"), ("[1]", "{}"), ('{"msgtype": "PATCH-DOC"}', content(1)), (ASKED, "{}"), (ASKED, '{"events": []}'),
+    (ASKED, '{"events": [5]}'), (ASKED, content(1, "RootAdded")), (ASKED, "[" * 100_000),
+    ('{"msgid": "1", "msgtype": "PUSH-DOC"}', "{}"), ('{"msgid": "1", "msgtype": "PATCH-DOC", "num_buffers": 1}', content(1))])
+def test_messages_that_no_page_sends_are_refused(header: str, given: str) -> None:
+    with pytest.raises(Refused):
+        check(header, given)
+
+
+class Socket:
+    """What a guarded websocket is mixed with here."""
+
+    def __init__(self) -> None:
+        self.taken: list[str] = []
+        self.closed = 0
+        self.request = type("Request", (), {"remote_ip": "127.0.0.1"})
+
+    async def on_message(self, fragment: str) -> None:
+        """One more."""
+        self.taken.append(fragment)
+
+    def close(self, code: int, reason: str) -> None:
+        """Closed with a reason."""
+        self.closed = code
+
+
+def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken() -> None:
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+    good, bad = (ASKED, "{}", content(1)), (ASKED, "{}", content({"type": "bytes", "data": "AAAA"}))
+
+    async def send() -> None:
+        for frame in (*good, *bad, *good):
+            await one.on_message(frame)
+
+    asyncio.run(send())
+    assert one.taken == list(good) and one.closed == 1008
