@@ -80,8 +80,8 @@ def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, k
     np.testing.assert_allclose(kept.energy[:, 0], stored, rtol=1e-9, atol=1e-12)  # the same formula on the same samples
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("law", ["linear", "tsuji", "kuwabara-kono"])
+@pytest.mark.parametrize(("law", "method"), [("linear", "dop853"), ("linear", "rk4-split"), ("tsuji", "rk4-split"),
+                                             ("kuwabara-kono", "rk4-split")])
 def test_damping_only_takes_energy(law, method):
     """The energy lost never decreases from sample to sample, whatever the law."""
     engine = Engine(chain(law, "allowed", 0.0, 0.0), Setting(method, refine=4, tolerance=METHODS[method]), 64, balance=True)
@@ -91,8 +91,7 @@ def test_damping_only_takes_energy(law, method):
     assert np.diff(lost).min() > -1e-6 * lost[-1]
 
 
-@pytest.mark.parametrize(("knobs", "method"), [({"dissipation": "none"}, "dop853"), ({"D": 0.0, "kappa": 0.002, "F0": 2.0}, "dop853"),
-                                               ({"dissipation": "none"}, "rk4-split")])
+@pytest.mark.parametrize(("knobs", "method"), [({"D": 0.0, "kappa": 0.002, "F0": 2.0}, "dop853"), ({"dissipation": "none"}, "rk4-split")])
 def test_without_damping_nothing_is_lost_and_the_chain_keeps_what_the_driver_gave(knobs, method):
     """Q = 0, and E − E(0) = W."""
     engine = Engine(chain("none", "allowed", 0.0, 0.0).evolve(**knobs),
