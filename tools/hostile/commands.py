@@ -121,7 +121,7 @@ class Child:
             (self._folder / name).write_text(content, encoding="utf-8")
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, str(self._folder)), daemon=True)
+        self._process = context.Process(target=_serve, args=(theirs, str(self._folder)))
         self._process.start()
         theirs.close()
 

@@ -41,7 +41,7 @@ FORCE_FREE = (
            "        if tension.force_free[c] > 1:\n            put_primitive(", "G of a force-free contact is the law's in the motion alone",
            k.FORCE_FREE),
     Mutant("force-free-account-of-the-law", _TENSION, "        return tension.offset[c] + tension.slope[c] * overlap(slots.preload, y, c)\n",
-           "        return primitive(slots.dissipation, d)\n", "a force-free contact keeps the law's G, and its force takes the straight one", k.CUT_LAWS),
+           "        return primitive(slots.dissipation, d)\n", "a force-free contact keeps the law's G, and its force takes the straight one", k.FORCE_FREE),
     Mutant("force-free-force-told", _TENSION, "return 0.0 if tension.force_free[c] != 0 else force", "return force",
            "a force-free contact reports the difference of two dampings", k.CUT_LAWS),
     Mutant("force-free-loss-forgotten", _TENSION, "lost += elastic_energy(", "lost += 0.0 * elastic_energy(",

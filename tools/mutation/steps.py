@@ -123,7 +123,7 @@ CLOCK = (
            "samples.velocity[row, i] = y[n + 3 + i]", "velocities are reported without the dashpots' part", k.REFERENCE),
     Mutant("elastic-peak-of-first-contact", _SAMPLING, "elastic_force(slots.chain.stiffness[last], d))",
            "elastic_force(slots.chain.stiffness[0], d))", "the elastic output force is that of a bead, not of the wall",
-           k.CLAIMS_RUN),
+           k.SIMD_LONG),
     Mutant("peak-between-samples", "kernels/forces/peaks.py", "x = 0.0 - first / second", "x = first / second",
            "the top of a force is looked for on the wrong side", k.UNLIKE),
 )

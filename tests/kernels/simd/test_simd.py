@@ -16,7 +16,7 @@ from granchain_core.steady.settling.alone import steady_state
 from granchain_core.stop import Stop
 
 CHAINS: list[dict[str, object]] = [
-    {}, {"N": 1}, {"N": 2}, {"N": 6}, {"N": 7}, {"N": 14}, {"N": 100}, {"kappa": 0.001},
+    {}, {"N": 1}, {"N": 2}, {"N": 6}, {"N": 7}, {"N": 14}, {"N": 100, "f": 150.0, "wall": 0.1}, {"kappa": 0.001},
     {"dissipation": "tsuji", "F0": 0.5}, {"dissipation": "tsuji", "F0": 5.0},
     {"dissipation": "kuwabara-kono", "kappa": 0.001, "wall": "rigid"},
 ]
