@@ -57,10 +57,10 @@ class StroboscopicMap:
     Raises `BadInput` for a scene that cuts tension: only open and pressed contacts are implemented.
     """
 
-    def __init__(self, scene: Scene, periods: int, stop: Stop | None = None) -> None:
+    def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, tolerance: float = TOLERANCE) -> None:
         refuse_undriven(scene)
         refuse_cut(scene)
-        self.engine = Engine(scene, certified(TOLERANCE), 1, stop=stop)
+        self.engine = Engine(scene, certified(tolerance), 1, stop=stop)
         self.periods = periods
         row = self.engine.lowered.bodies
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...stop import Stop
-from ..flow import Flow, StroboscopicMap, least_period, relative_change
+from ..flow import TOLERANCE, Flow, StroboscopicMap, least_period, relative_change
 from .axis import KnobAxis
 
 #: Relative residual at which Newton's method stops.
@@ -26,6 +26,8 @@ _MOST = 8
 _LAST = 1e-6
 #: Such a step is taken if the residual is below this.
 _NEAR = 1e-4
+#: Tolerance of the first map, from which a Newton step begins that is not the last: half the work of the final one.
+_ROUGH = 1e-10
 #: Difference in p: between the curvature of the map and its rounding (1e-13).
 _DIFFERENCE = 1e-6
 
@@ -60,9 +62,10 @@ class BranchEquations:
         """The knob's value in z."""
         return self.axis.value(float(z[-1]))
 
-    def stroboscopic_map(self, value: float, periods: int | None = None) -> StroboscopicMap:
+    def stroboscopic_map(self, value: float, periods: int | None = None,
+                         tolerance: float = TOLERANCE) -> StroboscopicMap:
         """The map at a knob value, always a new one, so that equal calls give equal bits."""
-        return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop)
+        return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop, tolerance)
 
     def least_period(self, x: np.ndarray, value: float) -> int:
         """The drive periods after which the orbit through x repeats, at most `period`."""
@@ -73,15 +76,16 @@ class BranchEquations:
         """The branch's point in the plane through z across `normal`, at most `farthest` from z.
 
         `slope` is P_p nearby, where it is known. Each Newton step but the last is followed by one that reuses its
-        derivative, since the map alone is cheaper. Raises `NumbersFailed` with the residuals where the method
-        does not converge.
+        derivative, since the map alone is cheaper. The first map is a rough one, the last never. Raises
+        `NumbersFailed` with the residuals where the method does not converge.
         """
         start, residuals = z, list[float]()
-        for _ in range(_MOST):
+        for number in range(_MOST):
             value, x = self.value(z), self.state(z)
-            flow = self.stroboscopic_map(value)(x)
+            rough = number == 0 and slope is not None
+            flow = self.stroboscopic_map(value, tolerance=_ROUGH if rough else TOLERANCE)(x)
             residuals.append(relative_change(flow.end - x, x))
-            if residuals[-1] <= GOOD or (len(residuals) > 2 and residuals[-1] > 0.3 * residuals[-2]):
+            if not rough and (residuals[-1] <= GOOD or (len(residuals) > 2 and residuals[-1] > 0.3 * residuals[-2])):
                 break
             slope = self._knob_slope(x, value, flow) if slope is None else slope
             matrix = self._matrix(flow, slope, normal)
@@ -89,7 +93,7 @@ class BranchEquations:
             if not np.linalg.norm(z - start) <= farthest:
                 raise NumbersFailed(f"Newton's method went {np.linalg.norm(z - start):.1e} away after residuals "
                                     f"{formatted(residuals)}.", "no-convergence")
-            if residuals[-1] > _LAST:
+            if rough or residuals[-1] > _LAST:
                 change = self.stroboscopic_map(self.value(z)).end(self.state(z)) - self.state(z)
                 if relative_change(change, self.state(z)) < _NEAR:
                     z = z - np.linalg.solve(matrix, np.append(change, (z - start) @ normal))

@@ -24,9 +24,13 @@ WIDTH = 1e-5
 #: The tangents at both ends of a bracket meet within this factor times its length, because the branch turns by at most
 #: 30° in a step (walk.py).
 _SIDE = 1.25
-#: Offsets of the next orbit from the root of the test function, as fractions of the bracket, on alternating sides so
-#: that it closes from both; None means the middle. A narrower bracket is straighter, so the second two are smaller.
-_BESIDE = (0.02, -0.02, 0.003, -0.003, None, 0.02, -0.02)
+#: Offset of the next orbit from the root of the straight line through the test function, as a fraction of the bracket.
+_BESIDE = 0.02
+#: The offset from the root of the parabola, where a third value is known: of the width that is narrow enough, and of
+#: the distance between both roots, since the parabola's error is a small part of the line's.
+_OF_WIDTH, _OF_ERROR = 0.4, 0.1
+#: Every so many levels the middle is taken, whatever the test function says.
+_MIDDLE = 5
 #: Most levels of bisection between two neighbours; the interval is then taken as it is.
 _DEEPEST = 60
 
@@ -54,25 +58,33 @@ class SpecialPoint:
 
 def special_between(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between) -> list[SpecialPoint]:
     """All special points between neighbours a and b, in their order."""
-    brackets = _brackets(axis, a, b, between, 0)
+    brackets = _brackets(axis, a, b, between)
     found = [special for bracket in brackets for special in _classified(axis, *bracket)]
     return _merged(found)
 
 
-def _brackets(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between,
-              depth: int) -> list[tuple[BranchPoint, BranchPoint]]:
+def _brackets(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between, depth: int = 0,
+              beyond: BranchPoint | None = None) -> list[tuple[BranchPoint, BranchPoint]]:
+    """Narrow brackets of all changes between a and b; `beyond` is an orbit next to one of them outside."""
     if a.signature == b.signature:
         return []
     if _narrow(axis, a, b) or depth >= _DEEPEST:
         return [(a, b)]
-    middle = between(a, b, _fraction(a, b, depth))
-    return [*_brackets(axis, a, middle, between, depth + 1), *_brackets(axis, middle, b, between, depth + 1)]
+    middle = between(a, b, _fraction(axis, a, b, depth, beyond))
+    return [*_brackets(axis, a, middle, between, depth + 1, b), *_brackets(axis, middle, b, between, depth + 1, a)]
 
 
 def _narrow(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> bool:
+    return _width(axis, a, b) <= _wanted(axis, a, b)
+
+
+def _width(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
     low, high = _interval(axis, a, b)
-    width = max(high, a.knob, b.knob) - min(low, a.knob, b.knob)
-    return width <= WIDTH * max(abs(a.knob), abs(b.knob), 1e-3 * axis.high)
+    return max(high, a.knob, b.knob) - min(low, a.knob, b.knob)
+
+
+def _wanted(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
+    return WIDTH * max(abs(a.knob), abs(b.knob), 1e-3 * axis.high)
 
 
 def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, float]:
@@ -93,20 +105,37 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
     return float(np.hypot(np.linalg.norm(b.x - a.x) / np.sqrt(len(a.x)), moved))
 
 
-def _fraction(a: BranchPoint, b: BranchPoint, depth: int) -> float:
-    """Fraction of the next orbit: near the root of a test function, or the middle."""
-    beside, root = _BESIDE[depth % len(_BESIDE)], _root(a, b)
-    if beside is None or root is None:
-        return 0.5
-    return min(max(root + beside, 0.5 * abs(beside)), 1.0 - 0.5 * abs(beside))
+def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int, beyond: BranchPoint | None) -> float:
+    """Fraction of the next orbit: beside the root of a test function, towards the farther end, or the middle.
 
-
-def _root(a: BranchPoint, b: BranchPoint) -> float | None:
-    """Fraction at which the straight line through the test function's values vanishes."""
+    Two such orbits, one on each side, close the bracket. The first is beside the root of a straight line; with a third
+    value the root is known so well that the two can be as near as the bracket is to be narrow.
+    """
     values = _test_values(a, b)
-    if values is None or not values[0] * values[1] < 0.0:
+    if depth % _MIDDLE == _MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:
+        return 0.5
+    root, beside = values[0] / (values[0] - values[1]), _BESIDE
+    better = None if beyond is None else _parabola_root(a, b, values, beyond)
+    if better is not None:
+        beside = _OF_WIDTH * _wanted(axis, a, b) / _width(axis, a, b) + _OF_ERROR * abs(better - root)
+        root, beside = better, min(beside, _BESIDE)
+    fraction = root + beside if root < 0.5 else root - beside
+    return min(max(fraction, 0.5 * beside), 1.0 - 0.5 * beside)
+
+
+def _parabola_root(a: BranchPoint, b: BranchPoint, values: tuple[float, float], beyond: BranchPoint) -> float | None:
+    """Fraction at which the parabola of the way over the test function's three values has its zero; None outside."""
+    one, other = (a, beyond) if beyond.arclength > b.arclength else (beyond, b)
+    outer = None if one.signature == other.signature else _test_values(one, other)
+    if outer is None:
         return None
-    return values[0] / (values[0] - values[1])
+    value = outer[1] if outer[0] == values[0] else outer[0] if outer[1] == values[1] else np.nan
+    way, (f, g) = b.arclength - a.arclength, values
+    if way == 0.0 or not np.isfinite(value) or value in (f, g):
+        return None
+    place = (beyond.arclength - a.arclength) / way
+    root = float(f * value / ((g - f) * (g - value)) + place * f * g / ((value - f) * (value - g)))
+    return root if 0.0 < root < 1.0 else None
 
 
 def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
