@@ -51,14 +51,17 @@ def do(arguments: argparse.Namespace) -> None:
     from pathlib import Path
 
     from granchain_core import fit
+    from granchain_core.fit.parameters import per_frequency
     from granchain_core.store import check_writable
 
     chosen = chosen_scene(arguments)
     check_picture(arguments.picture)
     if arguments.out:
         check_writable(arguments.out)
+    free = _free(arguments)  # what is wrong with the words is said before a file is read
     target = _target(arguments, chosen)
-    free = _free(arguments, target)
+    if arguments.per_frequency:
+        free = per_frequency(free, target.frequencies)
 
     def progress(count: int) -> None:
         if sys.stderr.isatty():
@@ -111,9 +114,9 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
     return SeriesTarget(found, arguments.error)
 
 
-def _free(arguments: argparse.Namespace, target: Any) -> list[Free]:
+def _free(arguments: argparse.Namespace) -> list[Free]:
     """The parameters that are fitted."""
-    from granchain_core.fit.parameters import free_of, per_frequency
+    from granchain_core.fit.parameters import free_of
 
     if not arguments.free:
         raise BadInput("Say what is fitted, for example --free A0=5e-6:14e-6 --free D=10:100.")
@@ -123,7 +126,7 @@ def _free(arguments: argparse.Namespace, target: Any) -> list[Free]:
         raise BadInput(f"--prior {next(iter(priors))} belongs to no --free.")
     if arguments.per_frequency and not any(one.name == "A0" for one in free):
         raise BadInput("--per-frequency needs --free A0=low:high.")
-    return per_frequency(free, target.frequencies) if arguments.per_frequency else free
+    return free
 
 
 def _show(found: Fit) -> None:

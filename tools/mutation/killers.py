@@ -33,8 +33,9 @@ RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-close
 CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
 CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
 CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cut")
-CUT_LAWS = ("tests/physics/test_energy.py", "-k", "account_closes and kuwabara-kono-cut")
 FORCE_FREE = ("tests/numerics/test_force_free.py",)
+FORCE_FREE_ENERGY = ("tests/numerics/test_force_free.py", "tests/physics/test_energy.py", "-k",
+                     "force_free or account_closes and (linear-cut or kuwabara-kono-cut)")
 CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.
