@@ -38,10 +38,19 @@ def test_the_chain_moves_is_paused_and_moved_by_a_dragged_cursor(visit: Visit) -
     page.wait_for_function(f"pixels('chain') !== {still}")
 
 
+# Counts the animation frames that the page asks for.
+FRAMES_ASKED = """
+const ask = window.requestAnimationFrame;
+window.asked = 0;
+window.requestAnimationFrame = (act) => { window.asked += 1; return ask.call(window, act); };
+"""
+
+
 def test_for_visitors_who_want_less_motion_the_chain_waits(visit: Visit) -> None:
-    page = visit(reduced_motion="reduce")
+    page = visit(reduced_motion="reduce", script=FRAMES_ASKED)
     settled(page)
     page.wait_for_function(STANDS_STILL)
+    at_rest(page, "asked")  # a page that stands still asks for no animation frames
     play = page.get_by_role("button", name="Play or pause")
     expect(play).to_contain_text("play")
     page.get_by_role("button", name="The run goes on").click()
