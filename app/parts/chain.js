@@ -36,12 +36,22 @@ class Chain {
     this.crosshair = new Crosshair(this.clock, this.cursor);
     this.sound = new Sound();
     this.dirty = true;
+    this.asked = 0; // the animation frame that was asked for
     this.narrow = null; // as the server was last told; null before it was
   }
 
   // Has the next animation frame draw the chain anew.
   mark() {
     this.dirty = true;
+    this.wake();
+  }
+
+  // Asks for an animation frame. Each asks for the next while the chain moves; one that stands still costs nothing.
+  wake() {
+    this.asked ||= requestAnimationFrame((now) => {
+      this.asked = 0;
+      this.tick(now);
+    });
   }
 
   measure() {
@@ -162,7 +172,7 @@ class Chain {
     this.clock.moveTo(((row / frames.samples + 1) % periods) / periods);
   }
 
-  // In every animation frame.
+  // In an animation frame.
   tick(now) {
     const page = window.granchain;
     this.clock.tick(now, page.lost);
@@ -174,7 +184,7 @@ class Chain {
       this.dirty = false;
     }
     page.phase = frames && !frames.live ? row / frames.samples : 0; // in drive periods
-    requestAnimationFrame((later) => this.tick(later));
+    if (moving) this.wake();
   }
 
   // Tells the server that the page is complete and the first picture may come.
@@ -189,8 +199,10 @@ function listen(chain) {
   const page = window.granchain;
   const { clock } = chain;
   page.on("play", (playing) => {
-    clock.playing = playing;
+    clock.play(playing);
+    chain.wake();
   });
+  page.on("lost", () => chain.wake());
   page.on("speed", (speed) => {
     clock.speed = speed;
   });
@@ -210,7 +222,7 @@ export function render({ model }) {
   document.addEventListener("visibilitychange", () => {
     if (!document.hidden) model.send_msg({ do: "page-visible" });
   });
-  requestAnimationFrame((now) => chain.tick(now));
+  chain.wake();
   setTimeout(() => chain.begin(), 0);
   return chain.canvas;
 }

@@ -22,6 +22,12 @@ export class Clock {
     this.frames = frames;
   }
 
+  // From now on: the time for which it stood still does not count.
+  play(playing) {
+    this.playing = playing;
+    this.last = performance.now();
+  }
+
   tick(now, stopped) {
     const seconds = Math.min(0.1, (now - this.last) / 1000);
     this.last = now;

@@ -40,8 +40,8 @@ def opened(page: Page) -> Locator:
     return sheet
 
 
-def test_the_status_line_says_asked_reached_and_how_long(visit: Visit) -> None:
-    page = visit()
+def says_asked_reached_and_how_long(page: Page) -> None:
+    """The status line, for the accuracy as it is and for another one; the page is left as it was."""
     line = page.get_by_role("button", name="asked")
     expect(line).to_contain_text("asked 1e-6 · reached")
     type_into(page, "accuracy", "1e-9")
@@ -49,10 +49,13 @@ def test_the_status_line_says_asked_reached_and_how_long(visit: Visit) -> None:
     words = line.inner_text().split(" · ")
     assert float(words[1].removeprefix("reached ")) <= 1e-9
     assert words[2].endswith((" ms", " s"))
+    type_into(page, "accuracy", "1e-6")
+    expect(line).to_contain_text("asked 1e-6 · reached")
 
 
 def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     page = visit()
+    says_asked_reached_and_how_long(page)
     sheet = opened(page)
     expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
     methods = page.evaluate(POINTS)
@@ -87,39 +90,13 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     until(page, told)
     for words in ("live steps", "error", "s, ", "evaluations", "order 3.9"):
         expect(tip).to_contain_text(words)
+    page.mouse.move(0, 0)
+    naive_force_lies_over_the_certified_one(page, sheet)
+    fits(page, sheet)
 
 
-def test_a_measurement_is_stopped_and_its_points_stay(visit: Visit) -> None:
-    page = visit("?v=1&scene=rig")
-    sheet = opened(page)
-    sheet.get_by_role("button", name="stop").click()
-    expect(sheet).to_contain_text("stopped")
-    expect(sheet.get_by_role("button", name="measure again")).to_be_visible()
-    assert sum(at_rest(page, f"({POINTS})()", still=1500).values()) > 0
-    # the next one begins: the stopped one, which would take minutes, has really ended
-    sheet.get_by_role("button", name="measure again").click()
-    expect(sheet).to_contain_text("measuring")
-
-
-def test_a_moved_knob_greys_the_picture_until_it_is_measured_again(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=2000")
-    sheet = opened(page)
-    expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
-    type_into(page, "D", "90")
-    expect(sheet.locator(".stale")).to_be_visible()
-    expect(sheet).to_contain_text("measured for another chain")
-    type_into(page, "D", "100")
-    expect(sheet.locator(".stale")).to_have_count(0)
-    type_into(page, "D", "80")
-    sheet.get_by_role("button", name="measure again").click()
-    expect(sheet.locator(".stale")).to_have_count(0)
-    page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
-    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where all is measured already
-
-
-def test_the_naive_force_is_drawn_over_the_certified_one(visit: Visit) -> None:
-    page = visit()
-    sheet = opened(page)
+def naive_force_lies_over_the_certified_one(page: Page, sheet: Locator) -> None:
+    """It is dashed, has as many points, and its error is said for the chosen steps."""
     expect(sheet.locator(".naive canvas").first).to_be_visible()
     drawn = naive_line(page)
     assert drawn["certified"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
@@ -131,16 +108,31 @@ def test_the_naive_force_is_drawn_over_the_certified_one(visit: Visit) -> None:
     assert said.inner_text() != first
 
 
-def test_steps_that_blow_up_are_told(visit: Visit) -> None:
+def fits(page: Page, sheet: Locator) -> None:
+    """At every size the figure is inside the window."""
+    for width, height in ((1280, 800), (1920, 1080), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        box = sheet.locator(".work .picture").bounding_box()
+        assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
+
+
+def test_steps_that_blow_up_are_told_and_a_stopped_measurement_keeps_its_points(visit: Visit) -> None:
     page = visit("?v=1&scene=rig")
     sheet = opened(page)
-    sheet.get_by_label("its steps in a drive period").select_option("100")
+    sheet.get_by_label("its steps in a drive period").select_option("100")  # steps that blow up are told
     expect(sheet.locator(".naive p")).to_contain_text("nothing would have been drawn")
     assert naive_line(page)["naive"] == 0
     sheet.get_by_role("button", name="stop").click()
+    expect(sheet).to_contain_text("stopped")
+    expect(sheet.get_by_role("button", name="measure again")).to_be_visible()
+    assert sum(at_rest(page, f"({POINTS})()", still=1500).values()) > 0
+    # the next one begins: the stopped one, which would take minutes, has really ended
+    sheet.get_by_role("button", name="measure again").click()
+    expect(sheet).to_contain_text("measuring")
 
 
-def test_its_tab_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
+def test_its_tab_opens_the_page_and_a_moved_knob_greys_it_until_it_is_measured_again(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=2000")
     page.get_by_role("tab", name="accuracy").click()
     expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
@@ -150,14 +142,15 @@ def test_its_tab_has_a_small_one_that_opens_the_page(visit: Visit) -> None:
     assert page.evaluate(POINTS)
     page.keyboard.press("Escape")
     expect(page.locator("#overlay")).to_be_hidden()
-
-
-def test_the_page_fits(visit: Visit) -> None:
-    page = visit()
     sheet = opened(page)
-    for width, height in ((1280, 800), (1920, 1080), (390, 844)):
-        page.set_viewport_size({"width": width, "height": height})
-        assert page.evaluate("document.documentElement.scrollWidth") == width
-        box = sheet.locator(".work .picture").bounding_box()
-        assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
+    expect(sheet.get_by_role("button", name="measure again")).to_be_visible(timeout=COMPILED)
+    type_into(page, "D", "90")
+    expect(sheet.locator(".stale")).to_be_visible()
+    expect(sheet).to_contain_text("measured for another chain")
+    type_into(page, "D", "100")
+    expect(sheet.locator(".stale")).to_have_count(0)
+    type_into(page, "D", "80")
+    sheet.get_by_role("button", name="measure again").click()
+    expect(sheet.locator(".stale")).to_have_count(0)
+    page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
     sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where all is measured already

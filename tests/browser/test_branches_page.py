@@ -12,9 +12,12 @@ from started import at_rest, until
 
 #: A short chain whose branch is followed in seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
-#: The kinds of special points that were found; the orbits of an arm.
+#: The kinds of special points that were found; how many orbits the large figure has; the orbits of an arm.
 SPECIAL = ("['fold', 'period_doubling', 'neimark_sacker', 'grazing']"
            ".filter((kind) => granchain.branches.data.rows[kind]?.x.length)")
+COUNT = """(Object.values(Bokeh.index.roots ?? Bokeh.index)
+  .filter(({ model }) => model.name === "branches" && model.toolbar_location !== null).at(-1)
+  ?.model.document?.get_model_by_name("orbits")?.data.x ?? []).length"""
 ORBITS = "granchain.branches.data.rows.orbits"
 
 
@@ -36,11 +39,24 @@ def followed(page: Page) -> Locator:
     return sheet
 
 
+def grows_without_being_made_anew(page: Page) -> None:
+    """Its figure takes new orbits as they come; another theme is another figure, with the same points."""
+    grown = f"() => {COUNT} > %d"
+    page.evaluate("window.kept = granchain.branches.figures[0].document")
+    before = page.evaluate(COUNT)
+    page.wait_for_function(grown % (before + 5), polling=100)
+    assert page.evaluate("kept === granchain.branches.figures[0].document")
+    page.evaluate("granchain.nextTheme()")
+    page.wait_for_function("granchain.branches.figures[0].document && kept !== granchain.branches.figures[0].document")
+    page.wait_for_function(grown % (before + 5), polling=100)
+
+
 def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     page = visit()
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
     sheet = followed(page)
     expect(sheet).to_contain_text("now at")
+    grows_without_being_made_anew(page)
     page.wait_for_function(f"{SPECIAL}.length > 1 && {ORBITS}.stable.includes(0)")
     sheet.get_by_role("button", name="stop").click()
     expect(sheet).to_contain_text("stopped; the orbits found so far are kept")
@@ -54,18 +70,6 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
         assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.branches.data.lines.{kind}.x.length") > 0
     page.keyboard.press("Escape")
     until(page, lambda: source(page, "branches", "orbits", large=False).get("x") == source(page, "branches", "orbits")["x"])
-
-
-def test_a_figure_grows_without_being_made_anew(visit: Visit) -> None:
-    page = visit()
-    followed(page)
-    page.evaluate("window.kept = granchain.branches.figures[0].document")
-    before = len(source(page, "branches", "orbits")["x"])
-    until(page, lambda: len(source(page, "branches", "orbits")["x"]) > before + 5)
-    assert page.evaluate("kept === granchain.branches.figures[0].document")
-    page.evaluate("granchain.nextTheme()")  # another theme is another figure, with the same points
-    page.wait_for_function("granchain.branches.figures[0].document && kept !== granchain.branches.figures[0].document")
-    until(page, lambda: len(source(page, "branches", "orbits")["x"]) > before + 5)
 
 
 def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) -> None:
@@ -116,10 +120,16 @@ LONELY = """(stable) => {
 }"""
 
 
-def test_moved_knobs_grey_the_branch_and_say_so(visit: Visit) -> None:
-    page = visit(SHORT)
+def test_the_page_fits_and_moved_knobs_grey_the_branch(visit: Visit) -> None:
+    page = visit(SHORT, viewport={"width": 390, "height": 844})
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
     sheet = followed(page)
+    assert source(page, "branches", "stable")["x"]
+    for width, height in ((390, 844), (1280, 800)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        box = sheet.locator(".work .picture").bounding_box()
+        assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200
     sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where the branch is complete already
     damping = field(page, "D")
     damping.fill("90")
@@ -138,13 +148,3 @@ def test_a_chain_without_such_an_orbit_is_told_in_a_sentence(visit: Visit) -> No
     sheet.get_by_role("button", name="follow from here").click()
     expect(sheet.locator(".warn")).to_contain_text("found no orbit of 1 drive periods", timeout=COMPILED)
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
-
-
-@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
-def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
-    page = visit(SHORT, viewport={"width": size[0], "height": size[1]})
-    sheet = followed(page)
-    assert page.evaluate("document.documentElement.scrollWidth") == size[0]
-    assert source(page, "branches", "stable")["x"]
-    box = sheet.locator(".work .picture").bounding_box()
-    assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > 200

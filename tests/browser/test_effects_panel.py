@@ -36,9 +36,13 @@ ROWS_SEEN = """(body, name) => {
 }"""
 
 
-def test_switching_the_dashpot_changes_equation_slots_and_cost(visit: Visit) -> None:
+def test_switches_change_equation_slots_and_cost(visit: Visit) -> None:
     page = visit()
+    page.locator("[role=tabpanel]").evaluate(ROWS_SEEN, "account")
     tab = panel(page)
+    expect(effect(tab, "account").locator(".cost").first).to_contain_text("ns", timeout=COMPILED)
+    first = page.evaluate("rowsSeen")[0]  # a cost is not there before it was measured
+    assert not re.search(r"\d ns", first) and re.search("not measured yet|measuring|compiling", first), first
     expect(page.locator("#equation")).to_contain_text("D")
     expect(effect(tab, "dashpot")).to_contain_text("LinearDashpot")
     expect(effect(tab, "dashpot").locator(".cost").nth(1)).to_contain_text("ns", timeout=COMPILED)
@@ -51,30 +55,13 @@ def test_switching_the_dashpot_changes_equation_slots_and_cost(visit: Visit) -> 
     page.get_by_role("switch", name="contact damping").click()
     expect(effect(tab, "dashpot")).to_contain_text("LinearDashpot")
     expect(page.locator("#equation")).to_contain_text("D")
-
-
-def test_a_cost_is_not_there_before_it_was_measured(visit: Visit) -> None:
-    page = visit()
-    page.locator("[role=tabpanel]").evaluate(ROWS_SEEN, "account")
-    tab = panel(page)
-    expect(effect(tab, "account").locator(".cost").first).to_contain_text("ns", timeout=COMPILED)
-    first = page.evaluate("rowsSeen")[0]
-    assert not re.search(r"\d ns", first) and re.search("not measured yet|measuring|compiling", first), first
-
-
-def test_the_foundation_comes_with_its_knob(visit: Visit) -> None:
-    page = visit()
-    tab = panel(page)
+    # the foundation comes with its knob
     page.get_by_role("switch", name="foundation").click()
     expect(effect(tab, "foundation")).to_contain_text("Foundation")
     expect(field(page, "kappa")).to_have_value("0.001")
     page.get_by_role("switch", name="foundation").click()
     expect(field(page, "k")).to_have_value("0")
-
-
-def test_the_energy_account_is_told_in_the_status_line(visit: Visit) -> None:
-    page = visit()
-    tab = panel(page)
+    # the energy account is told in the status line
     expect(activity(tab, "energy account")).to_contain_text("switched off")
     page.get_by_role("switch", name="energy account").click()
     expect(effect(tab, "account")).to_contain_text("Balance")

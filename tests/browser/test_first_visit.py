@@ -31,14 +31,6 @@ def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) ->
     expect(page.locator("#bar select").first).to_have_value("sec2")
 
 
-def test_everything_is_in_view_without_scrolling(visit: Visit) -> None:
-    page = visit()
-    size = page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
-    assert size == [1280, 800]
-    foot = page.locator("#foot").bounding_box()
-    assert foot is not None and foot["y"] + foot["height"] <= 800
-
-
 def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromium: Browser,
                                                             tmp_path: Path) -> None:
     with dashboard(tmp_path / "log", GRANCHAIN_CACHE=str(tmp_path / "cache"), NUMBA_OPT="1") as url:

@@ -64,7 +64,7 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     expect(page.locator("#tabs")).to_contain_text("1 of 16 cases run")
 
 
-def test_run_all_is_stopped_at_once(visit: Visit) -> None:
+def test_run_all_is_stopped_at_once_and_all_cases_fit(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
     sheet.get_by_role("button", name="run all").click()
@@ -74,11 +74,6 @@ def test_run_all_is_stopped_at_once(visit: Visit) -> None:
     expect(card(sheet, QUICK)).to_contain_text("stopped")
     expect(card(sheet, LONG)).to_contain_text("stopped")
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
-
-
-def test_the_page_fits(visit: Visit) -> None:
-    page = visit()
-    sheet = opened(page)
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
         page.set_viewport_size({"width": width, "height": height})
         assert page.evaluate("document.documentElement.scrollWidth") == width

@@ -1,12 +1,11 @@
-"""What enters and leaves the page: share links, other scenes, measured data, a saved picture."""
+"""What enters the page: share links, other scenes, measured data."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-import h5py
 from knobs import COMPILED, Visit, field, knob, settled, type_into
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 
 
 def test_a_shared_link_brings_the_picture_back(visit: Visit) -> None:
@@ -24,6 +23,7 @@ def test_the_address_follows_the_page_and_a_reload_keeps_everything(visit: Visit
     page = visit()
     page.locator("select.scene").select_option("fig3b")
     expect(field(page, "f")).to_have_value("1130")
+    expect(page.locator("#foot b")).to_contain_text("period 3")
     type_into(page, "f", "850")
     page.get_by_label("sweep down").click()
     expect(page.get_by_label("sweep down")).to_be_checked()
@@ -67,30 +67,6 @@ def test_a_bad_field_of_a_link_is_told_and_the_others_count(visit: Visit) -> Non
     assert knob(page, "f") == "615"
 
 
-def test_another_scene_can_be_opened(visit: Visit) -> None:
-    page = visit()
-    page.locator("select.scene").select_option("fig3b")
-    expect(field(page, "f")).to_have_value("1130")
-    expect(page.locator("#foot b")).to_contain_text("period 3")
-
-
-def test_measured_data_is_read_strictly(visit: Visit) -> None:
-    page = visit("?v=1&scene=rig")
-    page.get_by_role("tab", name="data").click()
-    chosen = page.locator('input[type="file"]')
-    good = b"frequency_Hz,force_N,error_N\n40,5.5,0.4\n60,12.1,0.6\n"
-    chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": good})
-    expect(page.locator("#tabs")).to_contain_text("2 points")
-    bad = b"frequency_Hz,force_N\n40,5.5\n60,twelve\n"
-    chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": bad})
-    expect(page.get_by_role("alert").filter(has_text="Line 3")).to_be_visible()
-    # the largest file that is sent, in the characters that take most room in a message: refused, not disconnected
-    chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_000})
-    expect(page.get_by_role("alert").filter(has_text="Line 1")).to_be_visible()
-    chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_001})
-    expect(page.get_by_role("alert").filter(has_text="larger than 2 MB")).to_be_visible()
-
-
 def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit, tmp_path: Path) -> None:
     page = visit()
     page.get_by_role("tab", name="data").click()
@@ -110,6 +86,23 @@ def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit,
     download.value.save_as(tmp_path / "sample.csv")
     chosen.set_input_files(tmp_path / "sample.csv")
     expect(page.locator("#tabs")).to_contain_text("means of up to 3 repeats with their extremes")
+    is_read_strictly(page)
+
+
+def is_read_strictly(page: Page) -> None:
+    """A wrong line is named, and what is too large to be sent is refused before."""
+    chosen = page.locator('input[type="file"]')
+    good = b"frequency_Hz,force_N,error_N\n40,5.5,0.4\n60,12.1,0.6\n"
+    chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": good})
+    expect(page.locator("#tabs")).to_contain_text("2 points")
+    bad = b"frequency_Hz,force_N\n40,5.5\n60,twelve\n"
+    chosen.set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": bad})
+    expect(page.get_by_role("alert").filter(has_text="Line 3")).to_be_visible()
+    # the largest file that is sent, in the characters that take most room in a message: refused, not disconnected
+    chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_000})
+    expect(page.get_by_role("alert").filter(has_text="Line 1")).to_be_visible()
+    chosen.set_input_files({"name": "no.csv", "mimeType": "text/csv", "buffer": b"\x01" * 2_000_001})
+    expect(page.get_by_role("alert").filter(has_text="larger than 2 MB")).to_be_visible()
 
 
 def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit) -> None:
@@ -133,15 +126,3 @@ def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit
     expect(field(page, "f")).to_have_value("60")
     settled(page)
     assert page.locator(".maphost").get_attribute("data-same") == "1"
-
-
-def test_the_picture_can_be_saved(visit: Visit, tmp_path: Path) -> None:
-    page = visit()
-    settled(page)
-    with page.expect_download() as download:
-        page.get_by_role("button", name="Export").click()
-        page.get_by_role("button", name="everything, HDF5").click()
-    path = tmp_path / download.value.suggested_filename
-    download.value.save_as(path)
-    with h5py.File(path) as file:
-        assert file["run/displacement"].shape[1] == 11

@@ -87,9 +87,13 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     expect(page.locator("#tabs .maphost.stale")).to_have_count(0)
 
 
-def test_attractors_are_listed_and_one_is_loaded(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=893")
-    opened(page, large=False)
+def test_the_tab_fits_a_phone_attractors_are_listed_and_one_is_loaded(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=893", viewport={"width": 390, "height": 844})
+    box = opened(page, large=False).bounding_box()
+    assert page.evaluate("document.documentElement.scrollWidth") == 390 and overflow(page) <= 0
+    assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["height"] >= 150
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.evaluate("shown()")
     assert overflow(page) <= 0
     page.get_by_role("button", name="all attractors at this setting").click()
     rows = page.locator("#tabs .attractors tbody tr")
@@ -105,10 +109,3 @@ def test_attractors_are_listed_and_one_is_loaded(visit: Visit) -> None:
     page.get_by_role("tab", name="map", exact=True).click()
     until(page, lambda: len(source(page, "map", "cells").get("number", [])) > 0)
     expect(rows).to_have_count(3)
-
-
-def test_the_tab_fits_a_phone(visit: Visit) -> None:
-    page = visit(SMALL, viewport={"width": 390, "height": 844})
-    box = opened(page, large=False).bounding_box()
-    assert page.evaluate("document.documentElement.scrollWidth") == 390 and overflow(page) <= 0
-    assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["height"] >= 150

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-import pytest
 from playwright.sync_api import Locator, Page, expect
 from started import until
 
@@ -47,7 +46,7 @@ def test_figures_are_drawn_with_caption_and_rows(visit: Visit) -> None:
     assert page.evaluate("granchain.paper.figure.model('drive').background_fill_color") == "#161a21"
 
 
-def test_a_figure_is_given_up_when_the_page_is_left(visit: Visit) -> None:
+def test_a_figure_is_given_up_when_the_page_is_left_and_others_fit(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
     chosen(sheet, "9")  # the longest one: four curves
@@ -58,15 +57,12 @@ def test_a_figure_is_given_up_when_the_page_is_left(visit: Visit) -> None:
     expect(sheet.locator(".picture")).to_be_hidden()
     chosen(sheet, "1")
     expect(sheet.get_by_role("img", name="Figure 1")).to_be_visible()
-
-
-@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
-def test_the_page_fits(visit: Visit, size: tuple[int, int]) -> None:
-    page = visit(viewport={"width": size[0], "height": size[1]})
-    sheet = opened(page)
+    page.set_viewport_size({"width": 390, "height": 844})
     chosen(sheet, "4")
     picture = sheet.get_by_role("img", name="Figure 4")
     expect(picture.locator("canvas").first).to_be_visible()
-    assert page.evaluate("document.documentElement.scrollWidth") == size[0]
-    box = picture.bounding_box()
-    assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= size[0] and box["height"] > 200
+    for width, height in ((390, 844), (1280, 800)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        box = picture.bounding_box()
+        assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200

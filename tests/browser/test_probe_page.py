@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from drawn import source
 from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
@@ -37,19 +36,7 @@ def test_a_bead_of_the_chain_is_probed(visit: Visit) -> None:
     page.wait_for_function("granchain.probe.drawn.phase.strobe.data.x.length === 1")
 
 
-@pytest.mark.parametrize("bead", [1, 11])
-def test_a_bead_is_probed_by_its_column_of_the_map(visit: Visit, bead: int) -> None:
-    page = visit()
-    settled(page)
-    box = page.locator("#map").bounding_box()
-    assert box is not None
-    x = box["x"] + GAP + (box["width"] - 2 * GAP) * (bead - 0.5) / 11
-    page.mouse.click(x, box["y"] + TOP + 0.5 * (box["height"] - TOP - BOTTOM))
-    expect(page.locator("#tabs")).to_contain_text(f"Bead {bead} of 11")
-    expect(page.locator("#column")).to_be_visible()
-
-
-def test_a_drag_in_the_map_moves_time_and_probes_nothing(visit: Visit) -> None:
+def test_a_click_in_the_map_probes_the_bead_and_a_drag_moves_time(visit: Visit) -> None:
     page = visit()
     settled(page)
     box = page.locator("#map").bounding_box()
@@ -60,3 +47,8 @@ def test_a_drag_in_the_map_moves_time_and_probes_nothing(visit: Visit) -> None:
     page.mouse.up()
     expect(page.locator("#column")).to_be_hidden()
     expect(page.get_by_role("tab", name="stories")).to_have_attribute("aria-selected", "true")
+    for bead, time in ((1, 0.5), (11, 0.3)):  # where the cursor lies, it is what a click takes hold of
+        x = box["x"] + GAP + (box["width"] - 2 * GAP) * (bead - 0.5) / 11
+        page.mouse.click(x, box["y"] + TOP + time * (box["height"] - TOP - BOTTOM))
+        expect(page.locator("#tabs")).to_contain_text(f"Bead {bead} of 11")
+        expect(page.locator("#column")).to_be_visible()

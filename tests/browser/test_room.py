@@ -12,7 +12,6 @@ from started import until
 SIZES = ((1024, 768), (1180, 820), (1280, 800), (1280, 720), (1366, 768), (1440, 900), (1536, 864), (1920, 1080),
          (2560, 1440), (390, 844))
 WIDTHS = ((1280, 800), (1920, 1080), (390, 844))
-LOOKS = pytest.mark.parametrize("look", ["light", "projector"])
 
 # The title of every horizontal axis beside the map: its words, and how far its box is inside its picture on both sides.
 TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap(([id, name]) => {
@@ -39,6 +38,12 @@ BEADS = """() => {
 }"""
 
 
+def titles_are_whole(page: Page) -> None:
+    """Wait until the titles of the axes and the numbers of the beads are not cut; their step follows the width."""
+    page.wait_for_function(f"({TITLES})().every(([title, room]) => title && room >= 0)")
+    page.wait_for_function(f"({BEADS})() > 0")
+
+
 def fits(page: Page) -> None:
     """Wait until nothing is cut: titles and names follow a new size."""
     found: list[str] = []
@@ -53,18 +58,25 @@ def fits(page: Page) -> None:
         raise AssertionError(f"{page.viewport_size}: {found}") from None
 
 
-@pytest.mark.parametrize("look", ["light", "dark", "projector"])
 @pytest.mark.parametrize("scene", ["sec2", "fig11-founded"])
-def test_no_control_and_no_word_is_cut_hidden_or_covered(visit: Visit, scene: str, look: str) -> None:
-    page = visit(f"?v=1&scene={scene}&look={look}")
+def test_no_control_and_no_word_is_cut_hidden_or_covered(visit: Visit, scene: str) -> None:
+    page = visit(f"?v=1&scene={scene}&look=light")
     page.wait_for_selector(".chapters button", timeout=COMPILED)
-    for width, height in SIZES:
-        page.set_viewport_size({"width": width, "height": height})
-        fits(page)
+    for look in ("light", "dark", "projector"):
+        expect(page.locator("html")).to_have_attribute("data-theme", look)
+        for width, height in SIZES:
+            page.set_viewport_size({"width": width, "height": height})
+            fits(page)
+        page.set_viewport_size({"width": 1920, "height": 1080})  # where the bar has room for its button
+        page.get_by_role("button", name="Theme: light, dark, projector").click()
 
 
-def test_what_the_bar_has_no_room_for_is_in_its_menu(visit: Visit) -> None:
+def test_the_projector_has_whole_titles_and_on_a_phone_a_menu(visit: Visit) -> None:
+    """The menu has what the bar has no room for."""
     page = visit("?look=projector", viewport={"width": 390, "height": 844})
+    for width, height in (WIDTHS[-1], *WIDTHS):  # the phone is the last of them, and the first here
+        page.set_viewport_size({"width": width, "height": height})
+        titles_are_whole(page)
     theme = page.get_by_role("button", name="Theme: light, dark, projector")
     expect(theme).to_be_hidden()
     page.get_by_role("button", name="More controls").click()
@@ -77,32 +89,24 @@ def test_what_the_bar_has_no_room_for_is_in_its_menu(visit: Visit) -> None:
     expect(page.locator("select.scene option:checked")).to_have_text("sec2 — Section 2: eleven steel beads, driven")
 
 
-def test_words_grow_with_the_screen(visit: Visit) -> None:
+def test_titles_and_words_follow_the_window(visit: Visit) -> None:
     page = visit("?look=light")
-    for width, height, least in ((1280, 800, 15.0), (1920, 1080, 18.0), (2560, 1440, 21.0)):
-        page.set_viewport_size({"width": width, "height": height})
-        page.wait_for_function("least => parseFloat(getComputedStyle(document.querySelector('#foot')).fontSize) >= least", arg=least)
-
-
-@LOOKS
-def test_the_titles_of_the_axes_are_whole(visit: Visit, look: str) -> None:
-    page = visit(f"?look={look}")
+    assert page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]") == [1280, 800]
+    foot = page.locator("#foot").bounding_box()
+    assert foot is not None and foot["y"] + foot["height"] <= 800  # all is in view without scrolling
     for width, height in WIDTHS:
         page.set_viewport_size({"width": width, "height": height})
         words = ("in (", "out (") if width == 390 else ("input force (", "output force (")
-        if look == "light":
-            page.wait_for_function(f"([input, output]) => (({TITLES})()[1][0].startsWith(input)"
-                                   f" && ({TITLES})()[2][0].startsWith(output))", arg=list(words))
-        page.wait_for_function(f"({TITLES})().every(([title, room]) => title && room >= 0)")
-        page.wait_for_function(f"({BEADS})() > 0")  # the step follows the width
-
-
-def test_the_titles_follow_the_window(visit: Visit) -> None:
-    page = visit()
+        page.wait_for_function(f"([input, output]) => (({TITLES})()[1][0].startsWith(input)"
+                               f" && ({TITLES})()[2][0].startsWith(output))", arg=list(words))
+        titles_are_whole(page)
     page.set_viewport_size({"width": 900, "height": 800})
     page.wait_for_function(f"({TITLES})()[1][0].startsWith('in (')")
     page.set_viewport_size({"width": 1280, "height": 800})
     page.wait_for_function(f"({TITLES})()[1][0].startsWith('input force (')")
+    for width, height, least in ((1280, 800, 15.0), (1920, 1080, 18.0), (2560, 1440, 21.0)):
+        page.set_viewport_size({"width": width, "height": height})
+        page.wait_for_function("least => parseFloat(getComputedStyle(document.querySelector('#foot')).fontSize) >= least", arg=least)
 
 
 @pytest.mark.parametrize("knobs", ["", "&dissipation=tsuji&tension=cut&F0=1"])

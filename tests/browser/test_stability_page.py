@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from drawn import place, source, tooltips
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Locator, Page, expect
@@ -100,7 +99,7 @@ def test_the_observer_is_a_second_set_and_off_at_first(visit: Visit) -> None:
     expect(sheet.locator(".say")).to_contain_text("Its observer is unstable, |μ| 4.42")
 
 
-def test_multipliers_leave_a_trail_and_the_evidence_follows(visit: Visit) -> None:
+def test_the_page_follows_the_knobs_and_the_window(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
     until(page, lambda: marks(page, "within") == 22)
@@ -110,11 +109,18 @@ def test_multipliers_leave_a_trail_and_the_evidence_follows(visit: Visit) -> Non
     table = sheet.locator(".evidence")
     for words in ("distance to the orbit", "Newton's residual", "Liouville", "disturbance carried", "settled by"):
         expect(table).to_contain_text(words)
+    fits(page, sheet)
+    page.set_viewport_size({"width": 1280, "height": 800})
+    type_into(page, "f", "1130")
+    section_follows_bead_and_phase(page, sheet)
+    # a live run has no multipliers
+    page.get_by_role("button", name="The run goes on").click()
+    expect(sheet.locator(".say")).to_contain_text("a live run is under way")
+    assert marks(page, "within") == marks(page, "outside") == 0
 
 
-def test_the_section_follows_bead_and_phase(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=1130")
-    sheet = opened(page)
+def section_follows_bead_and_phase(page: Page, sheet: Locator) -> None:
+    """At the 1:3 resonance the orbit is three points; another bead or phase has another way to it."""
     until(page, lambda: len(source(page, "section", "orbit").get("u", ())) == 3)
     first = source(page, "section", "way")
     assert len(first["u"]) > 20
@@ -126,6 +132,18 @@ def test_the_section_follows_bead_and_phase(visit: Visit) -> None:
     expect(sheet.locator("output")).to_have_text("0.25 T")
     until(page, lambda: source(page, "section", "way")["u"] != second["u"])
     assert len(source(page, "section", "orbit")["u"]) == 3
+
+
+def fits(page: Page, sheet: Locator) -> None:
+    """At every size the pictures are inside the window, and on a large one the search too."""
+    for width, height in ((1280, 800), (1920, 1080), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") == width
+        for name, least in ((".plane .picture", 200), (".motion .picture", 130), (".poincare .picture", 130)):
+            box = sheet.locator(name).bounding_box()
+            assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > least
+        search = sheet.get_by_role("button", name="search").bounding_box()
+        assert search is not None and (width < 500 or search["y"] + search["height"] <= height)
 
 
 def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: Visit) -> None:
@@ -146,30 +164,23 @@ def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: 
     expect(sheet.locator(".searched")).to_be_hidden()
 
 
-def test_a_live_run_has_none(visit: Visit) -> None:
-    page = visit()
-    sheet = opened(page)
-    page.get_by_role("button", name="The run goes on").click()
-    expect(sheet.locator(".say")).to_contain_text("a live run is under way")
-    assert marks(page, "within") == marks(page, "outside") == 0
+def test_all_tabs_fit_and_arrows_reach_them(visit: Visit) -> None:
+    page = visit(viewport={"width": 390, "height": 844})
+    for width in (390, 1280):
+        page.set_viewport_size({"width": width, "height": 844})
+        page.evaluate("shown()")
+        tabs_fit(page, width)
+        page.get_by_role("tab", name="look at").focus()
+        page.keyboard.press("ArrowRight")
+        expect(page.get_by_role("tab", name="regimes")).to_be_focused()
+        page.keyboard.press("End")
+        expect(page.get_by_role("tab").last).to_have_attribute("aria-selected", "true")
+        page.keyboard.press("Home")
+        expect(page.get_by_role("tab", name="stories")).to_be_focused()
 
 
-def test_the_page_fits(visit: Visit) -> None:
-    page = visit()
-    sheet = opened(page)
-    for width, height in ((1280, 800), (1920, 1080), (390, 844)):
-        page.set_viewport_size({"width": width, "height": height})
-        assert page.evaluate("document.documentElement.scrollWidth") == width
-        for name, least in ((".plane .picture", 200), (".motion .picture", 130), (".poincare .picture", 130)):
-            box = sheet.locator(name).bounding_box()
-            assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > least
-        search = sheet.get_by_role("button", name="search").bounding_box()
-        assert search is not None and (width < 500 or search["y"] + search["height"] <= height)
-
-
-@pytest.mark.parametrize("width", [1280, 390])
-def test_all_tabs_fit_and_arrows_reach_them(visit: Visit, width: int) -> None:
-    page = visit(viewport={"width": width, "height": 844})
+def tabs_fit(page: Page, width: int) -> None:
+    """No tab leaves its place, and their rows are not too many."""
     tabs = page.locator("#tabs [role=tablist]")
     edge = page.locator("#tabs").bounding_box()
     assert edge is not None
@@ -179,10 +190,3 @@ def test_all_tabs_fit_and_arrows_reach_them(visit: Visit, width: int) -> None:
     box = tabs.bounding_box()
     # a row for each group, or one more; on a phone a row is as high as a finger is wide
     assert box is not None and box["height"] < (105 if width == 1280 else 5 * 46)
-    page.get_by_role("tab", name="look at").focus()
-    page.keyboard.press("ArrowRight")
-    expect(page.get_by_role("tab", name="regimes")).to_be_focused()
-    page.keyboard.press("End")
-    expect(page.get_by_role("tab").last).to_have_attribute("aria-selected", "true")
-    page.keyboard.press("Home")
-    expect(page.get_by_role("tab", name="stories")).to_be_focused()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import h5py
 from knobs import COMPILED, Visit, field, settled, type_into
 from PIL import Image
 from playwright.sync_api import Page, expect
@@ -127,10 +128,18 @@ def test_pictures_are_taken_along_as_they_are_on_the_screen(visit: Visit, tmp_pa
         page.get_by_role("button", name="Python script that computes it again").click()
     download.value.save_as(tmp_path / "again.py")
     assert 'scene("sec2")' in (tmp_path / "again.py").read_text(encoding="utf-8")
+    with page.expect_download() as download:
+        page.get_by_role("button", name="everything, HDF5").click()
+    path = tmp_path / download.value.suggested_filename
+    download.value.save_as(path)
+    with h5py.File(path) as file:
+        assert file["run/displacement"].shape[1] == 11
+    page.keyboard.press("Escape")
+    figures_of_the_open_page_are_exported(page, tmp_path)
 
 
-def test_the_figures_of_the_open_page_are_exported(visit: Visit, tmp_path: Path) -> None:
-    page = visit(accept_downloads=True)
+def figures_of_the_open_page_are_exported(page: Page, tmp_path: Path) -> None:
+    """Where a page is open, its figures are what is offered first."""
     page.get_by_role("tab", name="stability").click()
     page.get_by_role("button", name="open the page").click()
     expect(page.locator('[data-overlay="stability"] .plane canvas').first).to_be_visible(timeout=COMPILED)

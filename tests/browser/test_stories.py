@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import pytest
 from knobs import Visit
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, ViewportSize, expect
 from room import faults
 from started import until
 
 from app.session.stories import IRREGULAR, TOLERANCE, UNDRIVEN, Story, stories, told_words
+
+LAPTOP, PHONE = ViewportSize(width=1280, height=800), ViewportSize(width=390, height=844)
 
 # Newtons of the largest output force that is drawn at the wall.
 FORCE = """() => {
@@ -34,27 +36,40 @@ def shows(page: Page, story: Story, number: int) -> None:
                            arg=[step.expect.output, allowed + 1e-3])
 
 
-@pytest.mark.parametrize("size", [(1280, 800), (390, 844)], ids=["laptop", "phone"])
+def tells(page: Page, story: Story, number: int, revealed: bool) -> None:
+    """The tab has the words of the step, its answer once it was asked for, and the screen shows what they say."""
+    tab = page.locator("#tabs")
+    expect(tab).to_contain_text(f"{number} of {len(story.steps)}")
+    expect(tab).to_contain_text(told_words(story, number, "say"))
+    shows(page, story, number)
+    answer = told_words(story, number, "answer")
+    if answer:
+        if not revealed:
+            expect(tab.get_by_text(answer)).to_be_hidden()
+            tab.get_by_role("button", name="answer").click()
+        expect(tab.get_by_text(answer)).to_be_visible()
+    if story.steps[number - 1].look:
+        expect(page.locator(f"#{story.steps[number - 1].look}.looked-at")).to_have_count(1)
+
+
 @pytest.mark.parametrize("story", stories()[0], ids=lambda story: story.name)
-def test_a_story_shows_what_it_tells(visit: Visit, story: Story, size: tuple[int, int]) -> None:
-    page = visit(viewport={"width": size[0], "height": size[1]})
+def test_a_story_shows_what_it_tells(visit: Visit, story: Story) -> None:
+    """On a laptop and on a phone: a step that is reached on the one is looked at on the other too, and left there."""
+    page = visit()
+    now, other = LAPTOP, PHONE
     tab = page.locator("#tabs")
     tab.get_by_role("button", name=story.title).click()
     for number in range(1, len(story.steps) + 1):
-        expect(tab).to_contain_text(f"{number} of {len(story.steps)}")
-        expect(tab).to_contain_text(told_words(story, number, "say"))
-        shows(page, story, number)
-        answer = told_words(story, number, "answer")
-        if answer:
-            expect(tab.get_by_text(answer)).to_be_hidden()
-            tab.get_by_role("button", name="answer").click()
-            expect(tab.get_by_text(answer)).to_be_visible()
-        if story.steps[number - 1].look:
-            expect(page.locator(f"#{story.steps[number - 1].look}.looked-at")).to_have_count(1)
+        tells(page, story, number, revealed=False)
+        page.set_viewport_size(other)
+        tells(page, story, number, revealed=True)
+        now, other = other, now
         tab.get_by_role("button", name="next" if number < len(story.steps) else "all stories").click()
     expect(tab.get_by_role("button", name=story.title)).to_be_visible()
     expect(page.locator(".looked-at")).to_have_count(0)
-    until(page, lambda: faults(page) == [])
+    for size in (now, other):
+        page.set_viewport_size(size)
+        until(page, lambda: faults(page) == [])
 
 
 def test_a_step_back_is_the_step_it_was(visit: Visit) -> None:

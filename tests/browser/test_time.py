@@ -12,14 +12,6 @@ from app.parts.figure_style import BOTTOM, GAP, TOP
 MOVING = {"reduced_motion": "no-preference"}
 
 
-def test_the_chain_moves(visit: Visit) -> None:
-    page = visit(**MOVING)
-    first = page.evaluate("pixels('chain')")
-    page.wait_for_function(f"pixels('chain') !== {first}")
-    settled(page)
-    expect(page.locator("#foot")).to_contain_text("period 1")
-
-
 # A busy machine may paint once more what it had begun; a chain that plays changes in every 300 ms.
 STANDS_STILL = """async () => {
   const before = pixels("chain");
@@ -28,9 +20,12 @@ STANDS_STILL = """async () => {
 }"""
 
 
-def test_pause_stops_the_chain_and_a_dragged_cursor_moves_it(visit: Visit) -> None:
+def test_the_chain_moves_is_paused_and_moved_by_a_dragged_cursor(visit: Visit) -> None:
     page = visit(**MOVING)
+    first = page.evaluate("pixels('chain')")
+    page.wait_for_function(f"pixels('chain') !== {first}")
     settled(page)
+    expect(page.locator("#foot")).to_contain_text("period 1")
     page.get_by_role("button", name="Play or pause").click()
     page.wait_for_function(STANDS_STILL)
     still = page.evaluate("pixels('chain')")
@@ -43,10 +38,19 @@ def test_pause_stops_the_chain_and_a_dragged_cursor_moves_it(visit: Visit) -> No
     page.wait_for_function(f"pixels('chain') !== {still}")
 
 
+# Counts the animation frames that the page asks for.
+FRAMES_ASKED = """
+const ask = window.requestAnimationFrame;
+window.asked = 0;
+window.requestAnimationFrame = (act) => { window.asked += 1; return ask.call(window, act); };
+"""
+
+
 def test_for_visitors_who_want_less_motion_the_chain_waits(visit: Visit) -> None:
-    page = visit(reduced_motion="reduce")
+    page = visit(reduced_motion="reduce", script=FRAMES_ASKED)
     settled(page)
     page.wait_for_function(STANDS_STILL)
+    at_rest(page, "asked")  # a page that stands still asks for no animation frames
     play = page.get_by_role("button", name="Play or pause")
     expect(play).to_contain_text("play")
     page.get_by_role("button", name="The run goes on").click()
@@ -95,19 +99,13 @@ COLOURS = """(gap) => {
 }"""
 
 
-def test_live_frames_advance(visit: Visit) -> None:
+def test_live_frames_advance_stop_when_paused_and_step_by_one_period(visit: Visit) -> None:
     page = visit(**MOVING)
     page.get_by_role("button", name="The run goes on").click()
     page.wait_for_function("painted.filter((event) => event.live).length > 10")
     count = page.evaluate("painted.length")
     page.wait_for_function(f"painted.length > {count} + 16")  # how many a second: tests/benchmarks/browser_latency.py
     expect(page.locator("#foot b")).to_contain_text("live")
-
-
-def test_live_stops_when_paused_and_steps_by_one_period(visit: Visit) -> None:
-    page = visit(**MOVING)
-    page.get_by_role("button", name="The run goes on").click()
-    page.wait_for_function("painted.filter((event) => event.live).length > 10")
     page.get_by_role("button", name="Play or pause").click()
     count = at_rest(page, "painted.length")
     page.get_by_role("button", name="Forward one drive period").click()

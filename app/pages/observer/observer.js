@@ -51,6 +51,7 @@ class ObserverPage {
     const send = (name, more = {}) => model.send_msg({ do: name, ...more });
     const control = (words, name, title) => button(words, () => send(name), { title });
     this.model = model;
+    this.asked = 0; // the animation frame that was asked for
     this.history = [];
     this.kappa = new KappaControl((value) => send("set", { name: "kappa", value }), model.state.paper_kappa);
     this.said = element("b");
@@ -107,13 +108,20 @@ class ObserverPage {
     this.showDistance();
   }
 
-  // In every frame of the browser, while the page or its tab is on the screen.
+  // Asks for an animation frame. Each asks for the next while the page or its tab is on the screen.
+  wake() {
+    this.asked ||= requestAnimationFrame((time) => {
+      this.asked = 0;
+      this.tick(time);
+    });
+  }
+
   tick(time) {
     const { overlay, observerTab } = window.granchain;
-    const seconds = this.replay.seconds(time);
-    if (overlay === "observer" || observerTab?.isConnected) this.replay.advance(seconds);
+    if (overlay !== "observer" && !observerTab?.isConnected) return;
+    this.replay.advance(this.replay.seconds(time));
     if (overlay === "observer" && this.replay.now) this.chains.draw(this.replay.now, this.replay.row);
-    requestAnimationFrame((later) => this.tick(later));
+    this.wake();
   }
 
   open() {
@@ -137,8 +145,10 @@ export function render({ model }) {
   });
   window.granchain.on("overlay", (name) => {
     if (name === "observer") requestAnimationFrame(() => page.open());
+    page.wake();
   });
+  window.granchain.on("observer-tab", () => page.wake());
   page.show();
-  requestAnimationFrame((time) => page.tick(time));
+  page.wake();
   return page.root;
 }

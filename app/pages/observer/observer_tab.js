@@ -30,6 +30,7 @@ export function observerTab(_, { placeholder }) {
     if (host.isConnected && page.observer) showDistance(figure, page.observer.small, page.observer);
   };
   page.observerTab = host; // while it is on the screen the observer runs
+  page.emit("observer-tab");
   requestAnimationFrame(show);
   return { content: [element("div", { className: "row top" }, said, openButton("observer")), host], show };
 }
