@@ -23,6 +23,9 @@ _TAPER = "S. Sen, F. S. Manciu, M. Manciu. Thermalizing an impulse. Physica A 29
 _PRECOMPRESSED = "V. F. Nesterenko. Dynamics of Heterogeneous Materials. Springer, New York (2001)."
 _DIODE = ("N. Boechler, G. Theocharis, C. Daraio. Bifurcation-based acoustic switching and rectification. Nature "
           "Materials 10, 665–668 (2011).")
+_BREATHERS = ("C. Chong, F. Li, J. Yang, M. O. Williams, I. G. Kevrekidis, P. G. Kevrekidis, C. Daraio. Damped-driven "
+              "granular chains: an ideal playground for dark breathers and multibreathers. Phys. Rev. E 89, 032924 "
+              "(2014).")
 _LAWS = {
     "tsuji": "Y. Tsuji, T. Tanaka, T. Ishida. Lagrangian numerical simulation of plug flow of cohesionless particles "
              "in a horizontal pipe. Powder Technology 71, 239–250 (1992).",
@@ -52,4 +55,6 @@ def citations(scene: Description) -> list[tuple[str, str]]:
         found.append(("impurities", _IMPURITY))
     if scene.is_driven and scene.F0 > 0.0 and impurity:
         found.append(("acoustic diode", _DIODE))
+    if scene.name == "breather":
+        found.append(("dark breathers", _BREATHERS))
     return found

@@ -28,6 +28,7 @@ def test_what_a_scene_uses_is_cited(settings: list[str], named: list[str], capsy
     ("impact-train", ["solitary wave", "pulse trains"]), ("impact-impurity", ["solitary wave", "impurities"]),
     ("impact-taper", ["solitary wave", "tapered chains"]), ("precompressed", ["precompressed chains"]),
     ("diode", ["precompressed chains", "acoustic diode"]), ("diode-reverse", ["precompressed chains", "acoustic diode"]),
+    ("breather", ["precompressed chains", "dark breathers"]),
 ])
 def test_the_sources_of_the_scenes_beyond_the_paper_are_cited(scene: str, named: list[str],
                                                              capsys: pytest.CaptureFixture[str]) -> None:

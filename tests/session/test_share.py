@@ -83,6 +83,7 @@ _LATER = {
     "precompressed": {"f": 5000.0, "A0": 1e-8, "D": 20.0, "F0": 10.0},
     "diode": _DIODE,
     "diode-reverse": {**_DIODE, "site": 10},
+    "breather": {"f": 7000.0, "A0": 1.2e-7, "D": 2.0, "F0": 10.0, "N": 7},
 }
 
 
