@@ -5,6 +5,7 @@ A test that fails leaves what its pages showed and said in a folder that its rep
 
 from __future__ import annotations
 
+import urllib.request
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any
@@ -48,9 +49,11 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def address(log: Path) -> Iterator[str]:
-    """The address of the running dashboard."""
+    """The address of the running dashboard; in the end none of the pages' messages may have been refused."""
     with dashboard(log) as url:
         yield url
+        with urllib.request.urlopen(url + "metrics", timeout=60) as answer:
+            assert "granchain_refused_messages_total 0\n" in answer.read().decode()
 
 
 @pytest.fixture(scope="session")
