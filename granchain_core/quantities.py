@@ -112,6 +112,7 @@ WALL_FACTORS = {"bead": 1.0, "same-material": math.sqrt(2.0), "rigid": 2.0 * mat
 DISSIPATION_LAWS = (*LAWS, "none")
 TENSION = ("allowed", "cut")
 DRIVES = ("harmonic", "rest")
+ENDS = ("first", "last")
 
 _TABLE = (
     Quantity("f", "f", "Hz", "f", "drive frequency", "How often a second the driver moves to and fro.",
@@ -147,6 +148,8 @@ _TABLE = (
     Quantity("strike", "v₁", "m/s", "v_1", "initial velocity of bead 1",
              "Speed at which bead 1 moves towards the wall at time 0.", 0.0, 100.0, "cubic", 0.001, short="strike",
              at_start=True),
+    Quantity("end", "", "", "", "driven end", "The end that the driver touches; the wall is at the other. "
+             "With the last one a chain of unequal beads is turned round.", choices=ENDS, numeric=False),
     Quantity("wall", "W", "1", r"K_N/K", "right wall",
              "Stiffness of the last contact: a fixed bead (K), a flat wall of the same material (√2 K), "
              "a rigid flat wall (2√2 K), or a number times K.",

@@ -18,7 +18,7 @@ MORE = tuple(name for name in QUANTITIES if name not in MAIN)
 #: Knobs of unequal beads and of an impact with the values that leave the chain as it is. A scene that has others shows
 #: them among the main ones.
 _NEUTRAL = {one.name: one.default for one in fields(Scene)
-            if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike")}
+            if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike", "end")}
 #: What a knob is without a drive: its label and its meaning.
 _UNDRIVEN = {
     "f": ("1 / time shown", "Nothing drives this chain: 1/f is the time that is shown."),

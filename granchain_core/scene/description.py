@@ -92,11 +92,15 @@ class Description:
     impurity: float = 1.0
     drive: str = "harmonic"
     strike: float = 0.0
+    end: str = "first"
 
     # --- derived quantities -------------------------------------------------------------------------------
 
     def bead(self, number: int) -> Bead:
-        """The bead with this number, 1 to N: that of `impurities`, else the pattern's with its part of the mass."""
+        """The bead at this place from the driver, 1 to N: that of `impurities`, else the pattern's with its part of the
+        mass. Where the driver is at the last bead, places are counted from there."""
+        if self.end == "last":
+            number = self.N + 1 - number
         for place, bead in self.impurities:
             if place == number:
                 return bead

@@ -68,6 +68,9 @@ class Scene(Description):
         "harmonic", or "rest" for a driver that stands still; 1/f is then only a length of time.
     strike : float
         Velocity of bead 1 at time 0 [m/s].
+    end : str
+        The end that the driver touches: "first", or "last" for a chain of unequal beads that is turned round. Places
+        of beads in results count from the driver.
 
     Examples
     --------

@@ -41,7 +41,7 @@ def read(kind: str, path: Path, name: str, true: Any) -> tuple[str, str]:
         found = told(KINDS[kind].read(path))
     except BadInput as refusal:
         sentence = str(refusal)
-        single = "\n" not in sentence and sentence.endswith(".") and len(sentence) < 800
+        single = sentence.endswith(".") and len(sentence) < 800
         return (REFUSED if single else TRACEBACK), sentence
     except BaseException as problem:  # whatever a reader lets through is what is looked for
         return TRACEBACK, repr(problem)
