@@ -90,12 +90,16 @@ async def run(server: Started, count: int, seed: int) -> int:
     neighbour = Viewer(server.address)
     await neighbour.open()
     moves = asyncio.create_task(_move(neighbour, random.Random(seed)))
-    attacker, connections = Attacker(server.address, rng, actions), 0
+    attacker, connections, unanswered = Attacker(server.address, rng, actions), 0, 0
     while sum(sent.values()) < count:
         if not attacker.connected:
             attacker = Attacker(server.address, rng, actions)
-            await attacker.open()
             connections += 1
+            try:
+                await attacker.open()
+            except TimeoutError:
+                print(f"no picture for connection {connections} in two minutes", flush=True)
+                unanswered += 1
         try:
             sent[await attacker.attack()] += 1
         except Exception as closed:  # by the server, between the look and the message
@@ -109,8 +113,8 @@ async def run(server: Started, count: int, seed: int) -> int:
     moves.cancel()
     times = _TIMES[:]
     print(f"{count} messages, seed {seed}: {dict(sent)}; {connections} connections")
-    late = sum(one is None for one in times) + (answered is None)
-    print(f"moves of the visitor beside it: {len(times)}, without an answer {late}, "
+    late = sum(one is None for one in times) + (answered is None) + unanswered
+    print(f"moves of the visitor beside it and first pictures: {len(times) + connections}, without an answer {late}, "
           f"slowest {1e3 * max((one for one in times if one is not None), default=0.0):.0f} ms")
     return late
 

@@ -42,10 +42,8 @@ class Started:
         if self.process is not None:
             self.process.terminate()
             self.process.wait(timeout=30)
-            tracebacks = self._log.read_text(errors="replace").count("Traceback")
-            print(f"tracebacks in the server's log: {tracebacks}")
-            if tracebacks:
-                print(self._log.read_text(errors="replace")[-6000:])
+            tracebacks = [line for line in self._log.read_text(errors="replace").splitlines() if "Traceback" in line]
+            print(f"tracebacks in the server's log: {len(tracebacks)}", *tracebacks[:10], sep="\n")
 
     @property
     def number(self) -> int:
