@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from granchain_core import Run, run, scene
+from granchain_core.integrate.methods import method_for
+from granchain_core.lower import lower
 
 #: By what factor a stated error may at most be below the true one.
 AT_MOST = 4.0
@@ -70,6 +72,10 @@ def test_two_computations_by_the_same_steps_are_no_evidence():
 def test_computations_with_the_same_steps_are_not_compared():
     """A fast drive sampled 16 times: half the step, asked for from so coarse an accuracy, is still one step a sample."""
     chain = scene("sec2").evolve(f=5600.0, A0=1.7e-7, D=64.0, N=5, accuracy=7e-4)
+    setting, lowered = method_for(chain.accuracy), lower(chain)
+    halved, finer = (one.steps_per_period(lowered, honesty.SAMPLES)
+                     for one in (setting.finer(), setting.finer_than(lowered, honesty.SAMPLES)))
+    assert finer > halved == setting.steps_per_period(lowered, honesty.SAMPLES)
     true = honesty.certified(chain, 3e-15)
     result = run(chain, periods=0, record=honesty.PERIODS, samples=honesty.SAMPLES)
     assert 0.0 < np.abs(result.displacement - true).max() / np.abs(true).max() <= result.error_estimate <= chain.accuracy
