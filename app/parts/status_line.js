@@ -55,7 +55,7 @@ export function render({ model }) {
     insist.hidden = !state.insist;
     const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");
     line.replaceChildren(
-      element("b", { textContent: state.regime ?? "" }),
+      element("b", { textContent: state.regime ?? "", title: state.regime_hint ?? "" }),
       element("i", { className: "grow" }),
       ...known.map((entry) => entryOf(entry, state)),
     );

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from granchain_core import Run, Settled
-from granchain_core.steady.curve.resonance import Place, place_words, pushes
+from granchain_core.steady.curve.resonance import Place, place_words, push_words, pushes
 
 from ..format import duration, short_error
 from ..pictures.axes import in_words
@@ -24,6 +24,7 @@ def settled_entries(picture: Settled, place: Place | None) -> dict[str, Any]:
     """The line for a settled picture; `place` is where it lies on the curve from rest, None while there is none."""
     return {
         "regime": regime_words(picture, place),
+        "regime_hint": regime_hint(picture),
         "start": f"from {picture.start}",
         **run_entries(picture.run),
     }
@@ -34,6 +35,16 @@ def regime_words(picture: Settled, place: Place | None) -> str:
     ready = "" if picture.final else "preview, "
     counted = place_words(pushes(picture.run), place)
     return ready + (f"{counted}, " if counted else "") + picture.regime.sentence
+
+
+def regime_hint(picture: Settled) -> str:
+    """What the ratio and the multiplier in the line mean; empty where it has neither."""
+    pushed, meanings = pushes(picture.run), []
+    if pushed is not None:
+        meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
+    if "|μ|" in picture.regime.sentence:
+        meanings.append("|μ|: what is left of a small disturbance after one orbit; below 1 the orbit is stable.")
+    return " ".join(meanings)
 
 
 def error_words(error: float | None, before: str = "") -> str:

@@ -41,7 +41,7 @@ export class ChapterLabels {
     this.chapters = chapters;
     this.root.replaceChildren(
       ...chapters.map(({ kind, name, words, f }) => {
-        const title = `${words}: go to ${f} Hz`;
+        const title = `${words}; go to ${f} Hz`;
         return button(name, () => this.go(f), { className: kind, title, ariaLabel: title, hidden: true });
       }),
     );

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from granchain_core import CurvePoint, Scene, settle
-from granchain_core.steady.curve.resonance import STOPS, Place, peaks_and_valleys, place_words, pushes
+from granchain_core.steady.curve.resonance import STOPS, Place, peaks_and_valleys, place_words, push_words, pushes
 from granchain_core.stop import Stop
 
 from ...frames import samples_for
@@ -54,7 +54,7 @@ def extreme_chapter(kind: str, point: CurvePoint, scene: Scene, stop: Stop | Non
     pushed = pushes(settle(at, samples=samples_for(at), stop=stop).run)
     if pushed is None or (kind == "valley" and pushed != (1, 1)):
         return None
-    words = place_words(pushed, Place(kind, point.frequency, point.regime.period))
+    words = f"{place_words(pushed, Place(kind, point.frequency, point.regime.period))}: {push_words(pushed)}"
     return {"kind": kind, "name": f"{pushed[0]}:{pushed[1]}" if kind == "peak" else "anti-resonance", "words": words,
             "f": at.f, "force": point.max_output_force}
 

@@ -114,6 +114,13 @@ def peaks_and_valleys(force: np.ndarray) -> tuple[list[int], list[int]]:
     return found
 
 
+def push_words(pushed: tuple[int, int]) -> str:
+    """What a ratio such as 1:3 counts: "one strong push of the driver in 3 drive periods"."""
+    count, periods = pushed
+    number = "one strong push" if count == 1 else f"{count} strong pushes"
+    return f"{number} of the driver in {'every drive period' if periods == 1 else f'{periods} drive periods'}"
+
+
 def place_words(pushed: tuple[int, int] | None, place: Place | None) -> str:
     """A periodic motion in the paper's words: strong pushes per periods, and its place on the curve.
 
