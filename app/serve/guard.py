@@ -133,6 +133,7 @@ class GuardedSocket(Guard):
     #: Frames of a message that is not whole yet: header, metadata and content come one by one.
     _frames: tuple[str, ...] = ()
     _refused = False
+    _left = False
 
     def check(self) -> None:
         """Also refuse a connection without a token of this server, or with one that was used before."""
@@ -176,7 +177,13 @@ class GuardedSocket(Guard):
         self.close(1008, reason)  # type: ignore[attr-defined]
 
     def on_close(self) -> None:
-        """The visitor left: what is computed for the page ends at the next look, and is not kept for a minute."""
+        """The visitor left: what is computed for the page ends at the next look, and is not kept for a minute.
+
+        Tornado says so twice where the closing frame of a refused page arrives before its stream ends.
+        """
+        if self._left:
+            return
+        self._left = True
         connection = self.connection  # type: ignore[attr-defined]
         session = None if connection is None else connection.session
         super().on_close()  # type: ignore[misc]
