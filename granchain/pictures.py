@@ -17,7 +17,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
 
     Parameters
     ----------
-    result : Run, Settled, Curve, Orbit, Branch, Diagram, Observation, WorkPrecision, Fit, Spectrum, Transfer, …
+    result : Run, Settled, Driven, Pulse, Curve, Orbit, Branch, Diagram, Observation, WorkPrecision, Fit, Spectrum, …
         What a function of granchain returned, a list of curves or of branches, or a result of
         `granchain_core.paper.compute`.
     theme : str

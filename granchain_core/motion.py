@@ -24,12 +24,18 @@ _COLUMNS = {  # by name: (axes, unit, meaning)
 class Motion(Labelled):
     """A result with the motion of a chain over time, and the forces at its two ends.
 
-    `displacement` (T, N) [m] of the beads, `force` (T, N + 1) [N] of the contacts.
+    `displacement` (T, N) [m] and `velocity` (T, N) [m/s] of the beads, `force` (T, N + 1) [N] of the contacts.
     """
 
     if TYPE_CHECKING:
         displacement: np.ndarray
+        velocity: np.ndarray
         force: np.ndarray
+
+    @property
+    def kinetic_energy(self) -> np.ndarray:
+        """Kinetic energy of every bead (T, N) [J]."""
+        return 0.5 * self.scene.masses() * self.velocity**2
 
     @property
     def input_force(self) -> np.ndarray:

@@ -207,11 +207,6 @@ class Run(Motion):
     jumps: Jumps = field(default_factory=Jumps)
 
     @property
-    def kinetic_energy(self) -> np.ndarray:
-        """Kinetic energy of every bead (T, N) [J]."""
-        return 0.5 * self.scene.masses() * self.velocity**2
-
-    @property
     def overlap(self) -> np.ndarray:
         """Overlap of every contact (T, N+1) [m], negative where there is a gap."""
         rows = len(self.time)

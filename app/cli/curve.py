@@ -12,7 +12,7 @@ from granchain_core import Amplitude, BadInput, Scene
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
 from .data_options import add_amplitude, chosen_amplitude
 from .keeping import add_resume, finished, keeping
-from .options import add_result, number, whole
+from .options import add_result, add_scheduler, number, scheduler_of, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
@@ -28,6 +28,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--points", type=whole, required=True, metavar="n")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
     add_amplitude(parser)
+    add_scheduler(parser)
     add_resume(parser, "curve")
     add_picture(parser)
 
@@ -77,7 +78,7 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
         known = points_in(kept)
     if known:
         say(f"{len(known)} of {len(frequencies)} points are there already.")
-    done = [len(known)]
+    done, client = [len(known)], scheduler_of(arguments)
 
     def count(point: CurvePoint) -> None:
         done[0] += 1
@@ -90,7 +91,8 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
 
     with keeping(kept, lambda: f"{done[0]} of {len(frequencies)} points"):
         swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start, stop=stop,
-                                                           on_point=count, known=known, amplitude=amplitude))
+                                                           on_point=count, known=known, amplitude=amplitude,
+                                                           scheduler=client))
     if kept is not None:
         with unbroken():
             save_curve(swept, arguments.out)

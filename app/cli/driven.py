@@ -10,6 +10,7 @@ from granchain_core import BadInput, Scene
 
 from .common import in_background, say, show_json, unbroken
 from .data_options import with_answers
+from .picture import write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Driven, Signal
@@ -41,6 +42,7 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
 
         with unbroken():
             save(found, arguments.out)
+    write_picture(arguments.picture, f"A driven motion of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found))
     else:

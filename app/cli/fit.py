@@ -10,7 +10,7 @@ from granchain_core import BadInput
 
 from .common import check_points, chosen_scene, in_background, say, show_json
 from .data_options import add_answers, with_answers
-from .options import add_json, add_scene, number, whole
+from .options import add_json, add_scene, add_scheduler, number, scheduler_of, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
@@ -39,6 +39,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--points", type=whole, default=71, metavar="n",
                         help="frequencies, over the scene's range, among which peaks and valleys are sought")
     parser.add_argument("--no-intervals", action="store_true", help="best values alone")
+    add_scheduler(parser)
     parser.add_argument("--out", metavar="FILE.json", help="write the result, with its landscape, as JSON")
     add_answers(parser)
     add_json(parser)
@@ -67,8 +68,9 @@ def do(arguments: argparse.Namespace) -> None:
         if sys.stderr.isatty():
             print(f"\r{count} sets of parameters", end="", file=sys.stderr, flush=True)
 
+    client = scheduler_of(arguments)
     found = in_background(lambda stop: fit(chosen, target, free, arguments.design, not arguments.no_intervals, stop,
-                                           progress))
+                                           progress, client))
     if sys.stderr.isatty():
         say()
     if arguments.out:

@@ -23,7 +23,7 @@ from .common import chosen_scene, finite_or_null, in_background, say, say_if, sh
 from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
 from .keeping import add_resume, finished, keeping
-from .options import add_json, add_scene, values_from
+from .options import add_json, add_scene, add_scheduler, scheduler_of, values_from
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
@@ -36,7 +36,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                             help="n values of a knob from a to b, evenly spaced or, with :log appended, "
                                  f"logarithmically; for example {example}")
     add_amplitude(parser)
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
+    add_scheduler(parser)
     parser.add_argument("--out", required=True, metavar="FILE", help="write an HDF5 file")
     add_resume(parser, "map")
     add_json(parser)
@@ -76,7 +76,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
     if there is not None:
         Blocks(grid, arguments.out).kept.remove()
         return there, 0
-    client = _client(arguments.scheduler)
+    client = scheduler_of(arguments)
     blocks, done = Blocks.open(grid, arguments.out, arguments.resume), [0]
     with keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells"):
         found, computed = in_background(lambda stop: _filled(blocks, client, stop, done))
@@ -93,14 +93,6 @@ def _refuse_too_many(grid: Grid) -> None:
         raise BadInput(f"--picture draws up to {MOST_DRAWN} cells and this map has {grid.size}; take fewer points on "
                        "an axis, or leave --picture out.")
 
-
-
-def _client(address: str | None) -> Any:
-    if address is None:
-        return None
-    from granchain_core.scheduler import connect
-
-    return connect(address)
 
 
 def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[Diagram, int]:

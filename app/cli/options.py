@@ -45,6 +45,20 @@ def add_result(parser: argparse.ArgumentParser) -> None:
     add_json(parser)
 
 
+def add_scheduler(parser: argparse.ArgumentParser) -> None:
+    """Add the workers of a scheduler; `scheduler_of` gives its client."""
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
+
+
+def scheduler_of(arguments: argparse.Namespace) -> Any:
+    """A client of the scheduler that --scheduler names, None without it. Raises `BadInput` where none answers."""
+    if arguments.scheduler is None:
+        return None
+    from granchain_core.scheduler import connect
+
+    return connect(arguments.scheduler)
+
+
 def values_from(option: str, text: str, most: int) -> tuple[str, tuple[float, float], Callable[[float, float], Any]]:
     """NAME=a:b:n or NAME=a:b:n:log: the name, both ends, and what spaces n values from one number to another."""
     import numpy as np

@@ -17,6 +17,8 @@ from .data_options import add_answers
 from .driven import do_driven
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -35,11 +37,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                              "displacement over time")
     add_answers(parser)
     add_resume(parser, "run")
+    add_picture(parser)
 
 
 def do(arguments: argparse.Namespace) -> None:
     """Run a scene and record it."""
     chosen = chosen_scene(arguments)
+    check_picture(arguments.picture)
     if arguments.drive:
         do_driven(arguments, chosen)
         return
@@ -51,6 +55,7 @@ def do(arguments: argparse.Namespace) -> None:
         _explain(chosen, arguments, sys.stderr if arguments.json else sys.stdout)
     result = _result(chosen, arguments)
     _warn(result, arguments.budget)
+    write_picture(arguments.picture, f"A motion of {chosen.name}", result)
     if arguments.json:
         show_json(_run_json(result))
     else:

@@ -16,10 +16,12 @@ from granchain_core import (
     Branch,
     Curve,
     Diagram,
+    Driven,
     Fit,
     LyapunovSpectrum,
     Observation,
     Orbit,
+    Pulse,
     Run,
     Settled,
     Spectrum,
@@ -63,6 +65,10 @@ def _settled(found: Settled, theme: Theme) -> LayoutDOM:
     return motion(found.run, theme)
 
 
+def _pulse(found: Pulse, theme: Theme) -> LayoutDOM:
+    return motion(found.run, theme)
+
+
 def _curve(found: Curve, theme: Theme, elastic: bool = False) -> LayoutDOM:
     return curve([found], theme, elastic)
 
@@ -92,9 +98,9 @@ def _strobes(found: StrobeDiagram, theme: Theme, bead: int | None = None) -> Lay
 
 
 _DRAW: dict[type, Callable[..., LayoutDOM]] = {
-    Run: motion, Settled: _settled, Curve: _curve, Orbit: multipliers, Branch: _branch, Diagram: both_maps,
-    Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum, Transfer: transfer,
-    LyapunovSpectrum: lyapunov, StrobeDiagram: _strobes, Basins: basins, Attractors: attractors,
+    Run: motion, Settled: _settled, Driven: motion, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
+    Diagram: both_maps, Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum,
+    Transfer: transfer, LyapunovSpectrum: lyapunov, StrobeDiagram: _strobes, Basins: basins, Attractors: attractors,
 }
 _PAPER = (EnergyMaps, Observers, Rig, RigResponse, ShakerAmplitude, Trains, Transmission)
 #: Lists of results that are drawn over each other.

@@ -18,7 +18,7 @@ from bokeh.models import (
 )
 from bokeh.plotting import figure
 
-from granchain_core import Run
+from granchain_core import Driven, Run
 
 from ..format import prefixed
 from ..frames import with_jumps
@@ -30,6 +30,8 @@ _ROWS = 2000
 #: Width of the panels beside the energies [px].
 _BESIDE = 190
 
+Recorded = Run | Driven
+"""A motion with what its driver did: harmonic for a number of periods, or by a signal."""
 Scaled = tuple[float, str]
 """A factor in SI and the unit that it makes."""
 
@@ -44,7 +46,7 @@ class Units:
     energy: Scaled
 
     @classmethod
-    def of(cls, run: Run) -> Units:
+    def of(cls, run: Recorded) -> Units:
         """Units in which the numbers of a run read well."""
         def unit(values: np.ndarray, name: str) -> Scaled:
             factor, letter = prefixed(float(np.abs(values).max()))
@@ -54,8 +56,8 @@ class Units:
                    unit(run.kinetic_energy, "J"))
 
 
-def motion(run: Run, theme: Theme) -> LayoutDOM:
-    """A recorded run as the dashboard shows it; a long one is thinned out evenly."""
+def motion(run: Recorded, theme: Theme) -> LayoutDOM:
+    """A recorded motion as the dashboard shows it; a long one is thinned out evenly."""
     units, index = Units.of(run), np.arange(0, len(run.time), max(1, -(-len(run.time) // _ROWS)))
     seconds = run.time[index]
     time = Range1d(float(seconds[-1]) / units.time[0], float(seconds[0]) / units.time[0])
@@ -64,14 +66,15 @@ def motion(run: Run, theme: Theme) -> LayoutDOM:
     return row(panels, sizing_mode="stretch_both")
 
 
-def drive_panel(run: Run, index: np.ndarray, seconds: np.ndarray, time: Range1d, units: Units, theme: Theme,
+def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Range1d, units: Units, theme: Theme,
                 jumps: bool = False) -> figure:
     """The driver's displacement over the lower axis, its force on bead 1 over the upper one.
 
     `index` are the rows that are drawn, at `seconds`. `jumps` adds the points at which the force jumps.
     """
     (second, second_unit), (length, length_unit), (force, force_unit) = units.time, units.length, units.force
-    amplitude, largest = run.scene.A0 / length, run.max_input_force / force or 1.0
+    farthest = run.scene.A0 if isinstance(run, Run) else float(np.abs(run.drive_displacement).max())
+    amplitude, largest = farthest / length or 1.0, run.max_input_force / force or 1.0
     lowest = min(0.0, float(run.input_force.min()) / force)
     plot = frame(name="drive", y_range=time, min_border=4, sizing_mode="stretch_height", width=_BESIDE,
                  x_range=Range1d(-1.1 * amplitude, 1.1 * amplitude), toolbar_location=None)
@@ -91,7 +94,7 @@ def drive_panel(run: Run, index: np.ndarray, seconds: np.ndarray, time: Range1d,
     return dress(plot, theme)
 
 
-def energy_panel(run: Run, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
+def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
     """Kinetic energy over bead and time, between the ends of the range `time`, in the colours of the page."""
     factor, unit = units.energy
     values = np.asarray(run.kinetic_energy[index] / factor, dtype=np.float32)
@@ -107,13 +110,21 @@ def energy_panel(run: Run, index: np.ndarray, time: Range1d, units: Units, theme
     plot.add_tools(HoverTool(renderers=[image], tooltips=[
         ("bead", "$x{0}"), ("time", f"$y{{0.000}} {units.time[1]}"), ("kinetic energy", f"@image{{0.0000}} {unit}")]))
     plot.add_layout(energy_bar(colours, theme), "right")
-    period = run.regime.period
-    plot.title.text = (f"{run.scene.f:g} Hz, {f'period {period}' if period else run.regime.name}: "
-                       f"kinetic energy ({unit})")
+    plot.title.text = f"{_named(run)}: kinetic energy ({unit})"
     return dress(plot, theme)
 
 
-def _output_panel(run: Run, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
+def _named(run: Recorded) -> str:
+    """What drives the chain, and the regime where there is one."""
+    if not isinstance(run, Run):
+        return run.signal.words
+    if not run.scene.is_driven:
+        return "no drive"
+    period = run.regime.period
+    return f"{run.scene.f:g} Hz, {f'period {period}' if period else run.regime.name}"
+
+
+def _output_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
     """The force on the wall, and dashed its elastic part."""
     force, unit = units.force
     low = min(0.0, float(run.output_force.min()) / force)
@@ -132,9 +143,9 @@ def _output_panel(run: Run, index: np.ndarray, time: Range1d, units: Units, them
     return dress(plot, theme)
 
 
-def _jumping(run: Run, contact: int, index: np.ndarray, units: Units, name: str) -> ColumnDataSource:
-    """A contact's force with the points at which it jumps, between the rows."""
-    jumps = np.stack(run.jumps.of(contact), axis=1)
+def _jumping(run: Recorded, contact: int, index: np.ndarray, units: Units, name: str) -> ColumnDataSource:
+    """A contact's force with the points at which it jumps, between the rows; the knots of a signal have none."""
+    jumps = np.stack(run.jumps.of(contact), axis=1) if isinstance(run, Run) else np.zeros((0, 2))
     jumps = jumps[(jumps[:, 0] >= run.time[0]) & (jumps[:, 0] <= run.time[-1])]
     time, force = with_jumps(run.time[index], run.force[index, contact], jumps)
     data: dict[str, Any] = {"time": time / units.time[0], "force": force / units.force[0]}

@@ -24,10 +24,13 @@ COMMANDS = {
     "curve": [*SHORT, "--from", "1900", "--to", "2000", "--points", "2"],
     "orbit": [*SHORT, "--set", "f=2000"],
     "branch": [*SHORT, "--knob", "f", "--from", "2000", "--to", "2020"],
+    "run": [*SHORT, "--set", "f=2000", "--periods", "2", "--record", "2"],
+    "run --drive": [*SHORT, "--drive", "burst=2000:2:0.002"],
+    "pulse": ["impact", "--set", "N=4"],
     "map": [*SHORT, "--x", "f=1900:2000:2", "--y", "A0=5e-7:6e-7:2", "--out", "map.h5"],
 }
 #: A source of each figure that must have rows.
-SOURCES = {"curve": "rest", "orbit": "within", "branch": "orbits", "map": "cells"}
+SOURCES = {"run": "input force", "run --drive": "input force", "pulse": "output force", "curve": "rest", "orbit": "within", "branch": "orbits", "map": "cells"}
 
 
 def document(page: str) -> dict[str, object]:
@@ -39,7 +42,7 @@ def document(page: str) -> dict[str, object]:
 @pytest.mark.parametrize("command", COMMANDS)
 def test_the_figure_is_in_a_file_that_needs_nothing_else(command: str, tmp_path: Path) -> None:
     # in a process of its own: Panel, which other tests import, puts its own scripts into every page of Bokeh's
-    done = subprocess.run([sys.executable, "-m", "app.cli", command, *COMMANDS[command], "--json", "--picture", "a.html"],
+    done = subprocess.run([sys.executable, "-m", "app.cli", command.split()[0], *COMMANDS[command], "--json", "--picture", "a.html"],
                           cwd=tmp_path, capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(ROOT)})
     json.loads(done.stdout)  # still one object and nothing else
     page = (tmp_path / "a.html").read_text(encoding="utf-8")

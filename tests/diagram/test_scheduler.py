@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 from distributed import Client, LocalCluster
 
+from app.cli import main
 from granchain_core import (
     BadInput,
     Cancelled,
@@ -82,6 +84,15 @@ def test_a_batch_of_orbits_starts_branches(client: Any) -> None:
     followed = branch(chains[1], "f", 2000.0, 2010.0, found[1].period, found[1].state)
     assert followed.arms[0].ended == "reached"
     assert list(found.to_pandas()["f"]) == [1900.0, 2000.0, 0.5]
+
+
+def test_the_command_line_gives_a_curve_to_the_workers(client: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["curve", "sec2", "--set", "N=2", "--from", "1800", "--to", "2200", "--points", "5", "--json"]
+    found = []
+    for more in ([], ["--scheduler", client.scheduler.address]):
+        assert main([*words, *more]) == 0
+        found.append({**json.loads(capsys.readouterr().out), "wall_s": None})
+    assert found[0] == found[1]
 
 
 def fails(message: str) -> None:

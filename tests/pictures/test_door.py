@@ -22,6 +22,8 @@ DATA = b"f [Hz],F [N],error [N]\n1800,3.3,0.1\n2000,2.3,0.1\n2200,1.9,0.1\n"
 RESULTS = {
     "run": (lambda: granchain.run(CHAIN, periods=10, record=2, samples=16), "output force (N)"),
     "settled": (lambda: granchain.settle(CHAIN), "displacement (nm)"),
+    "driven": (lambda: granchain.drive(CHAIN, granchain.Signal.burst(CHAIN.A0, 2000.0, 4, 0.004)), "displacement (nm)"),
+    "pulse": (lambda: granchain.pulse(granchain.run(scene("impact").evolve(N=4), periods=0, record=1, samples=400)), "output force (N)"),
     "curve": (lambda: granchain.resonance_curve(CHAIN, [1800.0, 2000.0]), "largest output force (N)"),
     "orbit": (lambda: granchain.orbit(CHAIN), "real part of μ"),
     "branch": (lambda: granchain.branch(CHAIN, "f", 2000.0, 2020.0), "largest elastic output force (N)"),
@@ -83,7 +85,7 @@ def test_lists_are_drawn_together_and_options_reach_the_picture() -> None:
 
 
 @pytest.mark.parametrize(("make", "words"), [
-    (lambda: granchain.figure(3.0), "There is no picture of a float; there are those of Run, Settled, Curve"),
+    (lambda: granchain.figure(3.0), "There is no picture of a float; there are those of Run, Settled, Driven, Pulse, Curve"),
     (lambda: granchain.figure([]), "no picture of a list"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), "drak"), "Unknown theme 'drak'; the nearest is 'dark'"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), bead=1), "The picture of a Orbit has no option 'bead'"),
