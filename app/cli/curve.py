@@ -78,7 +78,7 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
         known = points_in(kept)
     if known:
         say(f"{len(known)} of {len(frequencies)} points are there already.")
-    done, client = [len(known)], scheduler_of(arguments)
+    done = [len(known)]
 
     def count(point: CurvePoint) -> None:
         done[0] += 1
@@ -89,7 +89,8 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
         if sys.stderr.isatty():
             show_percent(done[0] / len(frequencies))
 
-    with keeping(kept, lambda: f"{done[0]} of {len(frequencies)} points"):
+    with (scheduler_of(arguments) as client,
+          keeping(kept, lambda: f"{done[0]} of {len(frequencies)} points")):
         swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start, stop=stop,
                                                            on_point=count, known=known, amplitude=amplitude,
                                                            scheduler=client))

@@ -68,9 +68,9 @@ def do(arguments: argparse.Namespace) -> None:
         if sys.stderr.isatty():
             print(f"\r{count} sets of parameters", end="", file=sys.stderr, flush=True)
 
-    client = scheduler_of(arguments)
-    found = in_background(lambda stop: fit(chosen, target, free, arguments.design, not arguments.no_intervals, stop,
-                                           progress, client))
+    with scheduler_of(arguments) as client:
+        found = in_background(lambda stop: fit(chosen, target, free, arguments.design, not arguments.no_intervals, stop,
+                                               progress, client))
     if sys.stderr.isatty():
         say()
     if arguments.out:

@@ -76,10 +76,11 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
     if there is not None:
         Blocks(grid, arguments.out).kept.remove()
         return there, 0
-    client = scheduler_of(arguments)
-    blocks, done = Blocks.open(grid, arguments.out, arguments.resume), [0]
-    with keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells"):
-        found, computed = in_background(lambda stop: _filled(blocks, client, stop, done))
+    done = [0]
+    with scheduler_of(arguments) as client:
+        blocks = Blocks.open(grid, arguments.out, arguments.resume)
+        with keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells"):
+            found, computed = in_background(lambda stop: _filled(blocks, client, stop, done))
     with unbroken():
         save_diagram(found, arguments.out)
         blocks.kept.remove()

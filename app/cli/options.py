@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 from granchain_core import BadInput
@@ -46,17 +47,21 @@ def add_result(parser: argparse.ArgumentParser) -> None:
 
 
 def add_scheduler(parser: argparse.ArgumentParser) -> None:
-    """Add the workers of a scheduler; `scheduler_of` gives its client."""
+    """Add the workers of a scheduler; `scheduler_of` opens its client."""
     parser.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of a Dask scheduler")
 
 
-def scheduler_of(arguments: argparse.Namespace) -> Any:
-    """A client of the scheduler that --scheduler names, None without it. Raises `BadInput` where none answers."""
+def scheduler_of(arguments: argparse.Namespace) -> AbstractContextManager[Any]:
+    """A client of the scheduler that --scheduler names, to be closed; None without it.
+
+    Raises `BadInput` where no scheduler answers.
+    """
     if arguments.scheduler is None:
-        return None
+        return nullcontext()
     from granchain_core.scheduler import connect
 
-    return connect(arguments.scheduler)
+    client: AbstractContextManager[Any] = connect(arguments.scheduler)
+    return client
 
 
 def values_from(option: str, text: str, most: int) -> tuple[str, tuple[float, float], Callable[[float, float], Any]]:

@@ -93,6 +93,7 @@ def test_the_command_line_gives_a_curve_to_the_workers(client: Any, capsys: pyte
         assert main([*words, *more]) == 0
         found.append({**json.loads(capsys.readouterr().out), "wall_s": None})
     assert found[0] == found[1]
+    assert Client.current() is client, "the command leaves its client open"
 
 
 def fails(message: str) -> None:
