@@ -2,4 +2,4 @@
 
 from app.dashboard.entry import page
 
-page().servable(location=False)  # as in app/server.py: dashboard/entry.py reads the link
+page()

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from urllib.parse import urlsplit
 
 import panel as pn
+from bokeh.core.property.validation import validate
 from bokeh.document import Document
 
 from ..session.session import Session
@@ -14,8 +15,8 @@ from .addresses import take_address
 from .controller import Controller
 
 
-def page() -> pn.Template:
-    """A new page for a new visitor; the address may carry a shared scene."""
+def page() -> None:
+    """Make the document of the present request a new page; the address may carry a shared scene."""
     pn.extension("katex")
     document = pn.state.curdoc
     if document is None:
@@ -23,12 +24,13 @@ def page() -> pn.Template:
     session = Session()
     query = _query(document)
     start, sentences = take_address(session, query) if query.strip("?") else (None, [])
-    controller = Controller(document, session, start)
+    with validate(False):  # a sixth of an opening, to find mistakes that tests find
+        controller = Controller(document, session, start)
+        controller.views.put_into(document)
     pn.config.exception_handler = _handler(controller)
     if sentences:
         controller.say(" ".join(sentences))
     pn.state.on_session_destroyed(controller.close)
-    return controller.views.template()
 
 
 def _handler(controller: Controller) -> Callable[[Exception], None]:

@@ -1,14 +1,15 @@
-"""All views of the page together, and the template they stand in."""
+"""All views of the page together, and the document they stand in."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-import panel as pn
-from bokeh.models import Range1d
+from bokeh.document import Document
+from bokeh.models import Plot, Range1d
 from panel.io import unlocked
 
 from granchain_core import Settled
@@ -17,10 +18,10 @@ from granchain_core.experiment.measured import MOST_BYTES
 from ..pages.curve.bar import CurveBar
 from ..pages.curve.view import Curve
 from ..parts.chain import Chain
-from ..parts.component import text
+from ..parts.component import Component, text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
-from ..parts.figure_style import BOTTOM, GAP, LEFT, TOP, pane
+from ..parts.figure_style import BOTTOM, GAP, LEFT, TOP
 from ..parts.header import Header
 from ..parts.knobs import Knobs
 from ..parts.status_line import StatusLine
@@ -34,7 +35,7 @@ from ..session.terms import definitions
 from .scales import Scales
 from .table import GROUPS, PAGES, described_tabs
 from .tabs import Tabs
-from .template import PageTemplate
+from .template import put_into
 
 _HERE = Path(__file__).resolve().parent
 
@@ -74,23 +75,27 @@ class Views:
         for overlay in self.overlays.values():
             overlay.apply_theme(theme)
 
-    def template(self) -> pn.Template:
-        """The page; its layout is a CSS grid in page.css."""
-        page = PageTemplate((_HERE / "page.html").read_text(encoding="utf-8"))
-        page.add_variable("page_css", style_sheet() + (_HERE / "page.css").read_text(encoding="utf-8"))
-        page.add_variable("page_js", text("page.js") + text("connection.js"))
-        page.add_variable("terms", json.dumps(definitions()).replace("<", "\\u003c"))
-        page.add_variable("frame_top", TOP)
-        page.add_variable("frame_bottom", BOTTOM)
-        page.add_variable("frame_left", LEFT)
-        page.add_variable("gap", GAP)
-        page.add_variable("overlays", [(row.name, row.title.capitalize()) for row in PAGES if row.view])
-        for name in ("header", "knobs", "equation", "chain", "curvebar", "tabs", "status_line"):
-            page.add_panel(name, getattr(self, name))
-        for name, overlay in self.overlays.items():
-            page.add_panel(name, overlay)
-        page.add_panel("left", pane(self.trains.left))
-        page.add_panel("map", pane(self.energy.figure))
-        page.add_panel("right", pane(self.trains.right))
-        page.add_panel("curve", pane(self.curve.figure))
-        return page
+    @property
+    def parts(self) -> dict[str, Component | Plot]:
+        """The parts by their names in page.html."""
+        return {
+            "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
+            "curvebar": self.curvebar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
+            "left": self.trains.left, "map": self.energy.figure, "right": self.trains.right, "curve": self.curve.figure,
+        }
+
+    def put_into(self, document: Document) -> None:
+        """Make all parts roots of a visitor's document; their layout is a CSS grid in page.css."""
+        put_into(document, self.parts, *_page())
+
+
+@cache
+def _page() -> tuple[str, dict[str, Any]]:
+    """The page's template and what stands in it, the same for every visitor."""
+    return (_HERE / "page.html").read_text(encoding="utf-8"), {
+        "page_css": style_sheet() + (_HERE / "page.css").read_text(encoding="utf-8"),
+        "page_js": text("page.js") + text("connection.js"),
+        "terms": json.dumps(definitions()).replace("<", "\\u003c"),
+        "frame_top": TOP, "frame_bottom": BOTTOM, "frame_left": LEFT, "gap": GAP,
+        "overlays": [(row.name, row.title.capitalize()) for row in PAGES if row.view],
+    }

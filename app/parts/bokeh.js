@@ -15,7 +15,7 @@ export function onLayout({ x_range, y_range, properties }, act) {
   for (const signal of [y_range.change, x_range.change, properties.inner_width.change]) signal.connect(act);
 }
 
-const FIGURES = new Set(["Figure", "Row", "Column", "GridPlot"]); // what a function of app/pictures returns
+const FIGURES = new Set(["Plot", "Figure", "Row", "Column", "GridPlot"]); // ours, and what a function of app/pictures returns
 const holds = (host, node) => {
   for (let at = node; at; at = at.parentNode ?? at.host) if (at === host) return true;
   return false;

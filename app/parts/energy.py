@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from bokeh.models import ColumnDataSource, HoverTool, Range1d, SingleIntervalTicker
-from bokeh.plotting import figure
+from bokeh.models import ColumnDataSource, HoverTool, Image, Plot, Range1d, SingleIntervalTicker
 
 from ..format import prefixed
 from ..frames import Frames
 from ..pictures.energies import energy_mapper
-from .figure_style import GAP, quiet_axis, quiet_figure
+from .figure_style import GAP, quiet_plot
 
 
 class EnergyMap:
@@ -21,15 +20,13 @@ class EnergyMap:
         self._beads, self._narrow = 1, False
         self.figure = self._build(time)
 
-    def _build(self, time: Range1d) -> figure:
-        plot = quiet_figure(GAP, GAP, name="kinetic energy", y_range=time, x_range=Range1d(0.5, 11.5),
-                            x_axis_location="above")
-        plot.yaxis.visible = False
-        plot.grid.visible = False
-        quiet_axis(plot.xaxis[0])
+    def _build(self, time: Range1d) -> Plot:
+        plot = quiet_plot((GAP, GAP), (12, 6), ("above", None), (), name="kinetic energy", y_range=time,
+                          x_range=Range1d(0.5, 11.5))
         plot.xaxis[0].axis_label = "bead"
         plot.xaxis[0].ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)
-        image = plot.image("image", "x", "y", "dw", "dh", source=self._source, color_mapper=self._mapper)
+        image = plot.add_glyph(self._source, Image(image="image", x="x", y="y", dw="dw", dh="dh",
+                                                   color_mapper=self._mapper))
         self._hover = HoverTool(renderers=[image], tooltips=[("bead", "$x{0}"), ("energy", "@image")])
         plot.add_tools(self._hover)
         return plot

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from bokeh.models import ColumnDataSource
-from bokeh.plotting import figure
+from bokeh.models import ColumnDataSource, Line, Plot
 
 from granchain_core import Run
 
@@ -45,22 +44,27 @@ class _Train:
 
 
 class PinnedTrains:
-    """The lines in both figures. They are drawn anew when the pins, the units or the time on the axis change."""
+    """The lines in both figures. They are drawn anew when the pins, the units or the time on the axis change.
 
-    def __init__(self, left: figure, right: figure) -> None:
-        self._sources = tuple(tuple(self._line(plot, dash) for dash in DASHES) for plot in (left, right))
-        for plot in (left, right):  # first in the list, as they are behind
-            plot.renderers = [*plot.renderers[-len(DASHES):], *plot.renderers[:-len(DASHES)]]
+    A line is made when it is first needed: most visitors pin nothing.
+    """
+
+    def __init__(self, left: Plot, right: Plot) -> None:
+        self._plots = left, right
+        self._sources: dict[tuple[int, int], ColumnDataSource] = {}
         self._trains: list[_Train | None] = []
         self._drawn: tuple[object, ...] = ()
         self._last: tuple[float, float, float, float] = (0.0, 1.0, 1.0, 1.0)
 
-    @staticmethod
-    def _line(plot: figure, dash: list[int]) -> ColumnDataSource:
-        source = ColumnDataSource(dict(_EMPTY))
-        plot.line("force", "time", source=source, line_color=GREY, line_width=1.8, line_dash=dash,
-                  level="underlay")
-        return source
+    def _draw(self, line: int, place: int, values: dict[str, np.ndarray]) -> None:
+        """Draw the train of a place, 0 at the driver or 1 at the wall."""
+        source = self._sources.get((line, place))
+        if source is not None:
+            source.data = values
+        elif len(values["time"]):
+            source = self._sources[line, place] = ColumnDataSource(values)
+            self._plots[line].add_glyph(source, Line(x="force", y="time", line_color=GREY, line_width=1.8,
+                                                      line_dash=DASHES[place]), level="underlay")
 
     @property
     def largest(self) -> tuple[float, float]:
@@ -86,14 +90,14 @@ class PinnedTrains:
             return
         self._drawn = (copies, scale, push, out)
         for line, unit in ((0, push), (1, out)):
-            for place, source in enumerate(self._sources[line]):
+            for place in range(len(DASHES)):
                 train = self._trains[place] if place < len(self._trains) else None
                 if train is None or not copies[place]:
-                    if len(source.data["time"]):
-                        source.data = dict(_EMPTY)
+                    self._draw(line, place, dict(_EMPTY))
                     continue
                 time, force = train.over(copies[place], line)
-                source.data = {"time": (time * scale).astype(np.float32), "force": (force / unit).astype(np.float32)}
+                self._draw(line, place, {"time": (time * scale).astype(np.float32),
+                                         "force": (force / unit).astype(np.float32)})
 
 
 def _copies(train: _Train | None, shown: float) -> int:

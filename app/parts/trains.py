@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from bokeh.models import ColumnDataSource, GlyphRenderer, LinearAxis, Range1d
-from bokeh.plotting import figure
+from bokeh.models import BasicTicker, ColumnDataSource, GlyphRenderer, Line, LinearAxis, Plot, Range1d
 
 from granchain_core import Run
 
 from ..format import prefixed
 from ..frames import Extremes, Frames, round_up, with_jumps
-from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_figure
+from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_plot
 from .pinned_trains import PinnedTrains
 
 _TITLES = ("drive u₀", "input force", "output force")
 _SHORT = ("drive", "in", "out")
+#: About how many ticks a force and the time have.
+_TICKS = (3, 6)
 WIDEST_TITLES = {"left": f"{_TITLES[1]} (mN)", "right": f"{_TITLES[2]} (mN)"}
 """By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`)."""
 
@@ -36,34 +37,30 @@ class Trains:
         self.right = self._right_figure(time)
         self._pinned = PinnedTrains(self.left, self.right)
 
-    def _left_figure(self, time: Range1d) -> figure:
-        plot = quiet_figure(LEFT, GAP, name="input force", y_range=time, x_range=Range1d(-1, 1))
-        plot.extra_x_ranges = {"drive": Range1d(-1, 1)}
-        axis = LinearAxis(x_range_name="drive")
+    def _left_figure(self, time: Range1d) -> Plot:
+        plot = quiet_plot((LEFT, GAP), _TICKS, ("below", "left"), (1,), name="input force", y_range=time,
+                          x_range=Range1d(-1, 1), extra_x_ranges={"drive": Range1d(-1, 1)})
+        axis = LinearAxis(x_range_name="drive", ticker=BasicTicker(desired_num_ticks=_TICKS[0], num_minor_ticks=0))
         quiet_axis(axis, DRIVE)
         plot.add_layout(axis, "above")
         quiet_axis(plot.xaxis[1], INPUT)
         plot.yaxis.axis_label = "time"
-        plot.xgrid.grid_line_color = None
         self._lines += [
-            plot.line("drive", "time", source=self._source, x_range_name="drive", line_color=DRIVE,
-                      line_width=2.0),
-            plot.line("force", "time", source=self._input, line_color=INPUT, line_width=2.5),
+            plot.add_glyph(self._source, Line(x="drive", y="time", line_color=DRIVE, line_width=2.0),
+                           x_range_name="drive"),
+            plot.add_glyph(self._input, Line(x="force", y="time", line_color=INPUT, line_width=2.5)),
         ]
-        _few_ticks(plot)
         return plot
 
-    def _right_figure(self, time: Range1d) -> figure:
-        plot = quiet_figure(GAP, 14, name="output force", y_range=time, x_range=Range1d(0, 1))
-        plot.yaxis.visible = False
-        plot.xgrid.grid_line_color = None
+    def _right_figure(self, time: Range1d) -> Plot:
+        plot = quiet_plot((GAP, 14), _TICKS, ("below", None), (1,), name="output force", y_range=time,
+                          x_range=Range1d(0, 1))
         quiet_axis(plot.xaxis[0], OUTPUT)
         self._lines += [
-            plot.line("elastic", "time", source=self._source, line_color=OUTPUT, line_width=2.0,
-                      line_dash=[5, 4]),
-            plot.line("force", "time", source=self._output, line_color=OUTPUT, line_width=2.5),
+            plot.add_glyph(self._source, Line(x="elastic", y="time", line_color=OUTPUT, line_width=2.0,
+                                              line_dash=[5, 4])),
+            plot.add_glyph(self._output, Line(x="force", y="time", line_color=OUTPUT, line_width=2.5)),
         ]
-        _few_ticks(plot)
         return plot
 
     def update(self, frames: Frames, time: np.ndarray, high: Extremes) -> None:
@@ -123,12 +120,3 @@ def _span(largest: float, *series: np.ndarray) -> tuple[float, float]:
     high = round_up(max(largest, *(float(s.max()) for s in series)))
     low = min(float(s.min()) for s in series)
     return (-0.06 * high if low > -0.02 * high else -round_up(-low)), 1.04 * high
-
-
-def _few_ticks(plot: figure) -> None:
-    for axis in plot.xaxis:
-        axis.ticker.desired_num_ticks = 3
-        axis.ticker.num_minor_ticks = 0
-    for axis in plot.yaxis:
-        axis.ticker.desired_num_ticks = 6
-        axis.ticker.num_minor_ticks = 0

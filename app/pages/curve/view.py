@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Range1d, Span
-from bokeh.plotting import figure
+from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Line, Plot, Range1d, Scatter, Segment, Span, Text
 
 from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Difference, Feature, Measured, compared
@@ -16,16 +14,19 @@ from granchain_core.steady.curve.resonance import Place, place_of
 
 from ...format import prefixed
 from ...frames import round_up
-from ...parts.figure_style import OUTPUT, quiet_axis, quiet_figure
-from ...parts.pinned_trains import DASHES as PIN_DASHES
+from ...parts.figure_style import OUTPUT, quiet_axis, quiet_plot, together
 from ...pictures.curve import DASHES, curve_columns, curve_tooltips
 from ...pictures.measured import COLUMNS, TOOLTIPS, measured_columns
 from ...pictures.regimes import REGIMES, SYMBOLS, regime_key
 from ...pictures.theme import GREY
+from .pinned_curves import PinnedCurves
 
 
 class Curve:
-    """The figure with, for every direction, the curve being computed and the one before it in grey."""
+    """The figure with, for every direction, the curve being computed and the one before it in grey.
+
+    Lines and marks that most visitors never see are made when they are first needed.
+    """
 
     def __init__(self, choose: Callable[[object], None]) -> None:
         self._points: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
@@ -37,74 +38,75 @@ class Curve:
         self._now = ColumnDataSource({"frequency": [], "force": []})
         self._measured = ColumnDataSource({name: [] for name in COLUMNS})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
-        self._pins = ColumnDataSource({name: [] for name in ("frequency", "force", "name")})
-        self._pinned: list[tuple[str, float, float]] = []
-        self._ghosts: list[list[CurvePoint]] = []
         self._measurement: Measured | None = None
         self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in DASHES}
+        self._visible = set(DASHES)
+        self._ink = GREY
         self.figure = self._frame(choose)
-        self._ghost_lines = [self._ghost(dash) for dash in PIN_DASHES]
-        self._old = {name: self._line(name, grey=True) for name in DASHES}
-        self._new = {name: self._line(name, grey=False) for name in DASHES}
+        self._pinned = PinnedCurves(self.figure)
+        self._old: dict[str, ColumnDataSource] = {}
+        self._new: dict[str, ColumnDataSource] = {}
         # In the overlay, so that moving f repaints a line and a dot and not the whole curve.
         self._current = Span(dimension="height", line_color=GREY, line_width=1, level="overlay")
         self.figure.add_layout(self._current)
         self._marks()
+        self._new["rest"] = self._line("rest", grey=False)
 
-    def _frame(self, choose: Callable[[float], None]) -> figure:
-        plot = quiet_figure(58, 26, name="resonance curve", x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+    def _frame(self, choose: Callable[[float], None]) -> Plot:
+        plot = quiet_plot((58, 26), (5, 5), ("below", "left"), name="resonance curve", x_range=Range1d(0, 1),
+                          y_range=Range1d(0, 1))
         plot.min_border_top = 10
         plot.min_border_bottom = 6
         plot.xaxis.axis_label = "drive frequency f (Hz)"
         quiet_axis(plot.yaxis[0], OUTPUT)
         plot.on_event(Tap, lambda event: choose(event.x))
-        for axis in (plot.xaxis[0], plot.yaxis[0]):
-            axis.ticker.desired_num_ticks = 5
-            axis.ticker.num_minor_ticks = 0
         return plot
 
     def _line(self, direction: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource(curve_columns([], 1.0))
-        line = self.figure.line(
-            "frequency", "force", source=source, line_dash=DASHES[direction] or "solid",
-            line_color=GREY if grey else OUTPUT, line_width=1.5, line_alpha=0.45 if grey else 0.9)
-        self._renderers[direction].append(line)
+        made = [self.figure.add_glyph(source, Line(
+            x="frequency", y="force", line_dash=DASHES[direction] or "solid", line_color=GREY if grey else OUTPUT,
+            line_width=1.5, line_alpha=0.45 if grey else 0.9))]
         if not grey:
-            marks = self.figure.scatter(
-                "frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
-                line_color="colour", line_width=1.5)
-            self._renderers[direction].append(marks)
+            marks = self.figure.add_glyph(source, Scatter(
+                x="frequency", y="force", marker="marker", size="size", fill_color="colour", line_color="colour",
+                line_width=1.5))
+            made.append(marks)
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(direction)))
+        for renderer in made:
+            renderer.visible = direction in self._visible
+        self._renderers[direction] += made
+        self._bring_forward()
         return source
 
-    def _ghost(self, dash: list[int]) -> ColumnDataSource:
-        source = ColumnDataSource({"frequency": [], "force": []})
-        self.figure.line("frequency", "force", source=source, line_dash=dash, line_color=GREY, line_width=1.5,
-                         level="underlay")
-        return source
+    def _bring_forward(self) -> None:
+        """Draw what the paper states in front of the curves, in whichever order they came."""
+        stated = [self._stated, self._labels]
+        self.figure.renderers = [*(one for one in self.figure.renderers if one not in stated), *stated]
 
     def _marks(self) -> None:
-        """Stated features, the visitor's data and the current point, in front of the curves."""
+        """Stated features and the current point, in front of the curves."""
         plot = self.figure
-        feature = plot.segment("frequency", 0, "frequency", "top", source=self._features, line_color=GREY,
-                               line_width=3, line_dash=[1, 5], line_cap="round")
-        self._labels = plot.text("frequency", "top", "label", source=self._features, angle=np.pi / 2,
-                                 text_align="right", text_baseline="bottom", text_font_size="12px",
-                                 text_color=GREY, x_offset=-3)
-        plot.add_tools(HoverTool(renderers=[feature], line_policy="interp",
+        self._stated = plot.add_glyph(self._features, Segment(
+            x0="frequency", y0=0, x1="frequency", y1="top", line_color=GREY, line_width=3, line_dash=[1, 5],
+            line_cap="round"))
+        self._labels = plot.add_glyph(self._features, Text(
+            x="frequency", y="top", text="label", angle=np.pi / 2, text_align="right", text_baseline="bottom",
+            text_font_size="12px", text_color=GREY, x_offset=-3))
+        plot.add_tools(HoverTool(renderers=[self._stated], line_policy="interp",
                                  tooltips=[("stated", "@label"), ("source", "@source")]))
-        self._bars = plot.segment("frequency", "low", "frequency", "high", source=self._measured, line_width=1,
-                                  level="overlay")
-        self._dots = plot.scatter("frequency", "force", source=self._measured, marker="square", size=7,
-                                  fill_color=None, line_width=1.2, level="overlay")
-        plot.add_tools(HoverTool(renderers=[self._dots], tooltips=TOOLTIPS))
-        self._pin_marks = plot.scatter("frequency", "force", source=self._pins, marker="circle", size=17,
-                                       fill_color=None, line_width=1.5, line_dash=[3, 2], level="overlay")
-        self._pin_names = plot.text("frequency", "force", "name", source=self._pins, text_align="center",
-                                    text_baseline="top", y_offset=10, text_font_size="13px",
-                                    text_font_style="bold", level="overlay")
-        self._dot = plot.scatter("frequency", "force", source=self._now, size=15, fill_color=None,
-                                 line_width=3, level="overlay")
+        self._dot = plot.add_glyph(self._now, Scatter(x="frequency", y="force", size=15, fill_color=None,
+                                                     line_width=3), level="overlay")
+        self._bars: list[GlyphRenderer] = []
+
+    def _measurement_marks(self) -> list[GlyphRenderer]:
+        """The visitor's data: error bars and hollow squares."""
+        bars = self.figure.add_glyph(self._measured, Segment(x0="frequency", y0="low", x1="frequency", y1="high",
+                                                             line_width=1), level="overlay")
+        dots = self.figure.add_glyph(self._measured, Scatter(x="frequency", y="force", marker="square", size=7,
+                                                             fill_color=None, line_width=1.2), level="overlay")
+        self.figure.add_tools(HoverTool(renderers=[dots], tooltips=TOOLTIPS))
+        return [bars, dots]
 
     def fit(self, narrow: bool) -> None:
         """Fewer numbers on the axis where there is little room."""
@@ -112,11 +114,12 @@ class Curve:
 
     def ink(self, colour: str, thick: float) -> None:
         """The colour of measured data and of the current point's ring: dark on light, light on dark."""
-        for renderer in (self._bars, self._dots, self._dot, self._pin_marks):
+        self._ink = colour
+        for renderer in (self._dot, *self._bars):
             renderer.glyph.line_color = colour
-        for names in (self._labels, self._pin_names):
-            names.glyph.text_color = colour
+        self._labels.glyph.text_color = colour
         self._dot.glyph.size = 15 * thick
+        self._pinned.ink(colour)
 
     def range(self, low: float, high: float) -> None:
         """Set the range of frequencies shown."""
@@ -124,6 +127,7 @@ class Curve:
 
     def show_directions(self, directions: list[str]) -> None:
         """Make only these directions visible."""
+        self._visible = set(directions)
         for name, renderers in self._renderers.items():
             for renderer in renderers:
                 renderer.visible = name in directions
@@ -155,28 +159,15 @@ class Curve:
 
     def pin(self, places: Sequence[tuple[str, float, float]]) -> None:
         """Mark pinned motions: name, frequency [Hz] and largest output force [N]."""
-        self._pinned = list(places)
+        self._pinned.places = list(places)
         self._rescale()
-        self._draw_pins()
+        self._pinned.draw(self._scale[0])
 
     def pinned_curves(self, curves: Sequence[list[CurvePoint]]) -> None:
         """Draw the curves of the pins, in their order, dashed as their trains are; an empty one is the present one."""
-        if [*map(len, curves)] == [*map(len, self._ghosts)] == [0] * len(curves):
-            return
-        self._ghosts = [[point for point in points if np.isfinite(point.max_output_force)] for points in curves]
-        self._rescale()
-        self._draw_pins()
-
-    def _draw_pins(self) -> None:
-        factor = self._scale[0]
-        names, frequencies, forces = zip(*self._pinned, strict=True) if self._pinned else ((), (), ())
-        self._pins.data = {"name": list(names), "frequency": list(frequencies),
-                           "force": [force / factor for force in forces]}
-        for place, source in enumerate(self._ghost_lines):
-            points = self._ghosts[place] if place < len(self._ghosts) else []
-            if points or len(source.data["frequency"]):
-                source.data = {"frequency": [p.frequency for p in points],
-                               "force": [p.max_output_force / factor for p in points]}
+        if self._pinned.take(curves):
+            self._rescale()
+            self._pinned.draw(self._scale[0])
 
     @property
     def whole(self) -> bool:
@@ -248,6 +239,10 @@ class Curve:
         if measured is None:
             self._measured.data = {name: [] for name in COLUMNS}
             return
+        if not self._bars:
+            self._bars = self._measurement_marks()
+            for renderer in self._bars:
+                renderer.glyph.line_color = self._ink
         found = self.difference
         self._measured.data = measured_columns(measured, self._scale[0], None if found is None else found.residuals)
 
@@ -261,9 +256,8 @@ class Curve:
                         np.array([point.max_output_force for point in points]))
 
     def _rescale(self) -> None:
-        curves = (*self._points.values(), *self._before.values(), *self._ghosts)
-        forces = [point.max_output_force for points in curves for point in points]
-        forces += [force for _, _, force in self._pinned]
+        curves = (*self._points.values(), *self._before.values())
+        forces = [point.max_output_force for points in curves for point in points] + self._pinned.forces
         if self._measurement is not None:
             forces.append(float(np.max(self._measurement.force)))
         high = round_up(max(forces, default=1.0))
@@ -274,7 +268,7 @@ class Curve:
                 self._draw(name)
                 self._draw_before(name)
             self.now(*self._shown)
-            self._draw_pins()
+            self._pinned.draw(scale[0])
             if self._measurement is not None:
                 self.measured(self._measurement)
         self.figure.y_range.end = 1.15 * high / scale[0]  # room for the names of the peaks
@@ -284,10 +278,16 @@ class Curve:
             self._features.data = {**self._features.data, "top": top}
 
     def _draw(self, direction: str) -> None:
-        self._new[direction].data = self._columns(self._points[direction])
+        self._fill(self._new, direction, self._points[direction])
 
     def _draw_before(self, direction: str) -> None:
-        self._old[direction].data = self._columns(self._before[direction])
+        self._fill(self._old, direction, self._before[direction])
 
-    def _columns(self, points: list[CurvePoint]) -> dict[str, Any]:
-        return curve_columns(sorted(points, key=lambda point: point.frequency), self._scale[0])
+    def _fill(self, sources: dict[str, ColumnDataSource], direction: str, points: list[CurvePoint]) -> None:
+        """Draw the points of a direction in ascending frequency."""
+        if points and direction not in sources:
+            with together(self.figure):
+                sources[direction] = self._line(direction, grey=sources is self._old)
+        if direction in sources:
+            ordered = sorted(points, key=lambda point: point.frequency)
+            sources[direction].data = curve_columns(ordered, self._scale[0])

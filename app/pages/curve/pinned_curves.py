@@ -1,0 +1,80 @@
+"""What the resonance curve shows of pinned motions: their places, and their curves behind the present one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot, Scatter, Text
+
+from granchain_core import CurvePoint
+
+from ...parts.pinned_trains import DASHES
+from ...pictures.theme import GREY
+
+
+class PinnedCurves:
+    """Dashed circles with names, and grey lines; each is made when it is first needed: most visitors pin nothing.
+
+    `places` are the name, frequency [Hz] and largest output force [N] of each pinned motion.
+    """
+
+    def __init__(self, plot: Plot) -> None:
+        self._plot = plot
+        self.places: list[tuple[str, float, float]] = []
+        self._curves: list[list[CurvePoint]] = []
+        self._lines: dict[int, ColumnDataSource] = {}
+        self._source = ColumnDataSource({name: [] for name in ("frequency", "force", "name")})
+        self._marks: list[GlyphRenderer] = []
+        self._ink = GREY
+
+    @property
+    def forces(self) -> list[float]:
+        """All forces that are to be in the picture [N]."""
+        return [force for *_, force in self.places] + [p.max_output_force for points in self._curves for p in points]
+
+    def take(self, curves: Sequence[list[CurvePoint]]) -> bool:
+        """Take the curves of the pins, in their order; whether there is anything new to draw."""
+        if [*map(len, curves)] == [*map(len, self._curves)] == [0] * len(curves):
+            return False
+        self._curves = [[point for point in points if np.isfinite(point.max_output_force)] for points in curves]
+        return True
+
+    def ink(self, colour: str) -> None:
+        """The colour of circles and names."""
+        self._ink = colour
+        if self._marks:
+            circles, names = self._marks
+            circles.glyph.line_color, names.glyph.text_color = colour, colour
+
+    def draw(self, factor: float) -> None:
+        """Draw everything; one unit of the axis is `factor` newtons."""
+        if self.places and not self._marks:
+            self._marks = self._make_marks()
+            self.ink(self._ink)
+        names, frequencies, forces = zip(*self.places, strict=True) if self.places else ((), (), ())
+        self._source.data = {"name": list(names), "frequency": list(frequencies),
+                             "force": [force / factor for force in forces]}
+        for place, dash in enumerate(DASHES):
+            points = self._curves[place] if place < len(self._curves) else []
+            if points and place not in self._lines:
+                self._lines[place] = self._line(dash)
+            if place in self._lines:
+                self._lines[place].data = {"frequency": [p.frequency for p in points],
+                                           "force": [p.max_output_force / factor for p in points]}
+
+    def _line(self, dash: list[int]) -> ColumnDataSource:
+        source = ColumnDataSource({"frequency": [], "force": []})
+        self._plot.add_glyph(source, Line(x="frequency", y="force", line_dash=dash, line_color=GREY, line_width=1.5),
+                             level="underlay")
+        return source
+
+    def _make_marks(self) -> list[GlyphRenderer]:
+        at = {"x": "frequency", "y": "force"}
+        return [
+            self._plot.add_glyph(self._source, Scatter(**at, marker="circle", size=17, fill_color=None, line_width=1.5,
+                                                       line_dash=[3, 2]), level="overlay"),
+            self._plot.add_glyph(self._source, Text(**at, text="name", text_align="center", text_baseline="top",
+                                                    y_offset=10, text_font_size="13px", text_font_style="bold"),
+                                 level="overlay"),
+        ]
