@@ -17,7 +17,7 @@ from .controller import Controller
 
 def page() -> None:
     """Make the document of the present request a new page; the address may carry a shared scene."""
-    pn.extension("katex")
+    pn.extension("katex", browser_info=False)  # Panel would add a root for it with every part
     document = pn.state.curdoc
     if document is None:
         raise RuntimeError("the page is made inside a request; serve it, do not call it")

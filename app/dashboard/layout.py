@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from bokeh.document import Document
-from bokeh.models import Plot, Range1d
+from bokeh.models import Range1d
 from panel.io import unlocked
 
 from granchain_core import Settled
@@ -18,7 +18,7 @@ from granchain_core.experiment.measured import MOST_BYTES
 from ..pages.curve.bar import CurveBar
 from ..pages.curve.view import Curve
 from ..parts.chain import Chain
-from ..parts.component import Component, text
+from ..parts.component import text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
 from ..parts.figure_style import BOTTOM, GAP, LEFT, TOP
@@ -75,18 +75,14 @@ class Views:
         for overlay in self.overlays.values():
             overlay.apply_theme(theme)
 
-    @property
-    def parts(self) -> dict[str, Component | Plot]:
-        """The parts by their names in page.html."""
-        return {
-            "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
-            "curvebar": self.curvebar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
-            "left": self.trains.left, "map": self.energy.figure, "right": self.trains.right, "curve": self.curve.figure,
-        }
-
     def put_into(self, document: Document) -> None:
         """Make all parts roots of a visitor's document; their layout is a CSS grid in page.css."""
-        put_into(document, self.parts, *_page())
+        parts = {
+            "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
+            "curvebar": self.curvebar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
+        }
+        plots = self.trains.left, self.energy.figure, self.trains.right, self.curve.figure
+        put_into(document, parts, plots, *_page())
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any
 
@@ -14,20 +14,19 @@ from panel.io.resources import BASE_TEMPLATE
 from ..parts.component import Component
 
 
-def put_into(document: Document, parts: Mapping[str, Component | Plot], template: str,
+def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable[Plot], template: str,
              variables: Mapping[str, Any]) -> None:
-    """Make each part a root by its name, for `embed(roots.NAME)` in the template.
+    """Make each part a root by its name here, and each plot by its own, for `embed(roots.NAME)` in the template.
 
-    Each part of ours goes by Panel's `server_doc`; a figure needs nothing of Panel. `pn.Template` adds what this page
+    Each part of ours goes by Panel's `server_doc`; a plot needs nothing of Panel. `pn.Template` adds what this page
     does not use: a second layout around all roots, a design, and a configuration set and restored for each part.
     """
     with document.models.freeze():  # what the document refers to is collected once, not anew for each part
         for name, part in parts.items():
-            if isinstance(part, Plot):
-                document.add_root(part)
-            else:
-                part.server_doc(document, title="granchain", location=False)
+            part.server_doc(document, title="granchain", location=False)
             document.roots[-1].name = name
+        for plot in plots:
+            document.add_root(plot)
     document.template = _compiled(template)
     document.template_variables.update(variables)
 
