@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from panel.io import unlocked
 
-from granchain_core import Run, Scene, Settled
+from granchain_core import Scene, Settled
 
 from ..format import prefixed
 from ..frames import Frames, round_up, settled_frames
@@ -22,7 +22,7 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
     frames = settled_frames(picture.run)
     factor, letter = prefixed(float(frames.time[-1]))
     with unlocked():
-        views.trains.left.yaxis.axis_label = f"time ({letter}s){_periods_shown(picture.run)}"
+        views.trains.left.yaxis.axis_label = f"time ({letter}s){_periods_shown(frames, picture.run.scene)}"
         _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s", final=picture.final)
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
         views.shown = picture
@@ -49,10 +49,10 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
         views.status_line.update_state(regime=f"live, {since}", regime_hint="", start="", **run_entries(run))
 
 
-def _periods_shown(run: Run) -> str:
-    """How many drive periods the axis of time is long; empty without a drive."""
-    count = round(float(run.time[-1] - run.time[0]) * run.scene.f)
-    return f", {count} drive period{'s' * (count != 1)}" if run.scene.is_driven else ""
+def _periods_shown(frames: Frames, scene: Scene) -> str:
+    """How many drive periods the axis of time is long, the repetitions of a short orbit among them; empty without a drive."""
+    count = round(float(frames.time[-1]) * scene.f)
+    return f", {count} drive period{'s' * (count != 1)}" if scene.is_driven else ""
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
