@@ -9,9 +9,14 @@ import { Sound } from "./sound.js";
 import { colourOf, Steel } from "./steel.js";
 
 const SCALES = [
-  ["same", "same scale", "One scale for all pictures of this scene: strong looks strong, weak looks weak"],
+  [
+    "same",
+    "same scale",
+    "One scale for all pictures of this scene: its axes and colours end at the largest values at any drive frequency, so strong looks strong and weak looks weak",
+  ],
   ["fit", "fit", "Every picture fills its frame: weak motion can be seen, but not compared"],
 ];
+const PEAK = "The largest force in this picture. How far its axis goes is said below the map: “same scale” or “fit”.";
 
 // Calls `act` after the present animation frame: messages posted during a frame are delivered after it.
 function afterFrame(act) {
@@ -80,6 +85,8 @@ class Chain {
       button(words, () => this.chooseScale(value), { title, value, ariaPressed: "false" }),
     );
     scale.querySelector(".segments").append(...this.scales);
+    this.peaks = [...document.querySelectorAll("#stage .peak")];
+    for (const peak of this.peaks) peak.title = PEAK;
   }
 
   chooseScale(value) {
@@ -87,13 +94,19 @@ class Chain {
     this.model.send_msg({ do: "scale", value });
   }
 
-  showScale({ fit, energy_labels }) {
+  showScale({ fit, driven, energy_labels, peaks }) {
     document.getElementById("stage").dataset.scale = fit ? "fit" : "same";
     this.energies.forEach((place, i) => {
       place.textContent = energy_labels[i];
     });
     for (const one of this.scales) one.ariaPressed = String((one.value === "fit") === fit);
-    this.scales[1].textContent = fit ? "fitted to each picture" : "fit";
+    // More words where there is room: of the scale that is chosen, and the unit, which the axis has.
+    const more = (words, rest) => [words, element("span", { className: "roomy", textContent: rest })];
+    this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
+    this.scales[1].replaceChildren(...(fit ? more("fitted", " to each picture") : ["fit"]));
+    this.peaks.forEach((place, i) => {
+      place.replaceChildren(...more(peaks[i][0], ` ${peaks[i][1]}`));
+    });
   }
 
   receive(message) {
