@@ -123,7 +123,7 @@ _TABLE = (
     Quantity("D", "D", "N s/m", "D", "contact damping",
              "Force of the contact's dashpot per speed of approach; where it grows with the overlap its value at the "
              "scene's reference overlap.", 0.0, 1e6, "linear", 0.1, main=True, short="damping",
-             at_zero="no energy is lost in contacts"),
+             at_zero="contacts lose no energy"),
     Quantity("k", "k", "N/m", "k", "foundation stiffness", "Spring from every bead to the ground (the flexures).",
              0.0, 1e10, "cubic", 10.0, main=True, short="foundation",
              at_zero="no springs to the ground"),
