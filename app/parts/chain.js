@@ -1,5 +1,6 @@
-// The chain on the page: bead i stands above column i of the map; its clock is the page's.
+// The chain on the page, over the map whose columns are its beads; its clock is the page's.
 
+import { BeadLink } from "./bead_link.js";
 import { ChainDrawing } from "./chain_drawing.js";
 import { unpack } from "./chain_series.js";
 import { Clock, Cursor } from "./clock.js";
@@ -38,7 +39,8 @@ class Chain {
     this.drawing = new ChainDrawing(this.canvas, model.state.palette);
     this.clock = new Clock(() => this.mark());
     this.cursor = new Cursor(this.clock);
-    this.crosshair = new Crosshair(this.clock, this.cursor);
+    this.link = new BeadLink(this.drawing, this.cursor, () => this.mark());
+    this.crosshair = new Crosshair(this.clock, this.cursor, (bead) => this.link.point(bead));
     this.sound = new Sound();
     this.dirty = true;
     this.asked = 0; // the animation frame that was asked for
@@ -131,8 +133,9 @@ class Chain {
     });
   }
 
-  // The frame around the chosen bead's column of the map.
+  // The frame around the chosen bead's column of the map, and the line from the bead to it.
   placeColumn() {
+    this.link.place();
     const { chosen, beads } = this.drawing;
     const { left, width } = this.cursor.columns;
     this.column.hidden = !(chosen >= 1 && chosen <= beads);
@@ -154,6 +157,7 @@ class Chain {
     window.granchain.emit("shown", window.granchain.shown);
     const { beads } = this.drawing;
     this.drawing.load(frames);
+    this.drawing.pointed = Math.min(this.drawing.pointed, this.drawing.beads);
     if (this.drawing.beads !== beads) this.placeColumn();
     this.clock.show(frames);
     this.mark();

@@ -27,7 +27,6 @@ class EnergyMap:
         plot.yaxis.visible = False
         plot.grid.visible = False
         quiet_axis(plot.xaxis[0])
-        plot.xaxis[0].axis_label = "bead"
         plot.xaxis[0].ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)
         image = plot.image("image", "x", "y", "dw", "dh", source=self._source, color_mapper=self._mapper)
         self._hover = HoverTool(renderers=[image], tooltips=[("bead", "$x{0}"), ("energy", "@image")])
@@ -37,6 +36,7 @@ class EnergyMap:
     def fit(self, narrow: bool) -> None:
         """Number fewer beads where there is little room."""
         self._narrow = narrow
+        self.figure.xaxis[0].axis_label = "bead" if narrow else "bead, numbered as above"
         self.figure.xaxis[0].ticker.interval = max(1, round(self._beads / (6 if narrow else 12)))
 
     def update(self, frames: Frames, time: np.ndarray, unit: str, high: float) -> None:

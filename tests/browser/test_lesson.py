@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pytest
 from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
+from started import at_rest
 
 
 def test_scales_and_the_largest_forces_are_said_where_they_are(visit: Visit) -> None:
@@ -23,3 +25,36 @@ def test_scales_and_the_largest_forces_are_said_where_they_are(visit: Visit) -> 
     expect(peaks).to_have_text(["max 1.87 N", "max 1.12 N"])
     page.set_viewport_size({"width": 390, "height": 844})
     expect(page.get_by_text("√ scale")).to_be_visible()
+
+
+# Where the link begins and ends on the screen, and the frame around the column; null while there is none.
+LINK = """() => {
+  const link = document.getElementById("link"), stage = document.getElementById("stage").getBoundingClientRect();
+  if (link.hasAttribute("hidden")) return null;
+  const [x, , to] = link.querySelector("polyline").getAttribute("points").split(/[ ,]/).map(Number);
+  const column = link.querySelector("rect").getBoundingClientRect();
+  return [x + stage.x, to + stage.x, column.x, column.width];
+}"""
+
+
+def test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_bead(visit: Visit) -> None:
+    """The chain is wider than the map: no bead stands over its column."""
+    page = visit("?v=1&scene=sec2&f=340")
+    settled(page)
+    assert page.evaluate(LINK) is None
+    home, top, left, width, high = page.evaluate("""() => {
+      const chain = document.getElementById("chain").getBoundingClientRect(), map = document.getElementById("map").getBoundingClientRect();
+      const pitch = (chain.width - 62 - 26) / 11; // the room beside is the driver's and the wall's
+      return [chain.x + 62 + 3.5 * pitch, chain.y + 0.58 * chain.height, map.x + 6, map.width - 12, map.y + 0.5 * map.height]; }""")
+    column = left + 3 / 11 * width
+    page.mouse.move(home, top)  # bead 4 at its place of rest
+    page.wait_for_function(f"({LINK})()")
+    assert page.evaluate(LINK) == pytest.approx([home, column + width / 22, column, width / 11], abs=1.5)
+    ringed = at_rest(page, "pixels('chain')")
+    page.mouse.move(5, 5)
+    page.wait_for_function(f"!({LINK})()")
+    assert at_rest(page, "pixels('chain')") != ringed
+    page.mouse.move(column + width / 22, high)
+    page.wait_for_function(f"({LINK})()")
+    assert page.evaluate(LINK)[0] == pytest.approx(home, abs=1.5)
+    assert at_rest(page, "pixels('chain')") == ringed
