@@ -19,11 +19,9 @@ const ICONS = {
   sound: "M4 9h4l5-4v14l-5-4H4zM17 9a4 4 0 0 1 0 6",
   more: "M5 12h.5M12 12h.5M19 12h.5",
 };
-export const icon = (name, words = "") =>
-  `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>${
-    words && `<span class="wide">${words}</span>`
-  }`;
+export const icon = (name, words = name) =>
+  `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg><span>${words}</span>`;
 
-// A button with an icon; its title is also its accessible name.
+// A button with an icon over a word; its title, which has that word, is also its accessible name.
 export const iconButton = (innerHTML, title, act, className = "") =>
-  button("", act, { innerHTML, title, ariaLabel: title, className });
+  button("", act, { innerHTML, title, ariaLabel: title, className: `icon ${className}` });

@@ -58,3 +58,28 @@ def test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_b
     page.wait_for_function(f"({LINK})()")
     assert page.evaluate(LINK)[0] == pytest.approx(home, abs=1.5)
     assert at_rest(page, "pixels('chain')") == ringed
+
+
+# The word on every button of the bar that is on the screen, and the name of the button.
+BUTTONS = """() => {
+  const found = [], look = (node) => {
+    for (const one of node.querySelectorAll("*")) {
+      if (one.shadowRoot) look(one.shadowRoot);
+      if (one.tagName === "BUTTON" && one.checkVisibility()) found.push([one.innerText.trim().toLowerCase(), one.ariaLabel.toLowerCase()]);
+    }
+  };
+  look(document.getElementById("bar"));
+  return found;
+}"""
+
+
+def test_every_button_of_the_bar_has_a_word_that_is_in_its_name(visit: Visit) -> None:
+    page = visit()
+    for width in (1280, 390):
+        page.set_viewport_size({"width": width, "height": 844})
+        page.evaluate("shown()")
+        page.get_by_role("button", name="More controls").click()
+        buttons = page.evaluate(BUTTONS)
+        assert len(buttons) >= 14
+        assert [one for one in buttons if not one[0] or one[0] not in one[1]] == []
+        page.get_by_role("button", name="More controls").click()
