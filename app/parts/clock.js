@@ -98,7 +98,7 @@ export class Cursor {
       put(title, box, name === "left" ? this.left : this.gap, this.gap, { top: top(box) });
     }
     put(document.getElementById("scale"), map, this.gap, this.gap, {
-      top: `${map.bottom - stage.top - this.bottom + 8}px`,
+      top: `${map.bottom - stage.top - this.bottom + 4}px`,
     });
     for (const peak of this.stage.querySelectorAll(".peak")) {
       const name = peak.dataset.under;

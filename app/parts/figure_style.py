@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 
 from ..pictures.theme import THEMES
 
-TOP, BOTTOM, LEFT, GAP = 78, 78, 60, 6
+TOP, BOTTOM, LEFT, GAP = 78, 82, 60, 6
 """Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly."""
 
 DRIVE, INPUT, OUTPUT = THEMES["light"].drive, THEMES["light"].input, THEMES["light"].output

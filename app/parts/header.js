@@ -4,6 +4,7 @@ import { button, download, element, onWidth } from "./dom.js";
 import { wholePage } from "./embed.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
+import { curveButton, knobsButton } from "./phone_buttons.js";
 import { Popovers } from "./popovers.js";
 import { Tour } from "./tour.js";
 
@@ -36,13 +37,13 @@ class Header {
     this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
     this.popovers.menu.ariaLabel = "more controls";
     const small = [this.play, this.step, this.name, element("span", { className: "grow" }), wholePage(this.name)];
-    const knobs = () => window.granchain.drawer(!document.getElementById("page").classList.contains("drawer"));
     const all = [
-      iconButton(icon("knobs"), "Show or hide the other knobs", knobs, "knobs-button"),
+      knobsButton(),
       this.name,
       this.scene,
       this.reset,
       this.play,
+      curveButton(),
       this.step,
       this.undo,
       this.redo,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from knobs import Visit, settled, type_into
+from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import expect
-from started import at_rest
+from room import faults
+from started import at_rest, until
 
 
 def test_scales_and_the_largest_forces_are_said_where_they_are(visit: Visit) -> None:
@@ -83,3 +84,21 @@ def test_every_button_of_the_bar_has_a_word_that_is_in_its_name(visit: Visit) ->
         assert len(buttons) >= 14
         assert [one for one in buttons if not one[0] or one[0] not in one[1]] == []
         page.get_by_role("button", name="More controls").click()
+
+
+def test_on_a_phone_one_tap_puts_the_curve_under_the_picture(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=340", viewport={"width": 390, "height": 844}, has_touch=True)
+    settled(page)
+    curve, button = page.locator("#curve"), page.get_by_role("button", name="Resonance curve under the pictures")
+    expect(curve).not_to_be_in_viewport(ratio=0.1)
+    button.tap()
+    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    for part in ("chain", "map", "curve"):
+        expect(page.locator(f"#{part}")).to_be_in_viewport(ratio=1)
+    sheet, box = page.locator("#side").bounding_box(), curve.bounding_box()
+    assert sheet and box and box["y"] + box["height"] <= sheet["y"]  # the knob f does not cover it
+    until(page, lambda: faults(page) == [])
+    page.locator(".chapters .peak").nth(1).tap()
+    expect(page.locator("#foot b")).to_contain_text("1:2 resonance")
+    page.get_by_role("button", name="Show or hide the other knobs").tap()
+    expect(button).to_have_attribute("aria-pressed", "false")  # the sheet has its place
