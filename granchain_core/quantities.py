@@ -24,7 +24,7 @@ class Quantity:
     is the cube of the position, fine near 0. `step` is the fine step of the keyboard; 0 stands for half a decade.
     `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted too. `main` knobs are
     always on the page, the others under "more". `short` is the label beside a number where `label` is too long.
-    `shown_in` is the factor and unit on the page if that is not `unit`. `changes_motion` is False for a knob of the
+    `at_zero` says in a few words what 0 means where that switches something off. `shown_in` is the factor and unit on the page if that is not `unit`. `changes_motion` is False for a knob of the
     computation alone, `at_start` true for one that changes where a motion begins and not the chain.
     """
 
@@ -43,6 +43,7 @@ class Quantity:
     whole: bool = False
     main: bool = False
     short: str = ""
+    at_zero: str = ""
     shown_in: tuple[float, str] | None = None
     changes_motion: bool = True
     at_start: bool = False
@@ -121,16 +122,18 @@ _TABLE = (
              1e-12, 1e-4, "log", 1e-9, main=True, shown_in=(1e-6, "µm")),
     Quantity("D", "D", "N s/m", "D", "contact damping",
              "Force of the contact's dashpot per speed of approach; where it grows with the overlap its value at the "
-             "scene's reference overlap.", 0.0, 1e6, "linear", 0.1, main=True, short="damping"),
+             "scene's reference overlap.", 0.0, 1e6, "linear", 0.1, main=True, short="damping",
+             at_zero="contacts lose no energy"),
     Quantity("k", "k", "N/m", "k", "foundation stiffness", "Spring from every bead to the ground (the flexures).",
-             0.0, 1e10, "cubic", 10.0, main=True, short="foundation"),
+             0.0, 1e10, "cubic", 10.0, main=True, short="foundation",
+             at_zero="no springs to the ground"),
     Quantity("kappa", "κ", "1", r"\kappa", "foundation stiffness, dimensionless",
              "k divided by K·√A₀, the contact stiffness at one drive amplitude of overlap.",
              0.0, 100.0, "cubic", 1e-5, main=True, short="k / (K√A₀)"),
     Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
              1, 10_000, "linear", 1, whole=True, short="beads"),
     Quantity("F0", "F₀", "N", "F_0", "preload", "Static force that presses the chain together; 0 is the sonic vacuum.",
-             0.0, 1e4, "linear", 0.1),
+             0.0, 1e4, "linear", 0.1, at_zero="nothing presses the beads"),
     Quantity("dimer", "m₂/m₁", "1", "m_2/m_1", "mass of every second bead",
              "Mass of beads 2, 4, … over that of the others; of the same material, so the radius goes with its cube "
              "root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer"),
@@ -147,7 +150,7 @@ _TABLE = (
              "drive 1/f is only the time that is shown.", choices=DRIVES, numeric=False),
     Quantity("strike", "v₁", "m/s", "v_1", "initial velocity of bead 1",
              "Speed at which bead 1 moves towards the wall at time 0.", 0.0, 100.0, "cubic", 0.001, short="strike",
-             at_start=True),
+             at_zero="bead 1 starts at rest", at_start=True),
     Quantity("end", "", "", "", "driven end", "The end that the driver touches; the wall is at the other. "
              "With the last one a chain of unequal beads is turned round.", choices=ENDS, numeric=False),
     Quantity("wall", "W", "1", r"K_N/K", "right wall",

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 from panel.io import unlocked
 
-from granchain_core import Run, Scene, Settled
+from granchain_core import Scene, Settled
 
 from ..format import prefixed
-from ..frames import Frames, round_up, settled_frames
+from ..frames import Frames, extremes_of, round_up, settled_frames
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
 from ..session.live import LivePicture
@@ -22,8 +22,9 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
     frames = settled_frames(picture.run)
     factor, letter = prefixed(float(frames.time[-1]))
     with unlocked():
-        views.trains.left.yaxis.axis_label = f"time ({letter}s){_periods_shown(picture.run)}"
-        _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s", final=picture.final)
+        views.trains.left.yaxis.axis_label = f"time ({letter}s){_periods_shown(frames, picture.run.scene)}"
+        _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s",
+              (picture.run.max_input_force, picture.run.max_output_force), final=picture.final)
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
         views.shown = picture
         views.status_line.update_state(**settled_entries(picture, views.curve.place(picture.run)))
@@ -44,22 +45,25 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
         unit, since = "1/f", f"{1e3 * picture.periods / run.scene.f:.0f} ms after the start"
     with unlocked():
         views.trains.left.yaxis.axis_label = f"time ({unit} before now)"
-        _draw(views, number, frames, run.scene, frames.time, "periods", live=True, running=running)
+        here = extremes_of(frames)
+        _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force), live=True,
+              running=running)
         views.curve.now(run.scene.knobs["f"], frames.largest_output)
         views.status_line.update_state(regime=f"live, {since}", regime_hint="", start="", **run_entries(run))
 
 
-def _periods_shown(run: Run) -> str:
-    """How many drive periods the axis of time is long; empty without a drive."""
-    count = round(float(run.time[-1] - run.time[0]) * run.scene.f)
-    return f", {count} drive period{'s' * (count != 1)}" if run.scene.is_driven else ""
+def _periods_shown(frames: Frames, scene: Scene) -> str:
+    """How many drive periods the axis of time is long, the repetitions of a short orbit among them; empty without a drive."""
+    count = round(float(frames.time[-1]) * scene.f)
+    return f", {count} drive period{'s' * (count != 1)}" if scene.is_driven else ""
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
-          live: bool = False, running: bool = False, final: bool = False) -> None:
+          largest: tuple[float, float], live: bool = False, running: bool = False, final: bool = False) -> None:
     views.time.update(start=float(time[-1]), end=float(time[0]))
     high = views.scales.of(frames, scene)
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
     views.trains.update(frames, time, high)
     views.energy.update(frames, time, unit, high.kinetic_energy)
-    views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, live, running, final))
+    views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, views.trains.peak_words(largest), live,
+                                      running, final))

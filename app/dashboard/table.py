@@ -62,30 +62,30 @@ class Row:
     placeholder: str = ""
     taller: bool = True
     reports_visibility: bool = False
-    group: str = "explore"
+    group: str = "try"
 
 
 #: The groups of tabs; a tab of none of them stands apart at the end.
-GROUPS = ("understand", "explore", "trust")
+GROUPS = ("learn", "try", "check")
 
 #: The pages and the tabs without one, in the order of the tabs; the first is open when nothing else is said.
 TABS: tuple[Row | Tab, ...] = (
-    Row("stories", "stories", StoriesPage, None, group="understand"),
-    Tab("look at", "understand"),
-    Tab("regimes", "understand"),
+    Row("stories", "stories", StoriesPage, None, group="learn"),
+    Tab("look at", "learn"),
+    Tab("regimes", "learn"),
     Row("probe", "probe", ProbePage, Probe),
     Row("stability", "stability", StabilityPage, Stability),
-    Row("accuracy", "accuracy", AccuracyPage, Accuracy, group="trust"),
+    Row("accuracy", "accuracy", AccuracyPage, Accuracy, group="check"),
     Row("map", "map", MapPage, None, reports_visibility=True),
-    Row("effects", "effects", EffectsPage, None, reports_visibility=True, group="trust"),
+    Row("effects", "effects", EffectsPage, None, reports_visibility=True, group="check"),
     Row("branches", "branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable."),
     Row("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else."),
-    Row("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="trust"),
+    Row("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),
     Row("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
-        group="understand"),
+        group="learn"),
     Row("numbers", "numbers", NumbersPage, None, reports_visibility=True, group=""),
     Tab("data", "", taller=True),
 )

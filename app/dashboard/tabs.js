@@ -75,7 +75,24 @@ class Tabs {
     const top = element("div", { className: "tabs" }, largerButton(), this.list);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
     this.body = element("div", { className: "body", role: "tabpanel", tabIndex: 0 });
-    this.root = element("div", { className: "part tabbed" }, top, this.body);
+    this.below = button("▼ more", () => this.body.scrollBy(0, 0.8 * this.body.clientHeight), {
+      className: "below",
+      hidden: true,
+      tabIndex: -1, // the panel itself is scrolled by keys
+    });
+    this.root = element("div", { className: "part tabbed" }, top, this.body, this.below);
+    this.watchHeight();
+  }
+
+  // A button below the text says that it goes on: many systems hide their scroll bars.
+  watchHeight() {
+    const { body, below } = this;
+    const look = () => {
+      below.hidden = body.scrollHeight - body.scrollTop - body.clientHeight < 8;
+    };
+    body.addEventListener("scroll", look, { passive: true });
+    new ResizeObserver(look).observe(body);
+    new MutationObserver(look).observe(body, { childList: true, subtree: true, attributes: true, characterData: true });
   }
 
   // The tabs of a group, with its name before them.

@@ -3,7 +3,7 @@
 
 import { element } from "../parts/dom.js";
 
-const TEXTS = "p, h3, dd";
+const TEXTS = "p, h3, dd, .explained";
 
 const bubble = element("div", { id: "term", className: "bubble", role: "tooltip", hidden: true });
 document.body.append(bubble);

@@ -1,5 +1,6 @@
-// The chain on the page: bead i stands above column i of the map; its clock is the page's.
+// The chain on the page, over the map whose columns are its beads; its clock is the page's.
 
+import { BeadLink } from "./bead_link.js";
 import { ChainDrawing } from "./chain_drawing.js";
 import { unpack } from "./chain_series.js";
 import { Clock, Cursor } from "./clock.js";
@@ -9,9 +10,14 @@ import { Sound } from "./sound.js";
 import { colourOf, Steel } from "./steel.js";
 
 const SCALES = [
-  ["same", "same scale", "One scale for all pictures of this scene: strong looks strong, weak looks weak"],
+  [
+    "same",
+    "same scale",
+    "One scale for all pictures of this scene: its axes and colours end at the largest values at any drive frequency, so strong looks strong and weak looks weak",
+  ],
   ["fit", "fit", "Every picture fills its frame: weak motion can be seen, but not compared"],
 ];
+const PEAK = "The largest force in this picture. How far its axis goes is said below the map: “same scale” or “fit”.";
 
 // Calls `act` after the present animation frame: messages posted during a frame are delivered after it.
 function afterFrame(act) {
@@ -33,7 +39,8 @@ class Chain {
     this.drawing = new ChainDrawing(this.canvas, model.state.palette);
     this.clock = new Clock(() => this.mark());
     this.cursor = new Cursor(this.clock);
-    this.crosshair = new Crosshair(this.clock, this.cursor);
+    this.link = new BeadLink(this.drawing, this.cursor, () => this.mark());
+    this.crosshair = new Crosshair(this.clock, this.cursor, (bead) => this.link.point(bead));
     this.sound = new Sound();
     this.dirty = true;
     this.asked = 0; // the animation frame that was asked for
@@ -80,6 +87,8 @@ class Chain {
       button(words, () => this.chooseScale(value), { title, value, ariaPressed: "false" }),
     );
     scale.querySelector(".segments").append(...this.scales);
+    this.peaks = [...document.querySelectorAll("#stage .peak")];
+    for (const peak of this.peaks) peak.title = PEAK;
   }
 
   chooseScale(value) {
@@ -87,13 +96,19 @@ class Chain {
     this.model.send_msg({ do: "scale", value });
   }
 
-  showScale({ fit, energy_labels }) {
+  showScale({ fit, driven, energy_labels, peaks }) {
     document.getElementById("stage").dataset.scale = fit ? "fit" : "same";
     this.energies.forEach((place, i) => {
       place.textContent = energy_labels[i];
     });
     for (const one of this.scales) one.ariaPressed = String((one.value === "fit") === fit);
-    this.scales[1].textContent = fit ? "fitted to each picture" : "fit";
+    // More words where there is room: of the scale that is chosen, and the unit, which the axis has.
+    const more = (words, rest) => [words, element("span", { className: "roomy", textContent: rest })];
+    this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
+    this.scales[1].replaceChildren(...(fit ? more("fitted", " to each picture") : ["fit"]));
+    this.peaks.forEach((place, i) => {
+      place.replaceChildren(...more(peaks[i][0], ` ${peaks[i][1]}`));
+    });
   }
 
   receive(message) {
@@ -118,8 +133,9 @@ class Chain {
     });
   }
 
-  // The frame around the chosen bead's column of the map.
+  // The frame around the chosen bead's column of the map, and the line from the bead to it.
   placeColumn() {
+    this.link.place();
     const { chosen, beads } = this.drawing;
     const { left, width } = this.cursor.columns;
     this.column.hidden = !(chosen >= 1 && chosen <= beads);
@@ -141,6 +157,7 @@ class Chain {
     window.granchain.emit("shown", window.granchain.shown);
     const { beads } = this.drawing;
     this.drawing.load(frames);
+    this.drawing.pointed = Math.min(this.drawing.pointed, this.drawing.beads);
     if (this.drawing.beads !== beads) this.placeColumn();
     this.clock.show(frames);
     this.mark();

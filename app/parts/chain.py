@@ -23,12 +23,12 @@ class Chain(Component):
     _stylesheets = [text("chain.css")]  # noqa: RUF012  (Panel's own class attribute)
 
 
-def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool, live: bool,
+def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool, peaks: list[tuple[str, str]], live: bool,
                    running: bool, final: bool) -> dict[str, Any]:
     """What the browser needs to draw the chain at every instant; a running chain only has a now.
 
-    `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own. No better
-    picture of these knobs follows a `final` one.
+    `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own. `peaks` are
+    the largest input and output force in words, and their units. No better picture of these knobs follows a `final` one.
     """
     rows = slice(-1, None) if running else slice(None)
     return {
@@ -45,6 +45,8 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, f
         "energy_high": scale.kinetic_energy,
         "energy_labels": energy_labels(scale.kinetic_energy),
         "fit": fit,
+        "driven": scene.is_driven,
+        "peaks": peaks,
         "scale": None if fit else {"largest": scale.displacement, "overlap": scale.overlap,
                                    "force": max(scale.input_force, scale.output_force)},
         "sent": time.time(),

@@ -16,6 +16,7 @@ export class ChainDrawing {
     this.context = canvas.getContext("2d");
     this.steel = new Steel(palette);
     this.chosen = 0; // the bead that is marked, 0 for none
+    this.pointed = 0; // the one that the pointer is on, or in whose column
   }
 
   readTheme() {
@@ -178,7 +179,7 @@ export class ChainDrawing {
       const part = [(from + half) * scale, 0, (to - from) * scale, picture.height];
       g.drawImage(picture, ...part, x + from, y - half, to - from, 2 * half);
     }
-    if (i === this.chosen) this.ring(x, y, radius);
+    if (i === this.chosen || i === this.pointed) this.ring(x, y, radius);
     if (radius >= NUMBERED) this.number(i, x, y, radius, share);
   }
 

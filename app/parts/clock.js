@@ -98,8 +98,15 @@ export class Cursor {
       put(title, box, name === "left" ? this.left : this.gap, this.gap, { top: top(box) });
     }
     put(document.getElementById("scale"), map, this.gap, this.gap, {
-      top: `${map.bottom - stage.top - this.bottom + 8}px`,
+      top: `${map.bottom - stage.top - this.bottom + 4}px`,
     });
+    for (const peak of this.stage.querySelectorAll(".peak")) {
+      const name = peak.dataset.under;
+      const box = { left, right }[name];
+      put(peak, box, name === "left" ? this.left : 0, 0, {
+        top: `${box.bottom - stage.top - peak.offsetHeight - 4}px`,
+      });
+    }
     const title = [...titles].at(-1);
     const under = title.offsetTop + title.offsetHeight;
     put(document.getElementById("key"), right, this.gap, 0, {

@@ -11,8 +11,9 @@ function told(value, unit) {
 }
 
 export class Crosshair {
-  constructor(clock, cursor) {
-    Object.assign(this, { clock, cursor });
+  // `onBead` is called with the bead in whose column the pointer is, 0 for none.
+  constructor(clock, cursor, onBead) {
+    Object.assign(this, { clock, cursor, onBead });
     this.line = element("div", { id: "cross", hidden: true });
     this.words = {};
     for (const name of ["left", "map", "right"]) {
@@ -54,6 +55,7 @@ export class Crosshair {
   hide() {
     this.event = null;
     this.line.hidden = this.bead.hidden = true;
+    this.onBead(0);
   }
 
   show({ y, time, beads }) {
@@ -90,6 +92,7 @@ export class Crosshair {
   placeBead(bead, beads) {
     const { columns, area } = this.cursor;
     this.bead.hidden = bead < 0;
+    this.onBead(bead + 1);
     const left = `${columns.left + ((bead + 0.5) / beads) * columns.width}px`;
     Object.assign(this.bead.style, { left, top: `${area.y}px`, height: `${area.height}px` });
   }

@@ -23,7 +23,6 @@ class EnergyMap:
     def _build(self, time: Range1d) -> Plot:
         plot = quiet_plot((GAP, GAP), (12, 6), ("above", None), (), name="kinetic energy", y_range=time,
                           x_range=Range1d(0.5, 11.5))
-        plot.xaxis[0].axis_label = "bead"
         plot.xaxis[0].ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)
         image = plot.add_glyph(self._source, Image(image="image", x="x", y="y", dw="dw", dh="dh",
                                                    color_mapper=self._mapper))
@@ -34,6 +33,7 @@ class EnergyMap:
     def fit(self, narrow: bool) -> None:
         """Number fewer beads where there is little room."""
         self._narrow = narrow
+        self.figure.xaxis[0].axis_label = "bead" if narrow else "bead, numbered as above"
         self.figure.xaxis[0].ticker.interval = max(1, round(self._beads / (6 if narrow else 12)))
 
     def update(self, frames: Frames, time: np.ndarray, unit: str, high: float) -> None:

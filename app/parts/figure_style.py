@@ -9,7 +9,7 @@ from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
 
 from ..pictures.theme import THEMES
 
-TOP, BOTTOM, LEFT, GAP = 78, 70, 60, 6
+TOP, BOTTOM, LEFT, GAP = 78, 82, 60, 6
 """Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly."""
 
 DRIVE, INPUT, OUTPUT = THEMES["light"].drive, THEMES["light"].input, THEMES["light"].output

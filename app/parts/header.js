@@ -1,9 +1,10 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
-import { download, element, onWidth } from "./dom.js";
+import { button, download, element, onWidth } from "./dom.js";
 import { wholePage } from "./embed.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
+import { curveButton, knobsButton } from "./phone_buttons.js";
 import { Popovers } from "./popovers.js";
 import { Tour } from "./tour.js";
 
@@ -36,13 +37,13 @@ class Header {
     this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
     this.popovers.menu.ariaLabel = "more controls";
     const small = [this.play, this.step, this.name, element("span", { className: "grow" }), wholePage(this.name)];
-    const knobs = () => window.granchain.drawer(!document.getElementById("page").classList.contains("drawer"));
     const all = [
-      iconButton(icon("knobs", "knobs"), "Show or hide the other knobs", knobs, "knobs-button"),
+      knobsButton(),
       this.name,
       this.scene,
       this.reset,
       this.play,
+      curveButton(),
       this.step,
       this.undo,
       this.redo,
@@ -68,19 +69,19 @@ class Header {
 
   makeButtons() {
     const send = (name) => () => this.send(name);
-    this.reset = iconButton(icon("reset", "reset"), "Back to rest", send("reset"));
+    this.reset = iconButton(icon("reset"), "Reset: back to rest", send("reset"));
     this.step = iconButton(icon("step", "period"), "Forward one drive period", () => this.nextPeriod());
-    this.undo = iconButton(icon("undo"), "Undo (Ctrl-Z)", () => window.granchain.undo(), "icon");
-    this.redo = iconButton(icon("redo"), "Redo (Ctrl-Shift-Z)", () => window.granchain.redo(), "icon");
-    this.pin = iconButton(icon("pin", "pin"), "Pin this picture and compare", () => this.pinPicture());
-    this.share = iconButton(icon("share", "share"), "Link to this picture", send("share"));
+    this.undo = iconButton(icon("undo"), "Undo (Ctrl-Z)", () => window.granchain.undo());
+    this.redo = iconButton(icon("redo"), "Redo (Ctrl-Shift-Z)", () => window.granchain.redo());
+    this.pin = iconButton(icon("pin"), "Pin this picture and compare", () => this.pinPicture());
+    this.share = iconButton(icon("share", "link"), "Link to this picture", send("share"));
     const words = "Export: pictures, tables, a program";
     this.save = iconButton(icon("save", "export"), words, () => this.popovers.toggle("take"), "save");
-    this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp(), "icon");
-    this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme(), "icon");
-    this.sound = iconButton(icon("sound"), "Hear the force at the wall", () => this.toggleSound(), "icon");
+    this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp());
+    this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme());
+    this.sound = iconButton(icon("sound", "hear"), "Hear the force at the wall", () => this.toggleSound());
     this.sound.ariaPressed = "false";
-    this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "icon more");
+    this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "more");
   }
 
   // The names of the scenes are whole while one is chosen, and cut to the width that was there.
@@ -99,7 +100,6 @@ class Header {
     const { root, popovers } = this;
     const focused = root.getRootNode().activeElement;
     const steps = [
-      () => root.classList.add("short"),
       () => this.nameScenes(false),
       () => this.putAway(this.sound),
       () => this.putAway(this.speed),
@@ -113,7 +113,6 @@ class Header {
       () => this.putAway(this.mode),
       () => this.putAway(this.help, this.theme),
     ];
-    root.classList.remove("short");
     this.nameScenes(true);
     for (const control of this.order) root.append(control);
     this.more.hidden = true;
@@ -143,7 +142,7 @@ class Header {
       this.send("speed", { value: Number(value) }),
     );
     this.modes = MODES.map(([mode, title]) =>
-      iconButton(mode, title, () => this.request("mode", mode, { value: mode })),
+      button(mode, () => this.request("mode", mode, { value: mode }), { title, ariaLabel: `${mode}: ${title}` }),
     );
     this.start = chooser("where the steady state starts", "start", (value) => this.request("start", value, { value }));
     for (const [value, words] of STARTS) this.start.add(new Option(words, value));
@@ -160,7 +159,7 @@ class Header {
   }
 
   drawPlay() {
-    this.play.innerHTML = this.playing ? icon("pause", "pause") : icon("play", "play");
+    this.play.innerHTML = icon(this.playing ? "pause" : "play");
     this.fit();
   }
 

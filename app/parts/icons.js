@@ -16,14 +16,13 @@ const ICONS = {
   save: "M12 4v11m-5-4l5 5 5-5M5 20h14",
   help: "M9 9a3 3 0 1 1 4.2 2.7c-.9.4-1.2 1-1.2 2.3M12 18v.5",
   theme: "M12 3a9 9 0 1 0 0 18zM12 3a9 9 0 0 1 0 18",
+  curve: "M3 19c5 0 4-14 7-14s3 13 5 13 2-8 3.5-8 1.5 6 2.5 8",
   sound: "M4 9h4l5-4v14l-5-4H4zM17 9a4 4 0 0 1 0 6",
   more: "M5 12h.5M12 12h.5M19 12h.5",
 };
-export const icon = (name, words = "") =>
-  `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg>${
-    words && `<span class="wide">${words}</span>`
-  }`;
+export const icon = (name, words = name) =>
+  `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg><span>${words}</span>`;
 
-// A button with an icon; its title is also its accessible name.
+// A button with an icon over a word; its title, which has that word, is also its accessible name.
 export const iconButton = (innerHTML, title, act, className = "") =>
-  button("", act, { innerHTML, title, ariaLabel: title, className });
+  button("", act, { innerHTML, title, ariaLabel: title, className: `icon ${className}` });

@@ -59,7 +59,7 @@ export class Knob {
   }
 
   number() {
-    const { label, unit } = this.spec;
+    const { label, unit, at_zero } = this.spec;
     const ariaLabel = `${label}, ${unit}`;
     this.field = element("input", {
       type: "text",
@@ -70,6 +70,7 @@ export class Knob {
     });
     this.slider = element("input", { type: "range", min: 0, max: STEPS, step: 1, ariaLabel: label });
     this.el.append(this.field, element("span", { className: "unit", textContent: unit }), this.slider);
+    if (at_zero) this.el.append(element("small", { className: "at-zero", textContent: `0: ${at_zero}` }));
     this.field.addEventListener("input", () => {
       this.editing = true;
       this.field.dataset.typing = "yes";
@@ -138,5 +139,6 @@ export class Knob {
       this.slider.setAttribute("aria-valuetext", `${written(value, this.spec.factor)} ${this.spec.unit}`);
     }
     this.el.classList.toggle("moved", value !== this.preset);
+    this.el.classList.toggle("zero", value === 0);
   }
 }

@@ -57,4 +57,5 @@ def _spec(name: str, current: Scene, preset: dict[str, Any]) -> dict[str, Any]:
         "short": short, "meaning": meaning,
         "unit": unit, "factor": factor, "choices": list(quantity.choices), "low": low, "high": high,
         "whole": quantity.whole, "more": folded, "step": quantity.step, "scale": quantity.scale,
+        "at_zero": quantity.at_zero,
     }

@@ -54,7 +54,18 @@ window.granchain = (() => {
   // On a phone: all knobs, in the lower half of the screen, or the first alone.
   const drawer = (open) => {
     if (open) scrollTo({ top: 0 });
-    document.getElementById("page").classList.toggle("drawer", open);
+    const { classList } = document.getElementById("page");
+    classList.toggle("drawer", open);
+    if (open) showCurve(false);
+  };
+  // On a phone: the resonance curve on one screen with the pictures, or below them.
+  const showCurve = (shown) => {
+    const { classList } = document.getElementById("page");
+    if (classList.contains("curved") === shown) return;
+    classList.toggle("curved", shown);
+    if (shown) drawer(false);
+    scrollTo({ top: 0 });
+    emit("curved", shown);
   };
   // The name of the page that lies over the pictures, or null; the curve is not computed while there is one.
   let overlay = null;
@@ -89,5 +100,6 @@ window.granchain = (() => {
     embedded,
     nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % THEMES.length], true),
     drawer,
+    showCurve,
   };
 })();

@@ -33,6 +33,7 @@ class Trains:
         self._lines: list[GlyphRenderer] = []
         self._narrow = False
         self._units = ("m", "N", "N")
+        self._factors = (1.0, 1.0)
         self.left = self._left_figure(time)
         self.right = self._right_figure(time)
         self._pinned = PinnedTrains(self.left, self.right)
@@ -90,8 +91,13 @@ class Trains:
         self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
         self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)
         self.right.x_range.update(start=output_range[0] / out, end=output_range[1] / out)
-        self._units = (f"{drive_letter}m", f"{push_letter}N", f"{out_letter}N")
+        self._units, self._factors = (f"{drive_letter}m", f"{push_letter}N", f"{out_letter}N"), (push, out)
         self._write_titles()
+
+    def peak_words(self, largest: tuple[float, float]) -> list[tuple[str, str]]:
+        """The largest input and output force [N] of the picture in words, and the units of their axes."""
+        return [(f"max {force / factor:.3g}", unit)
+                for force, factor, unit in zip(largest, self._factors, self._units[1:], strict=True)]
 
     def pin(self, runs: Sequence[Run | None]) -> None:
         """Let these motions stay, as dashed grey lines over the same time; None leaves a place free."""

@@ -50,8 +50,11 @@ def test_kappa_is_shown_for_every_k_and_amplitude(visit: Visit) -> None:
     expect(field(page, "kappa")).to_have_value("9.35414e-4")
     type_into(page, "kappa", "0.001")
     expect(page.locator("#knobs .kept")).to_be_empty()
+    said = page.locator('[data-knob="k"].zero')
+    expect(said).to_have_count(0)
     type_into(page, "k", "0")
     expect(field(page, "kappa")).to_have_value("0")
+    expect(said.get_by_text("0: no springs to the ground")).to_be_in_viewport()
     expect(page.locator("#knobs .aside")).to_contain_text("none")
 
 

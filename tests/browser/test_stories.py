@@ -72,6 +72,23 @@ def test_a_story_shows_what_it_tells(visit: Visit, story: Story) -> None:
         until(page, lambda: faults(page) == [])
 
 
+def test_a_story_is_read_whole_on_a_laptop(visit: Visit) -> None:
+    """It has more room than other tabs, and what does not fit is announced by a button that goes there."""
+    page = visit("?v=1&scene=sec2&story=sonic-vacuum.1")
+    tab = page.locator("#tabs")
+    more, panel = tab.get_by_role("button", name="more"), tab.get_by_role("tabpanel")
+    whole = "(body) => body.scrollHeight <= body.clientHeight"
+    expect(tab.get_by_text("Follow one bright stripe")).to_be_in_viewport(ratio=1)
+    assert panel.evaluate(whole)
+    expect(more).to_be_hidden()
+    tab.get_by_role("button", name="answer").click()
+    page.set_viewport_size({"width": 1280, "height": 720})
+    expect(more).to_be_visible()
+    more.click()
+    expect(more).to_be_hidden()
+    expect(tab.get_by_text("This is the 1:1 resonance.")).to_be_in_viewport(ratio=1)
+
+
 def test_a_step_back_is_the_step_it_was(visit: Visit) -> None:
     """The second step comes through another frequency, so going back and forth must not change what it shows."""
     page = visit()

@@ -40,7 +40,7 @@ def test_a_fitted_picture_is_drawn_to_its_own_values() -> None:
     own = scales.of(frames, QUIET)
     assert own == extremes_of(frames)
     assert own.kinetic_energy < 0.05 * Scales(Session()).of(frames, QUIET).kinetic_energy
-    message = frames_message(1, frames, QUIET, own, True, False, False, True)
+    message = frames_message(1, frames, QUIET, own, True, [], False, False, True)
     assert message["scale"] is None
 
 

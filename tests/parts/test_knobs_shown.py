@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.frames import samples_for
 from app.pages.curve.page import Curves
 from app.parts.knobs import knob_state
-from granchain_core import scene
+from granchain_core import scene, scene_names
 
 
 def specs(name: str) -> dict[str, dict[str, object]]:
@@ -23,3 +23,11 @@ def test_a_chain_without_a_drive_has_fine_pictures_and_no_curve() -> None:
     impact = scene("impact")
     assert samples_for(impact) > 3 * samples_for(impact.evolve(drive="harmonic"))
     assert not Curves._affordable(impact) and Curves._affordable(scene("sec2"))
+
+
+def test_f_a0_d_and_k_are_never_folded_away_and_a_knob_in_sight_that_can_be_zero_says_what_that_is() -> None:
+    for name in scene_names():
+        in_sight = {knob: spec for knob, spec in specs(name).items() if not spec["more"]}
+        assert {"f", "A0", "D", "k"} <= in_sight.keys(), name
+        unsaid = {knob for knob, spec in in_sight.items() if spec["low"] == 0.0 and not spec["at_zero"]}
+        assert unsaid == {"kappa"}, name  # that of k, above it

@@ -52,7 +52,7 @@ export function render({ model }) {
   show();
   name();
   watchVisibility((value) => model.send_msg({ do: "curve-visible", value }));
-  const title = element("h2", { textContent: "resonance curve" });
+  const title = element("h2", { textContent: "resonance curve: largest force at the wall" });
   const head = element("div", { className: "row" }, title, progress);
   return element("div", { className: "part" }, head, element("div", { className: "row" }, ...labels), key);
 }

@@ -272,7 +272,7 @@ class Curve:
             if self._measurement is not None:
                 self.measured(self._measurement)
         self.figure.y_range.end = 1.15 * high / scale[0]  # room for the names of the peaks
-        self.figure.yaxis[0].axis_label = f"largest output force ({scale[1]}N)"
+        self.figure.yaxis[0].axis_label = f"output force ({scale[1]}N)"  # its heading says that it is the largest
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}

@@ -2,13 +2,20 @@
 
 import { element, paragraph } from "../../parts/dom.js";
 
+const INVITES =
+  "Tick an effect to add its term to the equations. The numbers say how much time a time step takes for it.";
+const COST =
+  "Measured on this computer; 1 ns is a billionth of a second. What is off has no code in the kernel and costs nothing.";
+const MINUS =
+  "A minus: steps are quicker with the effect, because fewer of them are divided where contacts open or close.";
+
 // The columns of the costs, with their hints.
 const COLUMNS = [
-  ["effect and its slot in the kernel", ""],
-  ["its code", "What its code adds to a plain RK4 step, in which the arithmetic is always the same."],
+  ["effect", ""],
+  ["arithmetic alone", "What its code adds to a plain RK4 step, in which the arithmetic is always the same."],
   [
     "in this motion",
-    "How it changes the time of a step of the live method, which splits steps where contacts open or close.",
+    "How it changes the time of a step of the live method, which divides steps where contacts open or close.",
   ],
 ];
 
@@ -39,13 +46,16 @@ function effectRow(model, effect, slot) {
   box.dataset.name = effect.name;
   box.setAttribute("aria-label", effect.title);
   box.addEventListener("change", () => model.send_msg({ do: "switch", name: effect.name, value: box.checked }));
-  const kind = element("code", { textContent: slot?.type ?? "absent", className: slot?.type ? "" : "absent" });
-  const name = element("td", { title: effect.meaning }, element("label", {}, box, effect.title), kind);
+  const kind = element("code", { textContent: slot?.type ?? "no code", className: slot?.type ? "" : "absent" });
+  const name = element("td", {}, element("label", {}, box, effect.title));
   const row = element("tr", {}, name);
-  row.dataset.effect = effect.name;
   if (effect.code) row.append(element("td", {}, cost(effect.code)), element("td", {}, cost(effect.motion) ?? "…"));
   else row.append(element("td", { colSpan: 2, className: "soft", textContent: effect.state }));
-  return row;
+  const meaning = element("span", { className: "explained", textContent: effect.meaning });
+  const below = element("tr", { className: "meaning" }, element("td", { colSpan: 3 }, meaning, " ", kind));
+  const rows = element("tbody", {}, row, below);
+  rows.dataset.effect = effect.name;
+  return rows;
 }
 
 // Every effect with its costs, and below them the time of a whole step.
@@ -55,7 +65,7 @@ function costTable(model, { effects, slots, step }) {
   const whole = element(
     "tr",
     { className: "whole" },
-    element("td", { textContent: "one whole step" }),
+    element("td", { textContent: "one whole time step" }),
     element("td", { textContent: ns(step.rk4) }),
     element("td", { textContent: ns(step["rk4-split"]) }),
   );
@@ -65,15 +75,19 @@ function costTable(model, { effects, slots, step }) {
     "table",
     { className: "costs" },
     element("thead", {}, element("tr", {}, ...head)),
-    element("tbody", {}, ...rows, whole),
+    ...rows,
+    element("tbody", {}, whole),
   );
 }
+
+// Whether an effect certainly makes steps quicker although it adds arithmetic.
+const saves = ({ code, motion }) => motion && motion.difference + motion.spread < Math.min(0, code.difference);
 
 function activityRow({ name, state, detail }) {
   const row = element(
     "tr",
     { className: state },
-    element("td", { textContent: name }),
+    element("td", { className: "explained", textContent: name }),
     element("td", {}, element("b", { textContent: state })),
     element("td", { className: "soft", textContent: detail }),
   );
@@ -84,13 +98,17 @@ function activityRow({ name, state, detail }) {
 export function effectsTab(model) {
   const { panel, validity } = model.state;
   if (!panel) return { content: [] };
-  const always = panel.slots
-    .filter((one) => panel.always.includes(one.slot))
-    .map((one) => `${one.title} (${one.type})`)
-    .join(", ");
+  const always = panel.slots.filter((one) => panel.always.includes(one.slot));
+  const types = always.map((one) => one.type).join(", ");
   const content = [
+    paragraph(INVITES),
     costTable(model, panel),
-    paragraph(`Always compiled in: ${always}. Kernel: ${panel.structure}.`, "soft"),
+    paragraph(COST, "soft"),
+    ...(panel.effects.some(saves) ? [paragraph(MINUS, "soft")] : []),
+    paragraph(
+      `Always there: ${always.map((one) => one.title).join(", ")} (${types}). Kernel: ${panel.structure}.`,
+      "soft",
+    ),
     element("h3", { textContent: "being computed now" }),
     element("table", { className: "doing" }, ...panel.activities.map(activityRow)),
     ...(validity ?? []).map((sentence) => paragraph(sentence, "soft")),

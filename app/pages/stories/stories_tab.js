@@ -7,7 +7,8 @@ const INVITES = "A story turns the knobs, says where to look, and asks. All cont
 let revealed = ""; // the step whose answer has been asked for
 
 // The part of the page that a step is about has a frame.
-function point(look) {
+function point(look, telling = false) {
+  document.getElementById("curves").classList.toggle("telling", telling);
   for (const one of document.querySelectorAll(".looked-at")) one.classList.remove("looked-at");
   if (look) document.getElementById(look).classList.add("looked-at");
 }
@@ -51,7 +52,7 @@ function telling(model, story) {
 
 export function storiesTab(model) {
   const { story } = model.state;
-  point(story?.look);
+  point(story?.look, Boolean(story));
   return { content: story ? telling(model, story) : chooser(model) };
 }
 

@@ -1,0 +1,18 @@
+// The two buttons that only a phone's bar has: all knobs in the lower half of the screen, or the curve there.
+
+import { icon, iconButton } from "./icons.js";
+
+const has = (name) => document.getElementById("page").classList.contains(name);
+
+export const knobsButton = () =>
+  iconButton(icon("knobs"), "Show or hide the other knobs", () => window.granchain.drawer(!has("drawer")), "of-phone");
+
+export function curveButton() {
+  const act = () => window.granchain.showCurve(!has("curved"));
+  const made = iconButton(icon("curve"), "Resonance curve under the pictures", act, "of-phone");
+  made.ariaPressed = "false";
+  window.granchain.on("curved", (shown) => {
+    made.ariaPressed = String(shown);
+  });
+  return made;
+}

@@ -1,0 +1,104 @@
+"""What somebody who sees the page for the first time reads off it: scales, the largest forces, which bead is which column."""
+
+from __future__ import annotations
+
+import pytest
+from knobs import COMPILED, Visit, settled, type_into
+from playwright.sync_api import expect
+from room import faults
+from started import at_rest, until
+
+
+def test_scales_and_the_largest_forces_are_said_where_they_are(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=850")
+    settled(page)
+    peaks = page.locator("#stage .peak")
+    expect(peaks).to_have_text(["max 0.591 N", "max 0.237 N"])  # small on axes that end at the scene's largest
+    scale = page.locator("#scale .segments button")
+    expect(scale).to_have_text(["same scale for all f", "fit"])
+    expect(page.locator("#scale .colours")).to_have_text("square-root scale 0 100 400 nJ", use_inner_text=True)
+    time = "() => Bokeh.documents[0].get_model_by_name('input force').left[0].axis_label"
+    assert page.evaluate(time) == "time (ms), 4 drive periods"  # an orbit of one period, repeated
+    page.get_by_role("button", name="fit", exact=True).click()
+    expect(scale).to_have_text(["same scale", "fitted to each picture"])
+    expect(peaks).to_have_text(["max 591 mN", "max 237 mN"])
+    type_into(page, "f", "1130")
+    expect(peaks).to_have_text(["max 1.87 N", "max 1.12 N"])
+    page.set_viewport_size({"width": 390, "height": 844})
+    expect(page.get_by_text("√ scale")).to_be_visible()
+
+
+# Where the link begins and ends on the screen, and the frame around the column; null while there is none.
+LINK = """() => {
+  const link = document.getElementById("link"), stage = document.getElementById("stage").getBoundingClientRect();
+  if (link.hasAttribute("hidden")) return null;
+  const [x, , to] = link.querySelector("polyline").getAttribute("points").split(/[ ,]/).map(Number);
+  const column = link.querySelector("rect").getBoundingClientRect();
+  return [x + stage.x, to + stage.x, column.x, column.width];
+}"""
+
+
+def test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_bead(visit: Visit) -> None:
+    """The chain is wider than the map: no bead stands over its column."""
+    page = visit("?v=1&scene=sec2&f=340")
+    settled(page)
+    assert page.evaluate(LINK) is None
+    home, top, left, width, high = page.evaluate("""() => {
+      const chain = document.getElementById("chain").getBoundingClientRect(), map = document.getElementById("map").getBoundingClientRect();
+      const pitch = (chain.width - 62 - 26) / 11; // the room beside is the driver's and the wall's
+      return [chain.x + 62 + 3.5 * pitch, chain.y + 0.58 * chain.height, map.x + 6, map.width - 12, map.y + 0.5 * map.height]; }""")
+    column = left + 3 / 11 * width
+    page.mouse.move(home, top)  # bead 4 at its place of rest
+    page.wait_for_function(f"({LINK})()")
+    assert page.evaluate(LINK) == pytest.approx([home, column + width / 22, column, width / 11], abs=1.5)
+    ringed = at_rest(page, "pixels('chain')")
+    page.mouse.move(5, 5)
+    page.wait_for_function(f"!({LINK})()")
+    assert at_rest(page, "pixels('chain')") != ringed
+    page.mouse.move(column + width / 22, high)
+    page.wait_for_function(f"({LINK})()")
+    assert page.evaluate(LINK)[0] == pytest.approx(home, abs=1.5)
+    assert at_rest(page, "pixels('chain')") == ringed
+
+
+# The word on every button of the bar that is on the screen, and the name of the button.
+BUTTONS = """() => {
+  const found = [], look = (node) => {
+    for (const one of node.querySelectorAll("*")) {
+      if (one.shadowRoot) look(one.shadowRoot);
+      if (one.tagName === "BUTTON" && one.checkVisibility()) found.push([one.innerText.trim().toLowerCase(), one.ariaLabel.toLowerCase()]);
+    }
+  };
+  look(document.getElementById("bar"));
+  return found;
+}"""
+
+
+def test_every_button_of_the_bar_has_a_word_that_is_in_its_name(visit: Visit) -> None:
+    page = visit()
+    for width in (1280, 390):
+        page.set_viewport_size({"width": width, "height": 844})
+        page.evaluate("shown()")
+        page.get_by_role("button", name="More controls").click()
+        buttons = page.evaluate(BUTTONS)
+        assert len(buttons) >= 14
+        assert [one for one in buttons if not one[0] or one[0] not in one[1]] == []
+        page.get_by_role("button", name="More controls").click()
+
+
+def test_on_a_phone_one_tap_puts_the_curve_under_the_picture(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=340", viewport={"width": 390, "height": 844}, has_touch=True)
+    settled(page)
+    curve, button = page.locator("#curve"), page.get_by_role("button", name="Resonance curve under the pictures")
+    expect(curve).not_to_be_in_viewport(ratio=0.1)
+    button.tap()
+    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    for part in ("chain", "map", "curve"):
+        expect(page.locator(f"#{part}")).to_be_in_viewport(ratio=1)
+    sheet, box = page.locator("#side").bounding_box(), curve.bounding_box()
+    assert sheet and box and box["y"] + box["height"] <= sheet["y"]  # the knob f does not cover it
+    until(page, lambda: faults(page) == [])
+    page.locator(".chapters .peak").nth(1).tap()
+    expect(page.locator("#foot b")).to_contain_text("1:2 resonance")
+    page.get_by_role("button", name="Show or hide the other knobs").tap()
+    expect(button).to_have_attribute("aria-pressed", "false")  # the sheet has its place
