@@ -35,12 +35,12 @@ const TABS = {
 
 // The tab of a page that has no function in TABS: its sentence, or what it is, and a button that opens it.
 function plainTab(_, { name, placeholder }) {
-  const said = paragraph();
+  const line = paragraph();
   const show = () => {
-    said.textContent = window.granchain[name]?.sentence || placeholder;
+    line.textContent = window.granchain[name]?.sentence || placeholder;
   };
   show();
-  return { content: [element("div", { className: "row top" }, said, openButton(name))], show };
+  return { content: [element("div", { className: "row top" }, line, openButton(name))], show };
 }
 
 const READABLE = 250; // ms between two changes of the numbers

@@ -5,7 +5,7 @@ import { element } from "./dom.js";
 import { draw, prefixed } from "./plot.js";
 
 // A value with three figures and a prefix, as "0.52 N".
-function told(value, unit) {
+function quantity(value, unit) {
   const [factor, letter] = prefixed(value);
   return `${String(Number((value / factor).toPrecision(3))).replace("-", "−")} ${letter}${unit}`;
 }
@@ -64,13 +64,13 @@ export class Crosshair {
     const row = Math.round(time * (frames.rows - 1));
     const force = (contact) => frames.force[row * (frames.beads + 1) + contact];
     const { left, map, right } = this.words;
-    left.textContent = `u₀ ${told(frames.drive[row], "m")}\nF ${told(force(0), "N")}`;
-    right.textContent = `F ${told(force(frames.beads), "N")}`;
+    left.textContent = `u₀ ${quantity(frames.drive[row], "m")}\nF ${quantity(force(0), "N")}`;
+    right.textContent = `F ${quantity(force(frames.beads), "N")}`;
     const periods = row / frames.samples;
-    map.textContent = frames.live ? "" : told(periods / frames.f, "s");
+    map.textContent = frames.live ? "" : quantity(periods / frames.f, "s");
     const bead = Math.floor(beads * frames.beads);
     const inside = bead >= 0 && bead < frames.beads;
-    if (inside) map.textContent += ` · bead ${bead + 1}: ${told(frames.energy[row * frames.beads + bead], "J")}`;
+    if (inside) map.textContent += ` · bead ${bead + 1}: ${quantity(frames.energy[row * frames.beads + bead], "J")}`;
     this.line.hidden = false;
     this.line.style.top = `${y}px`;
     this.line.classList.toggle("low", time > 0.85);
@@ -138,8 +138,8 @@ export class Crosshair {
     const [first, last] = [bead(from), bead(to)].sort((a, b) => a - b);
     let metres = 0;
     for (let i = first; i < last; i++) metres += frames.radii[i] + frames.radii[i + 1];
-    const time = `${told(seconds, "s")} = ${Number(periods.toPrecision(3))} drive periods`;
-    if (!metres) return `bead ${first + 1}: ${time}, ${told(1 / seconds, "Hz")}`;
-    return `bead ${first + 1} to ${last + 1}: ${told(metres, "m")} in ${time}: ${told(metres / seconds, "m/s")}`;
+    const time = `${quantity(seconds, "s")} = ${Number(periods.toPrecision(3))} drive periods`;
+    if (!metres) return `bead ${first + 1}: ${time}, ${quantity(1 / seconds, "Hz")}`;
+    return `bead ${first + 1} to ${last + 1}: ${quantity(metres, "m")} in ${time}: ${quantity(metres / seconds, "m/s")}`;
   }
 }

@@ -40,7 +40,7 @@ class AccuracyPage {
     this.stop = button("stop", () => model.send_msg({ do: "accuracy-stop" }));
     this.meter = meter("progress of the measurement");
     this.status = element("span", { className: "status" });
-    this.said = element("b");
+    this.line = element("b");
     this.agreement = element("span", { className: "soft" });
     this.machine = element("span", { className: "soft", title: "The processor that the kernels are compiled for" });
     this.warning = element("span", { className: "warn" });
@@ -52,7 +52,7 @@ class AccuracyPage {
       "div",
       { className: "part sheet" },
       pageHead("What accuracy costs", this.status, this.meter, this.stop, this.again),
-      element("div", { className: "say" }, this.said, this.agreement, this.machine, this.warning),
+      element("div", { className: "say" }, this.line, this.agreement, this.machine, this.warning),
       element("div", { className: "work" }, this.picture),
       this.naive.root,
       this.methods,
@@ -90,7 +90,7 @@ class AccuracyPage {
     const { asked, model } = this;
     this.publish();
     this.root.classList.toggle("stale", Boolean(asked?.stale));
-    this.said.textContent = asked?.sentence ?? "";
+    this.line.textContent = asked?.sentence ?? "";
     this.warning.textContent = model.state.failure || (asked?.stale ? STALE : "");
     this.warning.hidden = !this.warning.textContent;
     if (window.granchain.overlay === "accuracy")

@@ -25,14 +25,14 @@ function sentence({ running, progress, done, asked }) {
 export function accuracyTab(model) {
   const host = element("div", { className: "small" });
   const figure = new Embedded(host, (one) => fillAccuracy(one, window.granchain.accuracy));
-  const said = paragraph();
+  const line = paragraph();
   const show = () => {
     const known = window.granchain.accuracy ?? { drawn: {} };
-    said.textContent = sentence(known);
+    line.textContent = sentence(known);
     host.classList.toggle("stale", Boolean(known.asked?.stale));
     if (host.isConnected) showAccuracy(figure, known.small, known);
   };
   model.send_msg({ do: "accuracy-open" });
   requestAnimationFrame(show);
-  return { content: [element("div", { className: "row top" }, said, openButton("accuracy")), host], show };
+  return { content: [element("div", { className: "row top" }, line, openButton("accuracy")), host], show };
 }

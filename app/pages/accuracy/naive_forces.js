@@ -21,14 +21,14 @@ export class NaiveForces {
   constructor() {
     this.methods = this.choice("the naive method");
     this.steps = this.choice("its steps in a drive period");
-    this.said = element("p");
+    this.line = element("p");
     this.host = element("div", { className: "picture" });
     this.figure = new Embedded(this.host, () => this.show());
     this.root = element(
       "div",
       { className: "naive" },
       element("div", { className: "row" }, this.methods, this.steps),
-      this.said,
+      this.line,
       element("div", { className: "draw" }, this.host),
     );
     this.show();
@@ -77,7 +77,7 @@ export class NaiveForces {
     if (!this.data) return;
     const [method, steps] = [this.methods.value, this.steps.value];
     const chosen = this.data.drawn.find((one) => one.method === method && String(one.steps) === steps);
-    this.said.textContent = verdict(chosen);
+    this.line.textContent = verdict(chosen);
     this.fill(chosen);
   }
 

@@ -60,7 +60,7 @@ class Card {
     const { status, progress, running: busy, rows, time, failure } = result ?? {};
     if (status === "computing") this.began ??= performance.now();
     else this.began = null;
-    this.told = { status, progress, time };
+    this.report = { status, progress, time };
     this.run.disabled = Boolean(busy);
     this.run.textContent = rows && !busy ? "run again" : "run";
     this.root.classList.toggle("old", Boolean(busy) && status !== "drawing" && Boolean(rows));
@@ -72,7 +72,7 @@ class Card {
   }
 
   tick() {
-    const { status, progress, time } = this.told ?? {};
+    const { status, progress, time } = this.report ?? {};
     const seconds = this.began === null ? 0 : Math.round((performance.now() - this.began) / 1000);
     const first = seconds > PATIENCE ? "; the first run on a computer compiles kernels, which can take minutes" : "";
     this.status.textContent =
@@ -97,10 +97,10 @@ class HardCases {
     });
     this.stop = button("stop", () => send({ do: "hard-stop" }), { title: "What was found stays" });
     this.meter = meter("progress of the hard cases");
-    this.said = element("p", { className: "say", ariaLive: "polite" });
+    this.line = element("p", { className: "say", ariaLive: "polite" });
     const head = pageHead("Hard cases", this.meter, this.stop, this.all);
     const list = element("div", { className: "cases" }, ...[...this.cards.values()].map(({ root }) => root));
-    this.root = element("div", { className: "part sheet" }, head, this.said, list);
+    this.root = element("div", { className: "part sheet" }, head, this.line, list);
   }
 
   show() {
@@ -108,7 +108,7 @@ class HardCases {
     this.meter.hidden = this.stop.hidden = !running;
     this.all.hidden = Boolean(running);
     this.meter.value = done ?? 0;
-    this.said.textContent = summary || this.model.state.about;
+    this.line.textContent = summary || this.model.state.about;
     for (const [name, card] of this.cards) card.show(results[name]);
     window.granchain.hard = { sentence: summary };
     window.granchain.emit("hard");

@@ -23,7 +23,7 @@ class MapTab {
     this.stop = button("stop", () => this.send("map-stop"));
     this.again = button("continue", () => this.send("map-compute"));
     this.status = element("span", { className: "soft" });
-    this.said = paragraph("", "soft told");
+    this.line = paragraph("", "soft readout");
     this.host = element("div", { className: "maphost", tabIndex: 0 });
     this.host.addEventListener("keydown", (event) => this.key(event));
     this.host.addEventListener("blur", () => this.moveCursor(null));
@@ -34,7 +34,7 @@ class MapTab {
     this.content = [
       element("div", { className: "row top" }, segments, this.meter, this.stop, this.again, this.status),
       element("div", { className: "mapbox" }, this.host),
-      this.said,
+      this.line,
       element("div", { className: "row" }, find),
       this.found,
     ];
@@ -49,7 +49,7 @@ class MapTab {
   // Turns the knobs to the values of a cell.
   pick(row) {
     if (row < 0) return;
-    this.said.textContent = MAP.cells.rows.cells.tooltip[row];
+    this.line.textContent = MAP.cells.rows.cells.tooltip[row];
     this.send("map-choose", valuesOf(row));
   }
 
@@ -83,7 +83,7 @@ class MapTab {
     const edge = (name) => (row < 0 ? [] : [MAP.cells.rows.cells[name][row]]);
     const data = { left: edge("left"), right: edge("right"), bottom: edge("bottom"), top: edge("top") };
     this.figure.set("cursor", { data });
-    if (row >= 0) this.said.textContent = MAP.cells.rows.cells.tooltip[row];
+    if (row >= 0) this.line.textContent = MAP.cells.rows.cells.tooltip[row];
   }
 
   // `what` is the type of the message that has come; without it everything is drawn again.

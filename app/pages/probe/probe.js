@@ -17,10 +17,10 @@ class ProbePage {
     this.model = model;
     this.drawn = null;
     this.title = pageHead("One bead", ...this.steps());
-    this.said = paragraph("", "say");
+    this.line = paragraph("", "say");
     this.figures = new Map();
     const places = Object.entries(TITLES).map(([name, words]) => this.place(name, words));
-    this.root = element("div", { className: "part sheet" }, this.title, this.said, ...places);
+    this.root = element("div", { className: "part sheet" }, this.title, this.line, ...places);
     window.granchain.probe = { figures: [] };
   }
 
@@ -55,7 +55,7 @@ class ProbePage {
     this.bead.value = String(bead);
     this.before.disabled = bead <= 1;
     this.after.disabled = bead >= beads;
-    this.said.textContent = sentence;
+    this.line.textContent = sentence;
     Object.assign(window.granchain.probe, { sentence, small: this.model.figures.small, drawn: this.drawn });
     if (window.granchain.overlay === "probe" && this.drawn)
       for (const [name, figure] of this.figures) {

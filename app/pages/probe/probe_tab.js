@@ -8,16 +8,16 @@ const INVITES = "Click a bead in the chain or in the map: its motion, its contac
 export function probeTab() {
   const page = window.granchain;
   const host = element("div", { className: "circle" });
-  const said = paragraph();
+  const line = paragraph();
   const figure = new Embedded(host, (one) => fillModels(one, page.probe.drawn?.phase));
   const show = () => {
     const { sentence, small, drawn } = page.probe;
-    said.textContent = sentence || INVITES;
+    line.textContent = sentence || INVITES;
     if (!host.isConnected || !drawn) return;
     if (figure.item !== small) figure.load(small, "phase portrait of the bead");
     else fillModels(figure, drawn.phase);
   };
   requestAnimationFrame(show);
-  const words = element("div", {}, openButton("probe"), said);
+  const words = element("div", {}, openButton("probe"), line);
   return { content: [element("div", { className: "beside" }, host, words)], show };
 }

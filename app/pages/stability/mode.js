@@ -63,14 +63,14 @@ export class ModeView {
     this.host = element("div", { className: "picture" });
     this.hosts = [this.canvas, this.host]; // what is drawn anew when its size changes
     this.title = element("h3", { textContent: "mode" });
-    this.told = element("span", { className: "soft" });
+    this.note = element("span", { className: "soft" });
     this.root = element(
       "section",
       { className: "motion" },
       element("div", { className: "row" }, this.title),
       element("div", { className: "beads" }, this.canvas),
       element("div", { className: "draw" }, this.host),
-      this.told,
+      this.note,
     );
   }
 
@@ -78,7 +78,7 @@ export class ModeView {
   showTitle(rank) {
     const leading = this.mode?.size < 1 ? "the slowest to die out" : "the fastest to grow";
     this.title.textContent = this.mode ? (rank ? "the chosen disturbance" : leading) : "mode";
-    this.told.textContent = this.mode ? "exaggerated; starts again with every period of the orbit" : "";
+    this.note.textContent = this.mode ? "exaggerated; starts again with every period of the orbit" : "";
   }
 
   readTheme() {

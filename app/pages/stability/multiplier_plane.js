@@ -14,14 +14,14 @@ export class MultiplierPlane {
     this.host = element("div", { className: "picture", tabIndex: 0, title: "Arrow keys choose another multiplier" });
     this.host.addEventListener("keydown", ({ key }) => this.step({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0));
     this.figure = new Embedded(this.host, (one) => this.fill(one));
-    this.told = element("span", { className: "soft told" });
+    this.note = element("span", { className: "soft readout" });
     const label = element("label", { className: "watch", title: OBSERVER }, this.watch, "observer");
     this.root = element(
       "section",
       { className: "plane" },
       element("div", { className: "row" }, element("h3", { textContent: "multipliers" }), label),
       element("div", { className: "draw" }, this.host),
-      this.told,
+      this.note,
     );
   }
 
@@ -37,9 +37,9 @@ export class MultiplierPlane {
   }
 
   show() {
-    const { plane, told, observer } = this.model.state;
+    const { plane, chosen, observer } = this.model.state;
     fillModels(this.figure, plane);
-    this.told.textContent = told ?? "";
+    this.note.textContent = chosen ?? "";
     this.watch.checked = Boolean(observer);
   }
 

@@ -16,14 +16,14 @@ export class OrbitSearch {
       title: "Newton's method from the present state, the middle of the section and its close returns",
     });
     this.back = button("", () => send({ do: "stability-back" }), { className: "back" });
-    this.said = element("span", { className: "soft" });
+    this.line = element("span", { className: "soft" });
     this.root = element(
       "div",
       { className: "search row" },
       element("label", {}, "search for an unstable orbit nearby, of period ", this.period),
       this.find,
       this.back,
-      this.said,
+      this.line,
     );
   }
 
@@ -31,6 +31,6 @@ export class OrbitSearch {
     this.find.disabled = status === "searching" || status === "compiling";
     this.back.hidden = !(status === "searching" || searched);
     this.back.textContent = status === "searching" ? "stop" : "back to the settled motion";
-    this.said.textContent = failure ?? "";
+    this.line.textContent = failure ?? "";
   }
 }

@@ -197,7 +197,7 @@ class StabilityPage(Page):
         self._view.update_state(
             **WORDS.of("done"), failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
             searched=not analysis.target.followed, rank=self._rank, period=orbit.period,
-            count=len(orbit.multipliers), told=multiplier_sentence(orbit, self._rank),
+            count=len(orbit.multipliers), chosen=multiplier_sentence(orbit, self._rank),
             plane=plane_state(orbit, self._observer, self._rank, before))
         self._view.send(**mode_message(analysis.mode, orbit))
         self._show_section()
@@ -220,7 +220,7 @@ class StabilityPage(Page):
         """Show no multipliers, and a sentence that says why."""
         self._analysis, self.status = None, "none"
         self._view.update_state(**WORDS.of("none"), failure="", stale=False, sentence=sentence,
-                           plane=plane_state(None), count=0, told="", searched=False, evidence=[],
+                           plane=plane_state(None), count=0, chosen="", searched=False, evidence=[],
                            observer=self._observer)
         self._view.send(type="no-mode")
         if self._host.session.mode == "live":
@@ -231,7 +231,7 @@ class StabilityPage(Page):
         self.status = status
         self._view.update_state(**WORDS.of(status), failure=sentence)
         if status == "failed" and self._analysis is None and self._target is not None:
-            self._view.update_state(sentence=sentence, failure="", plane=plane_state(None), count=0, told="",
+            self._view.update_state(sentence=sentence, failure="", plane=plane_state(None), count=0, chosen="",
                                stale=False)
             self._view.send(type="no-mode")
 

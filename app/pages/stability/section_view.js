@@ -10,10 +10,10 @@ export class SectionView {
     this.beads.setAttribute("aria-label", "bead of the section");
     this.phase = element("input", { type: "range", min: 0, max: phases - 1, value: 0, step: 1 });
     this.phase.setAttribute("aria-label", "drive phase of the section");
-    this.said = element("output");
+    this.phaseLabel = element("output");
     this.close = element("input", { type: "checkbox" });
     this.close.addEventListener("change", () => this.showRanges());
-    this.told = element("span", { className: "soft" });
+    this.note = element("span", { className: "soft" });
     this.host = element("div", { className: "picture" });
     this.figure = new Embedded(this.host, () => this.fill());
     const tell = () => {
@@ -30,11 +30,11 @@ export class SectionView {
         "div",
         { className: "row" },
         element("label", {}, "drive phase ", this.phase),
-        this.said,
+        this.phaseLabel,
         element("label", { title: "the second half of the points only" }, this.close, "close up"),
       ),
       element("div", { className: "draw" }, this.host),
-      this.told,
+      this.note,
     );
     this.say();
   }
@@ -44,7 +44,7 @@ export class SectionView {
   }
 
   say() {
-    this.said.textContent = `${(Number(this.phase.value) / this.phases).toFixed(2)} T`;
+    this.phaseLabel.textContent = `${(Number(this.phase.value) / this.phases).toFixed(2)} T`;
   }
 
   load(message) {
@@ -65,7 +65,7 @@ export class SectionView {
   }
 
   draw(state, item) {
-    this.told.textContent = !this.data
+    this.note.textContent = !this.data
       ? ""
       : `${this.data.count} drive periods, one point each` +
         (this.data.own ? `; ${state.searched ? "diamonds: the unstable orbit" : "rings: the orbit"}` : "");

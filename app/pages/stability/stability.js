@@ -103,12 +103,12 @@ function watchVisibility(tell) {
   const page = window.granchain;
   let tab = "",
     tabsSeen = true,
-    told = false;
+    reported = false;
   const check = () => {
     const inTab = tab === "stability" && !page.overlay && tabsSeen;
     const visible = !document.hidden && (page.overlay === "stability" || inTab);
-    if (visible === told) return;
-    told = visible;
+    if (visible === reported) return;
+    reported = visible;
     tell(visible);
   };
   document.addEventListener("visibilitychange", check);

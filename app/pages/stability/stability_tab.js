@@ -6,12 +6,12 @@ import { Embedded, fillModels } from "../../parts/embedded.js";
 export function stabilityTab() {
   const page = window.granchain;
   const host = element("div", { className: "circle" });
-  const said = paragraph("", "verdict");
+  const line = paragraph("", "verdict");
   const more = paragraph("", "soft");
   const figure = new Embedded(host, (one) => fillModels(one, page.stability?.state.plane));
   const show = () => {
     const { state = {}, small } = page.stability ?? {};
-    said.textContent = state.sentence || "Follows the settled picture.";
+    line.textContent = state.sentence || "Follows the settled picture.";
     more.textContent = state.failure || state.progress || "";
     host.classList.toggle("stale", Boolean(state.stale));
     if (!host.isConnected) return;
@@ -19,6 +19,6 @@ export function stabilityTab() {
     else fillModels(figure, state.plane);
   };
   requestAnimationFrame(show);
-  const words = element("div", {}, said, more, openButton("stability"));
+  const words = element("div", {}, line, more, openButton("stability"));
   return { content: [element("div", { className: "beside" }, host, words)], show };
 }

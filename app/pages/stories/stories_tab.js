@@ -28,14 +28,14 @@ function chooser(model) {
 function telling(model, story) {
   const { name, title, step, steps, say, ask, answer } = story;
   const go = (to) => model.send_msg({ do: "story-open", name, step: to });
-  const told = paragraph(answer, "answer");
+  const answered = paragraph(answer, "answer");
   const place = `${name} ${step}`;
   const reveal = button("answer", () => {
     revealed = place;
     show();
   });
   const show = () => {
-    told.hidden = revealed !== place;
+    answered.hidden = revealed !== place;
     reveal.hidden = !answer || revealed === place;
   };
   show();
@@ -47,7 +47,7 @@ function telling(model, story) {
   const leave = button("✕", () => model.send_msg({ do: "story-close" }), { title: leaving, ariaLabel: leaving });
   const count = element("span", { textContent: `${step} of ${steps}` });
   const row = element("div", { className: "row" }, before, count, next, reveal, leave);
-  return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), told];
+  return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), answered];
 }
 
 export function storiesTab(model) {
