@@ -26,6 +26,7 @@ from ..session.session import Session, presets, slider_range
 from ..session.share import EXTRAS, SPEEDS
 from .addresses import take_address
 from .display_choices import DisplayChoices
+from .gallery import cards
 from .layout import Views
 from .links_and_files import LinksAndFiles
 from .main_picture import Pictures
@@ -64,6 +65,7 @@ class Controller:
             "narrow": lambda m: views.fit(bool(m.get("value"))),
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go,
+            "gallery": lambda _: views.header.send(type="gallery", cards=cards()),
             **self.sentences.actions,
         }
         playback = Playback(session, self.pictures, self._compute, self._header, self.say)

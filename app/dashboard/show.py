@@ -46,14 +46,14 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
     with unlocked():
         views.trains.left.yaxis.axis_label = f"time ({unit} before now)"
         here = extremes_of(frames)
-        _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force), live=True,
-              running=running)
+        _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force),
+              live=True, running=running)
         views.curve.now(run.scene.knobs["f"], frames.largest_output)
         views.status_line.update_state(regime=f"live, {since}", regime_hint="", start="", **run_entries(run))
 
 
 def _periods_shown(frames: Frames, scene: Scene) -> str:
-    """How many drive periods the axis of time is long, the repetitions of a short orbit among them; empty without a drive."""
+    """How many drive periods the axis of time is long, repetitions of an orbit included; empty without a drive."""
     count = round(float(frames.time[-1]) * scene.f)
     return f", {count} drive period{'s' * (count != 1)}" if scene.is_driven else ""
 
@@ -65,5 +65,5 @@ def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndar
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
     views.trains.update(frames, time, high)
     views.energy.update(frames, time, unit, high.kinetic_energy)
-    views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, views.trains.peak_words(largest), live,
-                                      running, final))
+    peaks = views.trains.peak_words(largest)
+    views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, peaks, live, running, final))

@@ -2,6 +2,7 @@
 
 import { button, download, element, onWidth } from "./dom.js";
 import { wholePage } from "./embed.js";
+import { Gallery } from "./gallery.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
 import { curveButton, knobsButton } from "./phone_buttons.js";
@@ -41,6 +42,7 @@ class Header {
       knobsButton(),
       this.name,
       this.scene,
+      this.scenes,
       this.reset,
       this.play,
       curveButton(),
@@ -58,13 +60,11 @@ class Header {
       this.sound,
       this.theme,
       this.more,
-      this.popovers.help,
-      this.popovers.link,
-      this.popovers.take,
-      this.popovers.menu,
+      ...this.popovers.all,
     ];
     this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
+    this.root.append(this.gallery.root); // not among what fit() moves, which would close it
   }
 
   makeButtons() {
@@ -92,6 +92,11 @@ class Header {
       this.nameScenes(true);
       this.scene.style.width = `${width}px`;
     });
+    this.gallery = new Gallery(
+      () => this.send("gallery"),
+      (name) => this.request("scene", name, { name }),
+    );
+    this.scenes = iconButton(icon("scenes"), "Scenes with pictures", () => this.gallery.open(this.scene.value));
     for (const end of ["change", "blur"]) this.scene.addEventListener(end, () => this.fit());
   }
 
@@ -107,6 +112,7 @@ class Header {
       () => this.putAway(this.save, this.share),
       () => this.putAway(this.undo, this.redo),
       () => this.putAway(this.step),
+      () => this.putAway(this.scenes),
       () => this.putAway(this.name),
       () => this.putAway(this.pin),
       () => this.putAway(this.reset),
@@ -256,6 +262,7 @@ class Header {
 
   receive(message) {
     if (message.type === "link" || message.type === "address") window.granchain.linkRefined(message.query);
+    if (message.type === "gallery") this.gallery.receive(message.cards);
     if (message.type === "went") window.granchain.went(message.query);
     if (message.type === "link") this.popovers.showLink();
     if (message.type === "file") download(message.name, new Blob([message.content]));

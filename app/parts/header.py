@@ -10,4 +10,4 @@ class Header(Component):
     """Buttons and lists of choices, each of which sends one message."""
 
     _esm = module("header.js")
-    _stylesheets = [text("controls.css"), text("header.css")]  # noqa: RUF012
+    _stylesheets = [text("controls.css"), text("header.css"), text("gallery.css")]  # noqa: RUF012

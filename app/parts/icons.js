@@ -11,6 +11,7 @@ const ICONS = {
   step: "M5 5l9 7-9 7zM18 5v14",
   undo: "M9 5L4 10l5 5M4 10h10a5 5 0 0 1 0 10h-3",
   redo: "M15 5l5 5-5 5M20 10H10a5 5 0 0 0 0 10h3",
+  scenes: "M4 4h7v7H4zM13 4h7v7h-7zM4 13h7v7H4zM13 13h7v7h-7z",
   pin: "M9 3h6l-1 7 4 4H6l4-4zM12 14v7",
   share: "M9 15l6-6M8 11l-3 3a3.5 3.5 0 0 0 5 5l3-3M16 13l3-3a3.5 3.5 0 0 0-5-5l-3 3",
   save: "M12 4v11m-5-4l5 5 5-5M5 20h14",

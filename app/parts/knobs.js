@@ -46,7 +46,7 @@ class Knobs {
       "div",
       { className: "aside" },
       this.kept,
-      element("div", { title: FREQUENCY }, "foundation frequency ", this.foundation),
+      element("div", { title: FREQUENCY }, "foundation alone: ", this.foundation),
     );
     this.root = element("div", { className: "part" });
   }

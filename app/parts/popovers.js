@@ -50,6 +50,7 @@ export class Popovers {
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
     this.take = element("div", { className: "popover", hidden: true }, takeAlong(save));
     this.menu = element("div", { className: "popover menu", hidden: true });
+    this.all = [this.help, this.link, this.take, this.menu];
   }
 
   // A button at the end of the help.
@@ -62,7 +63,7 @@ export class Popovers {
   }
 
   close() {
-    this.help.hidden = this.link.hidden = this.take.hidden = this.menu.hidden = true;
+    for (const one of this.all) one.hidden = true;
   }
 
   toggleHelp() {

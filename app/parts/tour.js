@@ -82,9 +82,10 @@ export class Tour {
     const { offsetWidth: wide, offsetHeight: tall } = this.root;
     const fits = (x, y) => x >= GAP && y >= GAP && x + wide <= innerWidth - GAP && y + tall <= innerHeight - GAP;
     const middle = Math.max(GAP, Math.min(box.left + (box.width - wide) / 2, innerWidth - wide - GAP));
+    const low = Math.max(GAP, Math.min(box.bottom, innerHeight - GAP) - tall); // at the top it would hide the driver
     const places = [
-      [box.right + GAP, Math.max(GAP, box.top)],
-      [box.left - wide - GAP, Math.max(GAP, box.top)],
+      [box.right + GAP, low],
+      [box.left - wide - GAP, low],
       [middle, box.bottom + GAP],
       [middle, box.top - tall - GAP],
     ];

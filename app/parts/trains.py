@@ -96,7 +96,7 @@ class Trains:
 
     def peak_words(self, largest: tuple[float, float]) -> list[tuple[str, str]]:
         """The largest input and output force [N] of the picture in words, and the units of their axes."""
-        return [(f"max {force / factor:.3g}", unit)
+        return [(f"max {force / factor:#.3g}".rstrip("."), unit)
                 for force, factor, unit in zip(largest, self._factors, self._units[1:], strict=True)]
 
     def pin(self, runs: Sequence[Run | None]) -> None:

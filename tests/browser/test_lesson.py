@@ -7,6 +7,9 @@ from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import expect
 from room import faults
 from started import at_rest, until
+from test_axe import violations
+
+from granchain_core import scene_names
 
 
 def test_scales_and_the_largest_forces_are_said_where_they_are(visit: Visit) -> None:
@@ -102,3 +105,33 @@ def test_on_a_phone_one_tap_puts_the_curve_under_the_picture(visit: Visit) -> No
     expect(page.locator("#foot b")).to_contain_text("1:2 resonance")
     page.get_by_role("button", name="Show or hide the other knobs").tap()
     expect(button).to_have_attribute("aria-pressed", "false")  # the sheet has its place
+
+
+def test_a_scene_is_chosen_by_its_picture_with_the_keyboard(visit: Visit) -> None:
+    page = visit(viewport={"width": 1920, "height": 1080})
+    settled(page)
+    assert "gallery" not in page.evaluate("sent")
+    assert page.locator(".gallery img").count() == 0  # nothing of it is part of the opening
+    scenes = page.get_by_role("button", name="Scenes with pictures")
+    scenes.press("Enter")
+    cards = page.locator(".gallery .card")
+    expect(cards).to_have_count(len(scene_names()))
+    expect(page.locator('.gallery .card[value="sec2"]')).to_be_focused()  # the scene that is open
+    whole = "(one) => one.loading === 'lazy' && one.complete && one.naturalWidth > 0"
+    until(page, lambda: all(one.evaluate(whole) for one in cards.locator("img").all()[:4]))
+    for look in ("light", "dark", "projector"):
+        page.evaluate("(look) => granchain.setTheme(look, false)", look)
+        assert violations(page, look, "#bar") == []
+    page.set_viewport_size({"width": 390, "height": 844})
+    expect(cards.first).to_be_in_viewport()  # another size of the window leaves it open
+    assert page.evaluate("(card) => card.getBoundingClientRect().right", cards.first.element_handle()) < 390
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    expect(cards.first).to_be_hidden()
+    expect(page.locator("select.scene")).to_have_value(scene_names()[1])
+    page.set_viewport_size({"width": 1280, "height": 800})
+    scenes.click()
+    expect(cards).to_have_count(len(scene_names()))
+    page.keyboard.press("Escape")
+    expect(cards.first).to_be_hidden()
+    assert page.evaluate("sent").count("gallery") == 1

@@ -15,7 +15,7 @@ _BEADS = 200
 
 
 def summary(run: Run) -> str:
-    """What the pictures show, in three sentences."""
+    """What the pictures show, in a few sentences."""
     energy = run.kinetic_energy
     row, bead = map(int, np.unravel_index(int(energy.argmax()), energy.shape))
     far = int(energy[:, -1].argmax())
@@ -24,7 +24,14 @@ def summary(run: Run) -> str:
     last = f"; bead {run.scene.N}, at the wall, has at most {_energy(energy, far, run.scene.N - 1)}"
     return (f"At {run.scene.f:g} Hz: {run.regime.sentence}. The driver pushes with at most "
             f"{in_words(run.max_input_force, 'N', 3)}, and at most {in_words(run.max_output_force, 'N', 3)} arrive at "
-            f"the wall, {100 * share:.3g} % of it. {most}{last if bead + 1 != run.scene.N else ''}.")
+            f"the wall, {100 * share:.3g} % of it. {most}{last if bead + 1 != run.scene.N else ''}.{_where_energy_goes(run)}")
+
+
+def _where_energy_goes(run: Run) -> str:
+    """What becomes of the driver's work in a steady motion: contacts alone lose energy, and the wall does not move."""
+    if not (run.scene.is_driven and run.scene.has_dissipation):
+        return ""
+    return " What the driver puts in is lost, in the mean, to the damping of the contacts; the wall takes no energy."
 
 
 def forces_over_time(run: Run) -> list[list[str]]:

@@ -1,0 +1,95 @@
+"""A small picture of every scene for the gallery: its chain, the map of its kinetic energy, the force at its wall.
+
+Every scene of `assets/scenes` is settled from rest with the knobs of its preset, and drawn to its own largest values as
+`assets/gallery/NAME.svg`. Run it when a scene is new or changed, and write its question into
+`assets/gallery/questions.toml`:
+
+    python -m tools.gallery              all scenes
+    python -m tools.gallery sec2 rig     these
+"""
+
+from __future__ import annotations
+
+import base64
+import struct
+import sys
+import zlib
+
+import numpy as np
+
+from app.dashboard.gallery import FOLDER
+from app.frames import Frames, samples_for, settled_frames
+from app.pictures.energies import ENERGY_COLOURS
+from app.pictures.theme import THEMES
+from granchain_core import Scene, scene, scene_names, settle
+
+#: Rows and colours of a map; a browser smooths nothing.
+ROWS, COLOURS = 72, 32
+#: The edges of the map and of the force beside it, in units of the picture, which is 160 wide and 100 high.
+LEFT, RIGHT, TOP, BOTTOM = 12.0, 108.0, 24.0, 97.0
+FORCE_FROM, FORCE_TO = 116.0, 157.0
+STEEL = "#8a93a6"
+
+
+def drawn(chain: Scene) -> str:
+    """The picture of a scene, as SVG."""
+    frames = settled_frames(settle(chain, samples=samples_for(chain)).run)
+    picture = base64.b64encode(energy_png(frames.kinetic_energy)).decode()
+    high = BOTTOM - TOP
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 160 100">{bodies(chain)}'
+            f'<image x="{LEFT:g}" y="{TOP:g}" width="{RIGHT - LEFT:g}" height="{high:g}" preserveAspectRatio="none" '
+            f'style="image-rendering:pixelated" href="data:image/png;base64,{picture}"/>'
+            f'<polyline points="{force_line(frames)}" fill="none" stroke="{THEMES["light"].output}" stroke-width="1.4"/>'
+            "</svg>\n")
+
+
+def bodies(chain: Scene) -> str:
+    """Driver, beads and wall over the columns of the map."""
+    radii = np.array([bead.radius for bead in chain.beads])
+    long = RIGHT - LEFT
+    sizes = radii * long / (2.0 * radii.sum())
+    places = LEFT + np.cumsum(2.0 * sizes) - sizes
+    beads = "".join(f'<circle cx="{x:.1f}" cy="11" r="{0.96 * size:.2f}"/>' for x, size in zip(places, sizes, strict=True))
+    driver = f'<rect x="6" y="4" width="6" height="14" fill="{THEMES["light"].drive}"/>' if chain.is_driven else ""
+    return f'{driver}<g fill="{STEEL}">{beads}<rect x="{RIGHT:g}" y="4" width="2" height="14"/></g>'
+
+
+def force_line(frames: Frames) -> str:
+    """The output force over time, which runs downwards; of several rows the largest."""
+    force = _largest_of(frames.output_force[:, None], 2 * ROWS)[:, 0]
+    low, high = min(float(force.min()), 0.0), float(force.max())
+    across = FORCE_FROM + (FORCE_TO - FORCE_FROM) * (force - low) / max(high - low, 1e-300)
+    down = TOP + (BOTTOM - TOP) * (np.arange(len(force)) + 0.5) / len(force)
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(across, down, strict=True))
+
+
+def energy_png(energy: np.ndarray) -> bytes:
+    """The map of the kinetic energy (T, N) in the page's colours as a PNG, a pixel for a bead."""
+    rows = _largest_of(energy, ROWS)
+    steps = np.rint((COLOURS - 1) * np.sqrt(rows / rows.max())).astype(np.uint8)
+    palette = bytes.fromhex("".join(
+        ENERGY_COLOURS[round((len(ENERGY_COLOURS) - 1) * (step / (COLOURS - 1)) ** 2)][1:7] for step in range(COLOURS)))
+    height, width = steps.shape
+    lines = b"".join(b"\0" + line.tobytes() for line in steps)
+    parts = ((b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 3, 0, 0, 0)), (b"PLTE", palette),
+             (b"IDAT", zlib.compress(lines, 9)), (b"IEND", b""))
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data)) for kind, data in parts)
+
+
+def _largest_of(values: np.ndarray, most: int) -> np.ndarray:
+    """At most so many rows, each the largest values of its share of the rows."""
+    edges = np.linspace(0, len(values), min(most, len(values)) + 1).round().astype(int)[:-1]
+    return np.maximum.reduceat(values, edges, axis=0)
+
+
+def main() -> None:
+    """Write the pictures."""
+    for name in sys.argv[1:] or scene_names():
+        path = FOLDER / f"{name}.svg"
+        path.write_text(drawn(scene(name)), encoding="utf-8")
+        print(f"{path}: {path.stat().st_size / 1000:.1f} kB")
+
+
+if __name__ == "__main__":
+    main()
