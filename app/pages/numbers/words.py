@@ -24,7 +24,8 @@ def summary(run: Run) -> str:
     last = f"; bead {run.scene.N}, at the wall, has at most {_energy(energy, far, run.scene.N - 1)}"
     return (f"At {run.scene.f:g} Hz: {run.regime.sentence}. The driver pushes with at most "
             f"{in_words(run.max_input_force, 'N', 3)}, and at most {in_words(run.max_output_force, 'N', 3)} arrive at "
-            f"the wall, {100 * share:.3g} % of it. {most}{last if bead + 1 != run.scene.N else ''}.{_where_energy_goes(run)}")
+            f"the wall, {100 * share:.3g} % of it. {most}{last if bead + 1 != run.scene.N else ''}."
+            f"{_where_energy_goes(run)}")
 
 
 def _where_energy_goes(run: Run) -> str:
