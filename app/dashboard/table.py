@@ -8,6 +8,8 @@ from typing import Any
 
 from ..pages.accuracy.page import AccuracyPage
 from ..pages.accuracy.view import Accuracy
+from ..pages.analysis.page import AnalysisPage
+from ..pages.analysis.view import Analysis
 from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
 from ..pages.effects.page import EffectsPage
@@ -80,6 +82,8 @@ TABS: tuple[Row | Tab, ...] = (
     Row("effects", "effects", EffectsPage, None, reports_visibility=True, group="check"),
     Row("branches", "branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable."),
+    Row("analysis", "analysis", AnalysisPage, Analysis,
+        "Spectrum, strobes over a knob, basins and Lyapunov exponents of the present scene."),
     Row("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else."),
     Row("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),

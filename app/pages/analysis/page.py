@@ -1,0 +1,78 @@
+"""The Analysis page of one visitor: a question about the present scene is computed when it is asked."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ...serve.queues import LONG
+from ...session.hooks import Actions, Page
+from ...session.host import Host
+from ...session.progress import Status, StatusWords
+from ...session.task import Job, Task
+from .questions import Plan, Question, planned, question_of
+from .view import Analysis
+
+#: Parts of a computation between two reports of how far it is.
+_STEPS = 50
+
+WORDS = StatusWords("the kernels of the analysis", 20)
+
+
+class AnalysisPage(Page):
+    """An answer stays, with the scene that it is about in its title, until another question is asked."""
+
+    def __init__(self, host: Host, view: Analysis) -> None:
+        self._host = host
+        self._view = view
+        self._task = Task(host, LONG, self._say, "The analysis")
+        self._question: Question | None = None
+        self.actions: Actions = {
+            "analysis-ask": self._ask, "analysis-compute": self._begin, "analysis-stop": lambda _: self._stop()}
+
+    def close(self) -> None:
+        """The visitor left."""
+        self._task.cancel()
+
+    def scene_changed(self) -> None:
+        """The knobs have moved: what is under way is about another scene, and so are the values in the fields."""
+        self._stop()
+        if self._question is not None:
+            self._view.offer(self._question.fields(self._host.session.scene))
+
+    def _ask(self, message: dict[str, Any]) -> None:
+        self._task.cancel()
+        self._question = question_of(message.get("question"))
+        self._view.ask(self._question, self._question.fields(self._host.session.scene))
+        self._say("none")
+
+    def _begin(self, message: dict[str, Any]) -> None:
+        if self._question is None:
+            return
+        plan = planned(self._question, self._host.session.scene, message.get("values"))
+        self._view.clear()
+        self._say("waiting")
+        self._task.start(lambda job: self._compute(plan, job))
+
+    def _stop(self) -> None:
+        if self._task.cancel():
+            self._say("stopped")
+
+    def _compute(self, plan: Plan, job: Job) -> None:
+        """In a thread of the queue."""
+        for scene, pieces in plan.kernels:
+            job.compile(scene, *pieces)
+        job.say("computing")
+        reported = [0]
+
+        def report(done: float) -> None:
+            job.give_way()
+            if int(_STEPS * done) > reported[0]:
+                reported[0] = int(_STEPS * done)
+                job.next_tick(self._view.update_state, done=done)
+
+        job.next_tick(self._view.answer, plan, plan.compute(job.stop, report))
+
+    def _say(self, status: Status, sentence: str = "") -> None:
+        if status == "waiting":
+            self._view.update_state(done=0.0)
+        self._view.update_state(**WORDS.of(status), failure=sentence)

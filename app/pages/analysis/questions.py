@@ -1,0 +1,223 @@
+"""The four questions of the Analysis page: what a visitor may choose, what is computed, and how it is drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from bokeh.models import LayoutDOM
+
+from granchain_core import BadInput, Scene, Stop, basins, lyapunov_spectrum, run, settle, spectrum, strobe_diagram
+from granchain_core.analysis.spectrum import FORCES
+from granchain_core.errors import check_range, unknown_name
+from granchain_core.quantities import QUANTITIES
+from granchain_core.steady.curve.order import STARTS
+from granchain_core.text import number_in, whole_in
+from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
+
+from ...pictures.basins import basins as draw_basins
+from ...pictures.lyapunov import lyapunov as draw_lyapunov
+from ...pictures.spectrum import spectrum as draw_spectrum
+from ...pictures.strobe_diagram import strobe_diagram as draw_strobes
+from ...pictures.theme import Theme
+
+#: Most beads of a chain, values of a knob, starts along an axis, periods and strobes that the page computes; the
+#: commands take more.
+MOST_BEADS, MOST_VALUES, MOST_STARTS, MOST_PERIODS, MOST_STROBES = 300, 200, 40, 2000, 500
+#: Periods recorded of a motion without a period, and samples a period, as of `granchain spectrum`.
+_RECORD, _SAMPLES = 64, 256
+_MOTION = (LIVE, CERTIFIED)
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Field:
+    """One choice of a question: a list to choose from, or a text; `value` is what it begins with."""
+
+    name: str
+    label: str
+    value: str
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A question with everything chosen.
+
+    `command` recomputes it, `kernels` are the scenes and pieces that have to be compiled, `compute` takes a stop and
+    a progress and returns a result with a `summary`, and `draw` makes its figure.
+    """
+
+    title: str
+    command: str
+    kernels: tuple[tuple[Scene, tuple[str, ...]], ...]
+    compute: Callable[[Stop, Progress], Any]
+    draw: Callable[[Any, Theme], LayoutDOM]
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question: its fields for a scene, and its plan from what was chosen, which is checked there."""
+
+    name: str
+    title: str
+    about: str
+    fields: Callable[[Scene], tuple[Field, ...]]
+    plan: Callable[[Scene, Mapping[str, str]], Plan]
+
+
+def planned(question: Question, chain: Scene, values: object) -> Plan:
+    """The plan of a question with the texts that a browser sent. Raises `BadInput` for what is wrong in them."""
+    check_range("the Analysis page: N =", chain.N, 1, MOST_BEADS)
+    sent = values if isinstance(values, dict) else {}
+    chosen = {}
+    for field in question.fields(chain):
+        text = str(sent.get(field.name, field.value)).strip()[:40]
+        if field.choices and text not in field.choices:
+            raise unknown_name(field.label, text, field.choices)
+        chosen[field.name] = text
+    return question.plan(chain, chosen)
+
+
+def _number(label: str, text: str) -> float:
+    value = number_in(text)
+    if value is None:
+        raise BadInput(f"{label}: {text[:40]!r} is not a number.")
+    return value
+
+
+def _whole(label: str, text: str, low: int, high: int) -> int:
+    value = whole_in(text)
+    if value is None:
+        raise BadInput(f"{label}: {text[:40]!r} is not a whole number from {low} to {high}.")
+    check_range(f"{label} =", value, low, high)
+    return value
+
+
+def _span(label: str, low: str, high: str) -> tuple[float, float]:
+    ends = _number(f"{label}, from", low), _number(f"{label}, to", high)
+    if not ends[0] < ends[1]:
+        raise BadInput(f"{label}: from {low} to {high} is no range; the first number must be the smaller one.")
+    return ends
+
+
+def _command(name: str, chain: Scene, *words: str) -> str:
+    knobs = (f"--set {knob}={value}" for knob, value in chain.differences().items())
+    return " ".join(["granchain", name, chain.name, *knobs, *words])
+
+
+def _axis(name: str, ends: tuple[float, float], count: int) -> str:
+    return f"{name}={ends[0]!r}:{ends[1]!r}:{count}"
+
+
+def _about(chain: Scene) -> str:
+    return f"{chain.name} at {chain.f:g} Hz" if chain.is_driven else chain.name
+
+
+# The spectrum of a force
+
+def _spectrum_fields(chain: Scene) -> tuple[Field, ...]:
+    return (Field("force", "force", "output", tuple(FORCES)),)
+
+
+def _spectrum_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
+    def compute(stop: Stop, progress: Progress) -> Any:
+        settled = settle(chain, samples=_SAMPLES, stop=stop)
+        if settled.regime.period:
+            return spectrum(settled.run, chosen["force"])
+        return spectrum(run(chain, 0, _RECORD, _SAMPLES, start=settled.state, stop=stop), chosen["force"])
+
+    return Plan(f"Spectrum of the {chosen['force']} force, {_about(chain)}",
+                _command("spectrum", chain, f"--force {chosen['force']}"), ((chain, _MOTION),), compute, draw_spectrum)
+
+
+# Lyapunov exponents
+
+def _lyapunov_fields(chain: Scene) -> tuple[Field, ...]:
+    return (Field("periods", "drive periods", "200"),)
+
+
+def _lyapunov_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
+    periods = _whole("drive periods", chosen["periods"], 20, MOST_PERIODS)
+
+    def compute(stop: Stop, progress: Progress) -> Any:
+        return lyapunov_spectrum(chain, periods, stop=stop, progress=progress)
+
+    return Plan(f"Lyapunov exponents, {_about(chain)}", _command("lyapunov", chain, f"--periods {periods}"),
+                ((chain, (*_MOTION, ORBIT)),), compute, draw_lyapunov)
+
+
+# Strobes over a knob
+
+def _strobe_fields(chain: Scene) -> tuple[Field, ...]:
+    knobs = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
+    return (Field("knob", "knob", "f", knobs), Field("from", "from (SI)", f"{0.95 * chain.f:.6g}"),
+            Field("to", "to (SI)", f"{1.05 * chain.f:.6g}"), Field("values", "values", "61"),
+            Field("start", "start", "up", tuple(STARTS)), Field("keep", "strobes at each value", "40"),
+            Field("bead", "bead", "1"))
+
+
+def _strobe_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
+    knob, start = chosen["knob"], chosen["start"]
+    low, high = _span(knob, chosen["from"], chosen["to"])
+    count = _whole("values", chosen["values"], 2, MOST_VALUES)
+    keep = _whole("strobes at each value", chosen["keep"], 1, MOST_STROBES)
+    bead = _whole("bead", chosen["bead"], 1, chain.N)
+    ends = tuple(chain.evolve(**{knob: value}) for value in (low, high))  # refused here rather than in the thread
+
+    def compute(stop: Stop, progress: Progress) -> Any:
+        return strobe_diagram(chain, knob, np.linspace(low, high, count), start, keep, stop, progress)
+
+    words = f"--over {_axis(knob, (low, high), count)} --start {start} --keep {keep} --bead {bead}"
+    return Plan(f"Strobes of bead {bead} over {knob}, {chain.name}", _command("strobes", chain, words),
+                tuple((one, _MOTION) for one in ends), compute, lambda found, theme: draw_strobes(found, bead, theme))
+
+
+# Basins in a plane of starts
+
+def _basin_fields(chain: Scene) -> tuple[Field, ...]:
+    length = 2.0 * chain.A0 or 1e-6
+    speed = 2.0 * math.pi * chain.f * length or 1e-3
+    coordinates = tuple(f"{kind}{bead}" for kind in "uv" for bead in range(1, chain.N + 1))
+    return (Field("x", "x", "u1", coordinates), Field("x from", "from (SI)", f"{-length:.3g}"),
+            Field("x to", "to (SI)", f"{length:.3g}"), Field("y", "y", "v1", coordinates),
+            Field("y from", "from (SI)", f"{-speed:.3g}"), Field("y to", "to (SI)", f"{speed:.3g}"),
+            Field("starts", "starts along each", "24"))
+
+
+def _basin_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
+    x, y = chosen["x"], chosen["y"]
+    if x == y:
+        raise BadInput(f"x and y are both {x}; a plane has two different coordinates.")
+    x_ends, y_ends = (_span(chosen[axis], chosen[f"{axis} from"], chosen[f"{axis} to"]) for axis in "xy")
+    count = _whole("starts along each", chosen["starts"], 2, MOST_STARTS)
+
+    def compute(stop: Stop, progress: Progress) -> Any:
+        return basins(chain, (x, np.linspace(*x_ends, count)), (y, np.linspace(*y_ends, count)), stop, progress)
+
+    words = f"--x {_axis(x, x_ends, count)} --y {_axis(y, y_ends, count)}"
+    return Plan(f"Basins over {x} and {y}, {_about(chain)}", _command("basins", chain, words),
+                ((chain, (*_MOTION, CURVE, ORBIT)),), compute, draw_basins)
+
+
+QUESTIONS = {one.name: one for one in (
+    Question("spectrum", "Which frequencies?", "The lines of a force of the settled motion: where it has energy, and "
+             "whether they are multiples of f or of f / n.", _spectrum_fields, _spectrum_plan),
+    Question("strobes", "What over a knob?", "Where a bead is once a drive period, at each value of a knob: one point "
+             "is period 1, n points are period n, many are quasi-periodic or chaotic.", _strobe_fields, _strobe_plan),
+    Question("basins", "Which start leads where?", "Starts in a plane of two coordinates, all others at rest, each in "
+             "the colour of the motion that it settles to.", _basin_fields, _basin_plan),
+    Question("lyapunov", "Is it chaos?", "All Lyapunov exponents per drive period with their standard errors, and the "
+             "dimension of the attractor. A positive one is chaos.", _lyapunov_fields, _lyapunov_plan),
+)}
+
+
+def question_of(name: object) -> Question:
+    """The question of this name. Raises `BadInput` for another one."""
+    if not isinstance(name, str) or name not in QUESTIONS:
+        raise unknown_name("question", str(name), tuple(QUESTIONS))
+    return QUESTIONS[name]

@@ -1,0 +1,57 @@
+"""The page "Analysis" as a visitor meets it: a question is asked, computed, drawn, refused, and given up when a knob moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from knobs import type_into
+from playwright.sync_api import Page, expect
+from started import until
+
+from granchain_core import lyapunov_spectrum, scene, settle, spectrum
+
+Visit = Callable[..., Page]
+#: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
+COMPILED = 150_000
+
+
+def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=1130&look=light")
+    page.get_by_role("tab", name="analysis").click()
+    page.locator("#tabs").get_by_role("button", name="open the page").click()
+    sheet = page.locator('[data-overlay="analysis"]')
+    words, compute = sheet.locator(".words"), sheet.get_by_role("button", name="compute")
+
+    sheet.get_by_role("button", name="Which frequencies?").click()
+    compute.click()
+    found = spectrum(settle(scene("sec2").evolve(f=1130.0), samples=256).run)
+    for sentence in found.summary():
+        expect(words).to_contain_text(sentence, timeout=COMPILED)
+    expect(sheet.get_by_role("img", name="Spectrum of the output force, sec2 at 1130 Hz")).to_be_visible()
+    expect(sheet.locator("code")).to_have_text("granchain spectrum sec2 --set f=1130.0 --force output")
+    page.evaluate("window.kept = granchain.analysis.figure.document; granchain.nextTheme()")
+    until(page, lambda: bool(page.evaluate(
+        "granchain.analysis.figure.document && kept !== granchain.analysis.figure.document")))
+
+    sheet.get_by_role("button", name="Is it chaos?").click()
+    expect(sheet.locator(".picture")).to_be_hidden()
+    sheet.get_by_label("drive periods").fill("3")
+    compute.click()
+    expect(sheet.get_by_role("button", name="stop")).to_be_hidden()
+    expect(page.locator("#foot")).to_contain_text("drive periods = 3")
+    sheet.get_by_label("drive periods").fill("60")
+    compute.click()
+    for sentence in lyapunov_spectrum(scene("sec2").evolve(f=1130.0), 60).summary():
+        expect(words).to_contain_text(sentence, timeout=COMPILED)
+
+    sheet.get_by_role("button", name="Which start leads where?").click()
+    sheet.get_by_label("starts along each").fill("40")
+    compute.click()
+    expect(sheet.get_by_role("button", name="stop")).to_be_visible()
+    type_into(page, "f", "1140")
+    expect(sheet.locator(".status")).to_have_text("stopped")
+    expect(sheet.get_by_label("starts along each")).to_have_value("40")  # what was typed stays
+    expect(sheet.locator(".picture")).to_be_hidden()
+    for width, height in ((390, 844), (1280, 800)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") == width

@@ -1,0 +1,84 @@
+"""What the Analysis page asks the core, what it refuses, and that its command computes the same."""
+
+from __future__ import annotations
+
+import json
+import shlex
+
+import numpy as np
+import pytest
+
+from app.cli import main
+from app.pages.analysis.questions import MOST_BEADS, QUESTIONS, Plan, planned, question_of
+from app.pictures.theme import THEMES
+from granchain_core import BadInput, Stop, scene
+
+#: Settles soon, to one point.
+CHAIN = scene("sec2").evolve(N=2, f=2000.0)
+#: Few of everything.
+SMALL = {"spectrum": {"force": "input"}, "lyapunov": {"periods": "40"},
+         "strobes": {"from": "1990", "to": "2010", "values": "3", "keep": "4", "bead": "2"},
+         "basins": {"x": "u1", "y": "v2", "starts": "3"}}
+
+
+def plan_of(name: str, **changes: str) -> Plan:
+    """A small plan of a question with some fields changed."""
+    return planned(question_of(name), CHAIN, {**SMALL[name], **changes})
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_its_command_computes_the_same(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    plan, reports = plan_of(name), [0.0]
+    found = plan.compute(Stop(), reports.append)
+    assert reports == sorted(reports)
+    program, *words = shlex.split(plan.command)
+    assert program == "granchain" and main([*words, "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    here, there = {
+        "spectrum": lambda: (found.amplitude, answer["amplitude"]),
+        "lyapunov": lambda: (found.exponents, answer["exponents"]),
+        "strobes": lambda: ([point.strobes[:, 0, 1] for point in found.points], answer["displacement"]),
+        "basins": lambda: (found.number, answer["number"]),
+    }[name]()
+    np.testing.assert_array_equal(here, there)
+    assert found.summary() and plan.draw(found, THEMES["dark"])
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_what_is_offered_can_be_computed(name: str) -> None:
+    for chain in (CHAIN, scene("rig"), scene("impact")):
+        offered = {field.name: field.value for field in QUESTIONS[name].fields(chain)}
+        if name != "strobes" or chain.f > 0.0:  # there is no range of f around 0
+            assert planned(QUESTIONS[name], chain, offered).command.startswith("granchain ")
+
+
+@pytest.mark.parametrize(("name", "changes", "sentence"), [
+    ("spectrum", {"force": "none"}, "force"),
+    ("lyapunov", {"periods": "1e9"}, "not a whole number from 20 to 2000"),
+    ("lyapunov", {"periods": "2001"}, "drive periods = 2001"),
+    ("strobes", {"knob": "self"}, "knob"),
+    ("strobes", {"from": "nan"}, "is not a number"),
+    ("strobes", {"from": "9", "to": "8"}, "must be the smaller one"),
+    ("strobes", {"from": "-1", "to": "8"}, "f"),
+    ("strobes", {"bead": "3"}, "bead = 3"),
+    ("strobes", {"values": "١٢"}, "not a whole number"),
+    ("basins", {"x": "v2"}, "both v2"),
+    ("basins", {"x": "u3"}, "u3"),
+    ("basins", {"starts": "41"}, "starts along each = 41"),
+])
+def test_what_is_wrong_is_refused_in_a_sentence(name: str, changes: dict[str, str], sentence: str) -> None:
+    with pytest.raises(BadInput, match=sentence):
+        plan_of(name, **changes)
+
+
+def test_what_a_browser_should_not_send_is_refused() -> None:
+    for other in ("self", None, 3, ["spectrum"]):
+        with pytest.raises(BadInput, match="question"):
+            question_of(other)
+    with pytest.raises(BadInput, match="N = 301"):
+        planned(question_of("basins"), CHAIN.evolve(N=MOST_BEADS + 1), {})
+    for values in (None, [], "x", {"starts": None}, {"starts": {"a": 1}}):
+        try:
+            planned(question_of("basins"), CHAIN, values)
+        except BadInput as refused:
+            assert "starts along each" in str(refused)
