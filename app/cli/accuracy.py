@@ -27,7 +27,7 @@ def do(arguments: argparse.Namespace) -> None:
     check_picture(arguments.picture)
     chosen = chosen_scene(arguments)
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: work_precision(chosen, stop, progress))
+    found = in_background(lambda stop: work_precision(chosen, stop, progress), reports=True)
     write_picture(arguments.picture, f"What accuracy costs for {chosen.name}", found)
     if arguments.json:
         show_json(_accuracy_json(found))

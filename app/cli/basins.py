@@ -35,7 +35,8 @@ def do(arguments: argparse.Namespace) -> None:
     (x, x_ends, x_spaced), (y, y_ends, y_spaced) = (
         values_from(option, text, MOST_CELLS) for option, text in (("--x", arguments.x), ("--y", arguments.y)))
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: basins(chosen, (x, x_spaced(*x_ends)), (y, y_spaced(*y_ends)), stop, progress))
+    found = in_background(lambda stop: basins(chosen, (x, x_spaced(*x_ends)), (y, y_spaced(*y_ends)), stop, progress),
+                          reports=True)
     write_picture(arguments.picture, f"Basins of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found))

@@ -87,7 +87,7 @@ def _followed(arguments: argparse.Namespace) -> Branch:
         return Continuation(one.branch, stop).run(arguments.points, _Progress(one))
 
     try:
-        found = in_background(work)
+        found = in_background(work, reports=True)
     except (Cancelled, KeyboardInterrupt):
         if arguments.out and begun:  # the orbits found so far can be continued
             save_branch(begun[0].branch, arguments.out)

@@ -7,6 +7,7 @@ import json
 import math
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -81,9 +82,10 @@ def check_points(points: int, fewest: int, most: int) -> None:
                        f"{min(max(points, fewest), most)}.")
 
 
-def in_background(work: Callable[[Any], T]) -> T:
+def in_background(work: Callable[[Any], T], reports: bool = False) -> T:
     """Run `work(stop)` beside the main thread, so that a signal reaches a running kernel through its stop flag.
 
+    Work that does not report how far it is has the seconds counted for a person at a terminal, from the first one on.
     Raises `Cancelled` after a signal, when the work has ended or has been given up: a compiler cannot be stopped.
     """
     stop = Stop()
@@ -100,14 +102,19 @@ def in_background(work: Callable[[Any], T]) -> T:
     thread = threading.Thread(target=target, daemon=True)
     with ending.asking(stop.set) as asked:
         thread.start()
+        began = 0 if reports or not sys.stderr.isatty() else time.monotonic()
         try:
             while thread.is_alive() and not asked():
                 thread.join(_LOOK)
+                if began and time.monotonic() - began >= 1.0:
+                    print(f"\r{time.monotonic() - began:3.0f} s", end="", file=sys.stderr, flush=True)
         except KeyboardInterrupt:  # in a process that has not taken signals over
             stop.set()
         if stop or asked():
             thread.join(_PATIENCE)
             raise Cancelled
+        if began and time.monotonic() - began >= 1.0:
+            print("\r      \r", end="", file=sys.stderr, flush=True)
     if problem:
         raise problem[0]
     return result[0]

@@ -93,7 +93,7 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
           keeping(kept, lambda: f"{done[0]} of {len(frequencies)} points")):
         swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start, stop=stop,
                                                            on_point=count, known=known, amplitude=amplitude,
-                                                           scheduler=client))
+                                                           scheduler=client), reports=True)
     if kept is not None:
         with unbroken():
             save_curve(swept, arguments.out)

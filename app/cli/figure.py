@@ -46,7 +46,7 @@ def do(arguments: argparse.Namespace) -> None:
     for sentence in given.sentences:
         say(sentence)
     progress = show_percent if sys.stderr.isatty() else _quiet
-    result = in_background(lambda stop: compute(figure.number, given, stop, progress))
+    result = in_background(lambda stop: compute(figure.number, given, stop, progress), reports=True)
     Path(out).write_bytes(_written(figure, result, kind, arguments.theme))
     print(f"figure {figure.number}: {figure.title}; {out}")
 

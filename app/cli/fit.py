@@ -70,7 +70,7 @@ def do(arguments: argparse.Namespace) -> None:
 
     with scheduler_of(arguments) as client:
         found = in_background(lambda stop: fit(chosen, target, free, arguments.design, not arguments.no_intervals, stop,
-                                               progress, client))
+                                               progress, client), reports=True)
     if sys.stderr.isatty():
         say()
     if arguments.out:

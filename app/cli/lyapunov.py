@@ -23,7 +23,8 @@ def do(arguments: argparse.Namespace) -> None:
 
     chosen = chosen_scene(arguments)
     progress = show_percent if sys.stderr.isatty() else None
-    found = in_background(lambda stop: lyapunov_spectrum(chosen, arguments.periods, stop=stop, progress=progress))
+    found = in_background(lambda stop: lyapunov_spectrum(chosen, arguments.periods, stop=stop, progress=progress),
+                          reports=True)
     if arguments.json:
         low, high = found.dimension_range or (None, None)
         show_json({"exponents": found.exponents.tolist(), "errors": found.errors.tolist(), "resolved": found.resolved,

@@ -80,7 +80,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
     with scheduler_of(arguments) as client:
         blocks = Blocks.open(grid, arguments.out, arguments.resume)
         with keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells"):
-            found, computed = in_background(lambda stop: _filled(blocks, client, stop, done))
+            found, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
     with unbroken():
         save_diagram(found, arguments.out)
         blocks.kept.remove()

@@ -77,7 +77,7 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     if not arguments.out:
         if arguments.resume:
             raise BadInput("--resume needs --out FILE, the file of the run that was interrupted.")
-        return in_background(lambda stop: computed(stop, None))
+        return in_background(lambda stop: computed(stop, None), reports=True)
     from granchain_core.store import load, save
 
     kept = KeptRun(chosen, *sizes, arguments.method, arguments.out)
@@ -88,7 +88,7 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     kept.open(arguments.resume)
     with keeping(kept.kept, lambda: f"{kept.done} of {arguments.periods} discarded periods of computation "
                                     f"{kept.computation}"):
-        result = in_background(lambda stop: computed(stop, kept))
+        result = in_background(lambda stop: computed(stop, kept), reports=True)
     with unbroken():
         save(result, arguments.out)
         kept.kept.remove()

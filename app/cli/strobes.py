@@ -41,7 +41,7 @@ def do(arguments: argparse.Namespace) -> None:
     knob, ends, spaced = values_from("--over", arguments.over, MOST_VALUES)
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: strobe_diagram(chosen, knob, spaced(*ends), arguments.start, arguments.keep,
-                                                      stop, progress))
+                                                      stop, progress), reports=True)
     for point in found.points:
         if point.failure:
             say(f"{knob} = {point.value:g}: {point.failure}")

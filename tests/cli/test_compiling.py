@@ -1,13 +1,18 @@
-"""Who waits for the compiler at a terminal is told so, once; a script's stderr has nothing of it."""
+"""Who waits at a terminal is told of the compiler, once, and of the seconds; a script's stderr has nothing of it."""
 
 from __future__ import annotations
 
+import io
 import os
 import pty
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
+import pytest
+
+from app.cli.common import in_background
 from app.cli.compiling import WORDS
 
 #: Compiles two functions, as a first run does.
@@ -39,9 +44,35 @@ def at_a_terminal() -> str:
 
 
 def test_a_person_at_a_terminal_is_told_once() -> None:
-    assert at_a_terminal().split("\r\n") == [WORDS, ""]
+    assert at_a_terminal().count(WORDS) == 1
 
 
 def test_a_script_reads_nothing_of_it() -> None:
     done = subprocess.run([sys.executable, "-c", PROGRAM], cwd=ROOT, capture_output=True, text=True, timeout=120, check=True)
     assert (done.stdout.strip(), done.stderr) == ("3", "")
+
+
+class Terminal(io.StringIO):
+    """A terminal that tells when it shows seconds."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.counted = threading.Event()
+
+    def isatty(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        if text.endswith(" s"):
+            self.counted.set()
+        return super().write(text)
+
+
+def test_seconds_are_counted_where_the_work_reports_nothing_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert in_background(lambda stop: terminal.counted.wait(60.0))
+    assert terminal.getvalue().startswith("\r  1 s") and terminal.getvalue().endswith("\r      \r")
+    shown = terminal.getvalue()
+    assert in_background(lambda stop: "soon") == "soon"  # within the first second
+    assert terminal.getvalue() == shown
