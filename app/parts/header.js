@@ -120,7 +120,7 @@ class Header {
       () => this.putAway(this.help, this.theme),
     ];
     this.nameScenes(true);
-    for (const control of this.order) root.append(control);
+    for (const control of this.order) root.insertBefore(control, this.gallery.root);
     this.more.hidden = true;
     while (root.scrollWidth > root.clientWidth && steps.length) steps.shift()();
     if (this.more.hidden) popovers.menu.hidden = true;
