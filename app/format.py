@@ -7,9 +7,9 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 
 
 def prefixed(largest: float) -> tuple[float, str]:
-    """The factor and letter of the SI prefix in which `largest` reads between 1 and 1000."""
+    """The factor and letter of the SI prefix in which `largest` reads between 1 and 1000, rounded to three figures."""
     for factor, letter in _PREFIXES:
-        if largest >= factor:
+        if largest >= 0.9995 * factor:  # 999.6 would read "1e+03"; the same in parts/plot.js
             return factor, letter
     return 1.0, ""
 
@@ -21,6 +21,8 @@ def short_error(error: float) -> str:
 
 
 def duration(seconds: float) -> str:
-    """Seconds to three figures, in milliseconds, microseconds … where that reads better."""
+    """Seconds to three figures, in milliseconds, microseconds … where that reads better; whole ones from 1000 on."""
+    if seconds >= 999.5:
+        return f"{seconds:.0f} s"
     factor, letter = prefixed(min(seconds, 1.0))
     return f"{seconds / factor:.3g} {letter}s"

@@ -137,7 +137,7 @@ class Pictures:
         if scene != self._session.insisted:
             check_first_picture(scene)
         self._await_live_kernels(scene, stop)
-        origin = start or self._session.previous_state()
+        origin = start or self._session.previous_state(scene)
         self._host.next_tick(self._begun_from, origin)
         key = None if origin is not None or scene == self._session.insisted else scene
         most = math.inf if scene == self._session.insisted else WHOLE_PICTURE

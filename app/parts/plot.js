@@ -8,9 +8,9 @@ export const draw = (tag, attributes = {}, ...children) => {
   return element;
 };
 
-// The factor and letter of the SI prefix in which a value reads between 1 and 1000.
+// The factor and letter of the SI prefix in which a value reads between 1 and 1000, rounded to three figures (app/format.py).
 const PREFIXES = [..."GMk mµnpfa"].map((letter, i) => [10 ** (9 - 3 * i), letter.trim()]);
-export const prefixed = (value) => PREFIXES.find(([factor]) => Math.abs(value) >= 0.999 * factor) ?? [1, ""];
+export const prefixed = (value) => PREFIXES.find(([factor]) => Math.abs(value) >= 0.9995 * factor) ?? [1, ""];
 
 export const round3 = (value) => Number(value.toPrecision(3));
 

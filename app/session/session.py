@@ -122,12 +122,12 @@ class Session:
             raise BadInput(f"speed {quoted(speed)} is not one of {known} drive periods a second.")
         self.speed = float(speed)
 
-    def previous_state(self) -> State | None:
-        """The state the next settled picture starts from; None is rest."""
+    def previous_state(self, scene: Scene) -> State | None:
+        """The state from which the next settled picture, of `scene`, starts; None is rest."""
         if self.start == "rest" or self.picture is None:
             return None
         state = self.picture.state
-        return state if len(state.displacement) == self.scene.knobs["N"] else None
+        return state if len(state.displacement) == scene.N else None
 
 
 def slider_range(current: Scene, name: str) -> tuple[float, float]:
