@@ -63,7 +63,7 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     assert abs(float(field(page, "f").input_value()) - cells["x"][row]) < 1.0
     until(page, lambda: abs(source(page, "map", "now")["x"][0] - cells["x"][row]) < 1e-3)
 
-    tip = page.locator("#tabs .told")
+    tip = page.locator("#tabs .readout")
     picture.focus()
     picture.press("ArrowRight")
     first = tip.inner_text()
