@@ -38,8 +38,8 @@ def number(value: float) -> str:
     f"three standard errors or {number(regime._NEUTRAL)} per period",
     f"standard errors are below {regime.CLEAR_GROWTH:g} and the mean is not above {regime._CHAOTIC:g}",
     f"below 20π/P of the largest motion ({20 * math.pi / regime_decisions.REMEMBERED:.2f} for {regime_decisions.REMEMBERED})",
-    f"in three windows of {regime._SLOW_WINDOW} periods",
-    f"neither shrink nor grow by {100 * (1 - regime._SHRINKS):.0f} %",
+    f"over three windows of {regime._SLOW_WINDOW} periods",
+    f"changes shrink by {100 * (1 - regime._SHRINKS):.0f} % from window to window", f"{regime._SMALL:g} of the motion, and",
     f"none of these within {regime_decisions.MOST_PERIODS} periods, "
     f"{regime_decisions.MOST_PERIODS * regime_decisions._PATIENCE} for a motion that leaves",
     f"enlarged to {100 * nearby_orbit._ENLARGED_TO:.1f} % of the motion",
