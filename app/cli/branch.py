@@ -12,6 +12,7 @@ from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.orbits import CONTINUOUS, Arm, Branch, Continuation, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
 from granchain_core.orbits.branch.kept_orbits import KeptOrbits
+from granchain_core.orbits.branch.special import SpecialPoint
 
 from .common import check_points, chosen_scene, in_background, say, say_if, show_json, unbroken
 from .data_options import add_amplitude, chosen_amplitude
@@ -66,12 +67,20 @@ def branch_json(found: Branch) -> dict[str, Any]:
         "max_output_force_elastic": [p.max_output_force_elastic for p in found.points],
         "stable": [p.stable for p in found.points],
         "special": [{"kind": s.kind, "knob": s.knob, "interval": list(s.interval)} for s in found.special],
+        "evidence": [_evidence(one) for one in found.special],
         "period": found.period, "max_output_force": [p.max_output_force for p in found.points],
         "max_input_force": [p.max_input_force for p in found.points],
         **({} if found.axis.amplitude is None else
            {"drive_amplitude": [found.axis.amplitude.held(p.knob) for p in found.points]}),
         "ended": [{"how": arm.ended or "stopped", "reason": arm.reason} for arm in found.arms],
     }
+
+
+def _evidence(found: SpecialPoint) -> dict[str, Any]:
+    """On what the kind of a special point rests: the multiplier that passes the circle, or what a contact does."""
+    passing = found.multiplier
+    return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": found.contact,
+            "event": found.event}
 
 
 def _followed(arguments: argparse.Namespace) -> Branch:

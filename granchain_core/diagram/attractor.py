@@ -93,7 +93,7 @@ class Attractor:
 
 
 class Attractors(list[Attractor], Labelled):
-    """The steady states that were found: a list, the largest share of random states first.
+    """The steady states that were found: a list, that of most starts first.
 
     Attributes
     ----------

@@ -64,7 +64,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     Returns
     -------
     Attractors
-        A list of `Attractor`, each steady state once, the largest share first.
+        A list of `Attractor`, each steady state once, that of most starts first.
 
     Raises
     ------

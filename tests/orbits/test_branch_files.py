@@ -158,6 +158,8 @@ def test_the_command_prints_the_contracts_keys_and_goes_on_from_its_file(tmp_pat
     special = whole["special"][0]
     assert set(special) == {"kind", "knob", "interval"} and special["kind"] == "period_doubling"
     assert special["interval"][0] <= special["knob"] <= special["interval"][1]
+    assert len(whole["evidence"]) == len(whole["special"])
+    assert whole["evidence"][0]["multiplier"] == pytest.approx([-1.0, 0.0], abs=1e-3)
     assert main([*words, "--period", "1", "--points", "3", "--out", file]) == 0
     capsys.readouterr()
     assert main(["branch", "sec2", "--resume", file, "--json"]) == 0
