@@ -11,8 +11,9 @@ if TYPE_CHECKING:
 
 def figure(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
            **options: Any) -> LayoutDOM:
-    """The picture of a result: a figure of Bokeh, the same as on the dashboard.
+    """The picture of a result: a figure of Bokeh, by the functions that draw the dashboard's pages.
 
+    Only the dashboard's main picture and its resonance curve, which follow every move, are drawn by code of their own.
     `bokeh.io.show` shows it; in a notebook after `bokeh.io.output_notebook()`. `bokeh.plotting.save` writes it.
 
     Parameters

@@ -13,10 +13,10 @@ from .theme import Theme, dress, frame, in_theme
 
 def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
     """The exponents per drive period; above the line neighbours separate."""
-    rank = np.arange(len(found.exponents))
+    rank = np.arange(1, len(found.exponents) + 1)  # as the command numbers them
     source = ColumnDataSource({"rank": rank, "exponent": found.exponents, "error": found.errors,
                                "low": found.exponents - found.errors, "high": found.exponents + found.errors,
-                               "fill": np.where(rank < found.resolved, 1.0, 0.0)}, name="exponents")
+                               "fill": np.where(rank <= found.resolved, 1.0, 0.0)}, name="exponents")
     plot = frame(name="lyapunov", min_border=4)
     plot.add_layout(in_theme(Span(location=0.0, dimension="width"), line_color="soft", line_width=1.0))
     in_theme(plot.segment("rank", "low", "rank", "high", source=source), line_color="accent", line_width=1.4)

@@ -6,7 +6,7 @@ import numpy as np
 from bokeh.models import ColumnDataSource, HoverTool, Range1d
 from bokeh.plotting import figure
 
-from granchain_core import Spectrum
+from granchain_core import BadInput, Spectrum
 
 from ..format import prefixed
 from .axes import force_scale
@@ -17,12 +17,18 @@ _DECADES = 6.0
 
 
 def spectrum(found: Spectrum, theme: Theme) -> figure:
-    """Amplitudes over frequency; below the line of what may be folded back nothing is known."""
+    """Amplitudes over frequency; below the line of what may be folded back nothing is known.
+
+    Raises `BadInput` for a force that is 0 throughout, which has no lines.
+    """
+    if not found.amplitude.any():
+        raise BadInput(f"The {found.force} force is 0 throughout and has no lines.")
     scale = force_scale(f"amplitude of the {found.force} force", float(found.amplitude.max()))
     amplitude, floor = found.amplitude / scale.factor, found.aliasing / scale.factor
     low = max(float(amplitude.max()) * 10.0**-_DECADES, 0.5 * floor)
     drawn = amplitude > low
-    highest = float(found.frequency[np.nonzero(amplitude > max(low, floor))[0][-1]])
+    known = np.nonzero(amplitude > max(low, floor))[0]
+    highest = float(found.frequency[known[-1] if len(known) else -1])
     hertz, letter = prefixed(highest)
     plot = frame(name="spectrum", min_border=4, y_axis_type="log", y_range=Range1d(low, 2.0 * float(amplitude.max())),
                  x_range=Range1d(-0.01 * highest / hertz, 1.05 * highest / hertz))

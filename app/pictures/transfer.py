@@ -8,14 +8,19 @@ from bokeh.layouts import column
 from bokeh.models import ColumnDataSource, HoverTool, LayoutDOM
 from bokeh.plotting import figure
 
-from granchain_core import Transfer
+from granchain_core import BadInput, Transfer
 
 from ..format import prefixed
 from .theme import Theme, dress, frame, in_theme
 
 
 def transfer(found: Transfer, theme: Theme) -> LayoutDOM:
-    """Gain above phase, a point for each line at which the input force has a part that counts."""
+    """Gain above phase, a point for each line at which the input force has a part that counts.
+
+    Raises `BadInput` where the input force has none.
+    """
+    if not len(found.frequency):
+        raise BadInput("No line of the input force counts, so there is no transfer.")
     hertz, letter = prefixed(float(found.frequency.max()))
     source = ColumnDataSource({"frequency": found.frequency / hertz, "gain": found.gain, "phase": found.phase},
                               name="lines")
