@@ -20,15 +20,10 @@ COPY app ./app
 COPY assets ./assets
 RUN pip install --require-hashes -r requirements.lock && pip install --no-deps .
 
-# Numba's cache, and the marks of what is compiled (granchain_core/warm.py), hold the place and the time of the sources they
-# were made from. The place: work from another folder, so that
-# the installed package is compiled and not the source beside it. The time: image layers keep whole seconds only, so the
-# sources get whole seconds before they are compiled.
+# Work from another folder, so that the installed package is compiled and not the source beside it.
 WORKDIR /opt/granchain
 ENV GRANCHAIN_CACHE=/opt/granchain/kernels
-RUN python -c "import granchain_core, os, pathlib; [os.utime(path, (int(path.stat().st_mtime),) * 2) \
-        for path in pathlib.Path(granchain_core.__file__).parent.rglob('*.py')]" \
-    && granchain warm
+RUN granchain warm
 
 
 FROM python:3.12-slim

@@ -85,9 +85,8 @@ class StroboscopicMap:
     def derivative_by_saltation(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
 
-        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests ask for it. Its
-        kernels are in the package all the same: compiled code is kept on disk with its types, and every process that
-        reads it must be able to import them.
+        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests use it. It must
+        stay importable, because every process that reads compiled kernels imports their types.
         Raises `BadInput` for a damping that is not the linear dashpot's.
         """
         lo = self.engine.lowered
