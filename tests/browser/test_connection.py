@@ -48,7 +48,7 @@ FIRST = """addEventListener("DOMContentLoaded", () => setTimeout(() => {
 # Whether the pictures show whole drive periods of a frequency [Hz]; the time axis of all of them is one, in ms.
 BELONGS = """(frequency) => {
   for (const document of window.Bokeh?.documents ?? []) for (const model of document.all_models ?? document._all_models.values()) {
-    if (model.type !== "Figure" || model.y_range?.start === 1 || !(model.y_range?.start > model.y_range?.end)) continue;
+    if (model.type !== "Plot" || model.y_range?.start === 1 || !(model.y_range?.start > model.y_range?.end)) continue;
     const periods = model.y_range.start * 1e-3 * frequency;
     return periods > 0.5 && Math.abs(periods - Math.round(periods)) < 1e-3;
   }
