@@ -109,15 +109,6 @@ class ForceErrors:
         return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
 
 
-def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """Relative changes of the three largest forces from one computation to a finer one, over the finer one's values.
-
-    Infinite where the finer one is zero and the other is not.
-    """
-    change = np.abs(now - before)
-    return np.divide(change, now, out=np.where(change > 0.0, np.inf, 0.0), where=now > 0.0)
-
-
 class HasForces(Protocol):
     """What has largest forces [N] with relative errors: a run, a point of a curve, an attractor."""
 

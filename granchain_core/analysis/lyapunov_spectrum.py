@@ -141,7 +141,8 @@ class LyapunovSpectrum(Labelled):
 
 
 def _kaplan_yorke(exponents: np.ndarray, resolved: int) -> float | None:
-    """The dimension from exponents (2N,), largest first, of which the first `resolved` are known."""
+    """The dimension from exponents (2N,), of which the first `resolved` are known and the rest smaller."""
+    exponents = np.concatenate([np.sort(exponents[:resolved])[::-1], exponents[resolved:]])
     sums = np.cumsum(exponents)
     if sums[0] < 0.0:
         return 0.0
@@ -206,5 +207,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     counted = growth[_TURNING:]
     blocks = np.array([part.mean(axis=0) for part in np.array_split(counted, _BLOCKS)])
     resolved = int(np.argmax(rounding)) if rounding.any() else size
-    errors = blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
-    return LyapunovSpectrum(scene, counted.mean(axis=0), errors, resolved, periods, float(traces[_TURNING:].mean()))
+    found, errors = counted.mean(axis=0), blocks.std(axis=0, ddof=1) / np.sqrt(_BLOCKS)
+    # the factorization puts them in this order in the limit only: near ones may have changed places
+    order = np.concatenate([np.argsort(-found[:resolved], kind="stable"), np.arange(resolved, size)])
+    return LyapunovSpectrum(scene, found[order], errors[order], resolved, periods, float(traces[_TURNING:].mean()))

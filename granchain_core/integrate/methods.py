@@ -68,6 +68,10 @@ class Setting:
         """Steps in one period for a fixed-step method, a multiple of `samples`."""
         return math.ceil(self.refine * lowered.steps_per_period(samples) / samples) * samples
 
+    def step(self, lowered: Lowered, samples: int) -> float:
+        """The step of a fixed-step method, in scaled units."""
+        return lowered.period / self.steps_per_period(lowered, samples)
+
 
 @dataclass(frozen=True)
 class StepCost:
@@ -203,8 +207,10 @@ def typical_error(setting: Setting) -> float:
     return _SPREAD * method.usual_error / setting.refine**method.order_smooth
 
 
-def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndarray, maxima: np.ndarray) -> np.ndarray:
-    """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,) [scaled].
+def jump_errors(setting: Setting, lowered: Lowered, step: float, jumps: np.ndarray, maxima: np.ndarray) -> np.ndarray:
+    """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,), with this step.
+
+    All in scaled units.
 
     The quadrature error after an onset is subtracted at the end of the split step and of the next two steps. If
     another contact closes in between, its momentum is off by a part of K v^{3/2} h^{5/2} (contact_events.py), hence its
@@ -213,7 +219,7 @@ def jump_errors(setting: Setting, lowered: Lowered, samples: int, jumps: np.ndar
     """
     least = np.zeros(3)
     if setting.method == LIVE and lowered.slots.dissipation is not None:
-        chain, step = lowered.slots.chain, lowered.period / setting.steps_per_period(lowered, samples)
+        chain = lowered.slots.chain
         root_speeds = np.sqrt(jumps / lowered.slots.dissipation.coefficient)
         at_jump = jumps > AT_A_JUMP * maxima[:2]
         least[:2] = at_jump * _JUMP * step**2.5 * root_speeds * chain.stiffness.max() * chain.inverse_mass.max()

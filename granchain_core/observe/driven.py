@@ -1,7 +1,7 @@
 """`drive`: a chain whose driver moves as a signal says, from its start to the signal's end, to the accuracy asked for.
 
-The motion is computed with steps that are halved until two computations agree, as in `observe`; the signal itself is
-exact (signal.py), so that there is no error of interpolation.
+The motion is computed with steps that are halved until the stated error is small enough, by the rules of `run`
+(integrate/stated.py); the signal itself is exact (signal.py), so that there is no error of interpolation.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import State
-from ..integrate.caution import EVEN, RUN_FORCES, RUN_FORCES_THAT_JUMP
-from ..integrate.methods import LIVE
+from ..integrate import Setting, State, live
+from ..integrate.methods import LIVE, jump_errors, typical_error
+from ..integrate.stated import Computations, force_differences
 from ..motion import Motion, motion_columns
-from ..result import ERRORS, Cost, ForceErrors, relative_changes, residual, said_forces
+from ..result import ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
@@ -159,25 +159,34 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
                        "shorter signal or fewer beads.")
     began, begin = clock.perf_counter(), rest(scene) if start is None else start
     chain = MovedChain(scene, signal, Stop() if stop is None else stop)
-    before, first = chain.run(begin, 0), chain.maxima
+    before, first, shown = chain.run(begin, 0), chain.maxima, Computations(scene.cuts_tension)
+    shown.begin(live())
     for halvings in range(1, _MOST_HALVINGS + 1):
+        setting = live(2**halvings)
         now, maxima = chain.run(begin, halvings), chain.maxima
         largest = float(np.abs(now.displacement).max())
         change = float(np.abs(now.displacement - before.displacement).max())
-        error = EVEN * change / largest if largest > 0.0 else 0.0
-        factor = RUN_FORCES_THAT_JUMP if scene.forces_jump else RUN_FORCES
-        errors = factor * relative_changes(maxima, first)
+        differences = [change / largest if largest > 0.0 else 0.0, *force_differences(maxima, first, scene.forces_jump)]
+        shown.add(setting, chain.steps(halvings), np.array(differences), _least(chain, setting, halvings))
         if progress is not None:
             progress(halvings / _MOST_HALVINGS)
-        if error <= scene.accuracy:
+        if shown.stated[0] <= scene.accuracy or shown.rounded:
             break
         before, first = now, maxima
+    done = bool(shown.stated[0] <= scene.accuracy)
+    error, *errors = shown.final(done)
     scales = chain.lowered.scales
     balance = residual(now.energy)
     assert balance is not None, "the chain has an account"
     inward, outward, elastic = (float(one) for one in maxima * scales.force)
     return Driven(scene, signal, now.displacement * scales.length, now.velocity * scales.velocity,
                   now.force * scales.force, inward, outward, elastic,
-                  force_errors=ForceErrors.of(errors), error_estimate=error,
-                  energy_residual=balance, status="done" if error <= scene.accuracy else "accuracy-not-reached",
+                  force_errors=ForceErrors.of(np.array(errors)), error_estimate=float(error),
+                  energy_residual=balance, status="done" if done else "accuracy-not-reached",
                   cost=Cost.of(clock.perf_counter() - began, chain.counts, LIVE))
+
+
+def _least(chain: MovedChain, setting: Setting, halvings: int) -> np.ndarray:
+    """Lower limits of the stated errors (4,), as for a run: typical for this step, and for forces at jumps."""
+    jumps = jump_errors(setting, chain.lowered, chain.longest_step(halvings), chain.jumps, chain.maxima)
+    return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])

@@ -55,14 +55,26 @@ class ChainInPieces:
         """Largest input, output and elastic output force of the last run, in scaled units."""
         return self._log.peaks[:MEMORY:ROWS].copy()
 
+    @property
+    def jumps(self) -> np.ndarray:
+        """The largest jumps of input and output force (2,) in the same time, in scaled units."""
+        return self._log.peaks[MEMORY:].copy()
+
+    def steps(self, halvings: int) -> int:
+        """Steps of a run whose steps are halved `halvings` times."""
+        return int(self._substeps.sum()) * 2**halvings
+
+    def longest_step(self, halvings: int) -> float:
+        """The longest of them, in scaled units."""
+        return float((self._spans / self._substeps).max()) / 2**halvings
+
     def run(self, start: State, halvings: int) -> Samples:
         """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
         lo, n, row = self.lowered, self.lowered.beads, self.lowered.bodies
         if len(start.displacement) != n:
             raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
-        substeps = self._substeps * 2**halvings
-        if int(substeps.sum()) > MOST_STEPS:
-            raise BadInput(f"The record needs {float(substeps.sum()):.1e} steps; at most {MOST_STEPS:.0e} are allowed: "
+        if self.steps(halvings) > MOST_STEPS:
+            raise BadInput(f"The record needs {self.steps(halvings):.1e} steps; at most {MOST_STEPS:.0e} are allowed: "
                            "give a shorter record or ask for less accuracy.")
         y = np.zeros(lo.size)
         displacement, velocity = lo.rows(y)
@@ -75,7 +87,7 @@ class ChainInPieces:
         samples = empty_samples(lo, len(self._spans) + 1)
         nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)
         status, done = run_observed(Rk4Split(0), Trajectory(lo.slots, nothing, y, stages),
-                                    SampledForce(self._spans, self._pieces, substeps), samples,
+                                    SampledForce(self._spans, self._pieces, self._substeps * 2**halvings), samples,
                                     Output(self._log, self.counts.array, self._stop.flag))
         if status == CANCELLED:
             raise Cancelled

@@ -14,11 +14,11 @@ import numpy as np
 
 from ..errors import BadInput, check_range
 from ..integrate import Counts, Engine, Setting, State, live, method_for
-from ..integrate.caution import RUN_FORCES, RUN_FORCES_THAT_JUMP
 from ..integrate.methods import jump_errors, setting_of, typical_error
+from ..integrate.stated import Computations, force_differences
 from ..kernels.samples import Samples
 from ..regime import Regime
-from ..result import Cost, Run, relative_changes, residual, run_from
+from ..result import Cost, Run, residual, run_from
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..state import rest
@@ -27,7 +27,6 @@ from ..steady.settling.regime_decisions import REMEMBERED, regime_without_contin
 from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
 from .kept_run import KeptRun, Reached
-from .stated import Computations
 
 #: Most drive periods of one run.
 MOST_PERIODS = 10_000_000
@@ -58,8 +57,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
 
     The motion is computed twice, the second time finer; the stated error starts from their largest difference
-    (stated.py). While it is above the accuracy asked for, a still finer computation follows (docs/design.md, "Accuracy
-    is measured, not trusted").
+    (integrate/stated.py). While it is above the accuracy asked for, a still finer computation follows (docs/design.md,
+    "Accuracy is measured, not trusted").
 
     Parameters
     ----------
@@ -223,14 +222,15 @@ def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
 
     The differences of forces are taken with a factor for caution.
     """
-    factor = RUN_FORCES_THAT_JUMP if now.engine.lowered.scene.forces_jump else RUN_FORCES
-    return np.array([_difference(now, before), *(factor * relative_changes(now.engine.maxima, before.engine.maxima))])
+    jumps = now.engine.lowered.scene.forces_jump
+    return np.array([_difference(now, before), *force_differences(now.engine.maxima, before.engine.maxima, jumps)])
 
 
 def _least(now: _Attempt, setting: Setting) -> np.ndarray:
     """Lower limits of the stated errors (4,): typical for this step, and for forces at jumps `jump_errors`."""
     engine = now.engine
-    jumps = jump_errors(setting, engine.lowered, engine.samples, engine.jumps, engine.maxima)
+    step = setting.step(engine.lowered, engine.samples)
+    jumps = jump_errors(setting, engine.lowered, step, engine.jumps, engine.maxima)
     return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])
 
 

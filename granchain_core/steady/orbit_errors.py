@@ -7,8 +7,8 @@ import numpy as np
 from ..integrate import Engine
 from ..integrate.caution import ORBIT_FORCES
 from ..integrate.methods import jump_errors, typical_error
+from ..integrate.stated import relative_changes
 from ..lower import Lowered
-from ..result import relative_changes
 
 #: F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
 _FORCE_PER_OVERLAP = 1.5
@@ -48,7 +48,8 @@ def errors_between(finer: Engine, before: np.ndarray, contraction: float, distan
 
     Both began at the relative `distance` from the orbit; `contraction` is the contraction factor per orbit.
     """
-    jumps = jump_errors(finer.setting, finer.lowered, finer.samples, finer.jumps, finer.maxima)
+    step = finer.setting.step(finer.lowered, finer.samples)
+    jumps = jump_errors(finer.setting, finer.lowered, step, finer.jumps, finer.maxima)
     left = force_distances(distance, finer.lowered, finer.maxima, finer.y)
     return orbit_force_errors(relative_changes(finer.maxima, before), left, contraction, jumps,
                               typical_error(finer.setting))

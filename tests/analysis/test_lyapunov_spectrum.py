@@ -46,6 +46,12 @@ def test_with_damping_their_sum_is_the_mean_trace_too() -> None:
     assert found.liouville is not None and found.liouville < 1e-7
 
 
+def test_they_are_in_descending_order(undamped: LyapunovSpectrum) -> None:
+    """The table calls them ranks, and the dimension adds them up from the largest."""
+    for found in (undamped, lyapunov_spectrum(scene("sec2").evolve(N=3, f=1000.0, A0=2e-6), 60)):
+        assert np.all(np.diff(found.exponents[:found.resolved]) <= 0.0)
+
+
 def test_a_hamiltonian_system_has_pairs(undamped: LyapunovSpectrum) -> None:
     apart = undamped.exponents + undamped.exponents[::-1]
     assert np.abs(apart).max() < 3.0 * undamped.errors.max() + 10.0 / PERIODS
@@ -68,7 +74,7 @@ def test_without_damping_the_dimension_is_that_of_the_whole_space(undamped: Lyap
 
 @pytest.mark.parametrize(("exponents", "resolved", "dimension"), [
     ([0.5, -0.2, -1.0], 3, 2.3), ([0.1, -0.4], 2, 1.25), ([-0.1, -0.2], 2, 0.0), ([0.0, -0.5], 2, 1.0),
-    ([0.5, -0.2, -1.0], 2, None), ([0.5, 0.0, -0.5], 3, 3.0),
+    ([0.5, -0.2, -1.0], 2, None), ([0.5, 0.0, -0.5], 3, 3.0), ([-0.2, 0.5, -1.0], 3, 2.3),
 ])
 def test_the_dimension_is_kaplan_and_yorkes(undamped: LyapunovSpectrum, exponents: list[float], resolved: int,
                                             dimension: float | None) -> None:

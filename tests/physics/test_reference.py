@@ -46,7 +46,7 @@ def test_asked_for_more_it_comes_nearer(name):
     # Kuwabara–Kono has no dashpot at onset to calm what rounding does there: it ends near 3e-12 and says not reached
     assert worst(result.displacement, true["displacement"]) < 1.2e-11
     # the difference of two such computations is near their rounding; what is stated is no less than the rounding of all
-    # steps as it may have grown (granchain_core/run/stated.py)
+    # steps as it may have grown (granchain_core/integrate/stated.py)
     assert result.status == "done" or result.error_estimate < 1e-9
 
 

@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settling/recorded.py"
-_RUN, _STATED, _METHODS = "run/run.py", "run/stated.py", "integrate/methods.py"
+_RUN, _STATED, _METHODS = "run/run.py", "integrate/stated.py", "integrate/methods.py"
 
 STEADY = (
     Mutant("change-taken-for-distance", _SECTION, "distance = recent * rate / (1.0 - rate)", "distance = recent",

@@ -9,9 +9,9 @@ import numpy as np
 from ...integrate import Engine, State, live
 from ...integrate.batch import Batch
 from ...integrate.methods import AT_A_JUMP, typical_error
+from ...integrate.stated import relative_changes
 from ...lower import Lowered
 from ...regime import Regime
-from ...result import relative_changes
 from ...scene import Scene
 from ...state import rest
 from ...stop import Stop

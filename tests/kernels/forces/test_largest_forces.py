@@ -72,7 +72,7 @@ def jump_and_force(chain: Scene, setting: Setting, state: State) -> tuple[float,
     engine.reset_peaks()
     maxima = engine.largest_forces(1)
     assert engine.jumps[0] == maxima[0]
-    return jump_errors(setting, engine.lowered, 1, engine.jumps, maxima)[0], maxima[0]
+    return jump_errors(setting, engine.lowered, setting.step(engine.lowered, 1), engine.jumps, maxima)[0], maxima[0]
 
 
 def test_the_largest_force_is_that_of_a_jump() -> None:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..integrate.caution import EVEN, UNEVEN
-from ..integrate.methods import METHODS, Setting, typical_error
+from .caution import EVEN, RUN_FORCES, RUN_FORCES_THAT_JUMP, UNEVEN
+from .methods import METHODS, Setting, typical_error
 
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
 #: the rounding usually seen, which few random scenes exceed.
@@ -18,6 +18,20 @@ _SMOOTH = 1e-10
 _WORTHLESS = 0.05
 #: What is stated then, relative to the largest displacement: two motions that have parted differ by at most twice it.
 _ALL = 2.0
+
+
+def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """Relative changes of the three largest forces from one computation to a finer one, over the finer one's values.
+
+    Infinite where the finer one is zero and the other is not.
+    """
+    change = np.abs(now - before)
+    return np.divide(change, now, out=np.where(change > 0.0, np.inf, 0.0), where=now > 0.0)
+
+
+def force_differences(now: np.ndarray, before: np.ndarray, jumps: bool) -> np.ndarray:
+    """Relative changes (3,) of a run's largest forces, with the factor of caution; `jumps`: whether forces jump."""
+    return (RUN_FORCES_THAT_JUMP if jumps else RUN_FORCES) * relative_changes(now, before)
 
 
 @dataclass(eq=False)
