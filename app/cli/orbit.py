@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+import numpy as np
+
 from granchain_core import BadInput, Scene
 from granchain_core.integrate import State
 
@@ -43,28 +45,37 @@ def do(arguments: argparse.Namespace) -> None:
         data: dict[str, Any] = {
             "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
             "multipliers": _pairs(found.multipliers), "stable": found.stable,
+            "multiplier_errors": _numbers(found.multiplier_errors), "stability_certain": found.stability_certain,
         }
         if found.observer_multipliers is not None:
             data["observer_multipliers"] = _pairs(found.observer_multipliers)
             data["observer_stable"] = found.observer_stable
+            data["observer_multiplier_errors"] = _numbers(found.observer_multiplier_errors)
         show_json(data)
         return
     print(f"{chosen.name}: orbit of period {found.period}, {'stable' if found.stable else 'unstable'}, "
           f"residual {found.residual:.1e} after {len(found.newton_residuals) - 1} Newton iterations")
-    _show_multipliers("multipliers", found.multipliers)
+    _show_multipliers("multipliers", found.multipliers, found.multiplier_errors)
     if found.observer_multipliers is not None:
-        _show_multipliers("observer", found.observer_multipliers)
-
+        _show_multipliers("observer", found.observer_multipliers, found.observer_multiplier_errors)
+    if found.multiplier_errors is not None and not found.stability_certain:
+        print("the leading multiplier is not farther from the unit circle than its error: the stability is not certain")
 
 
 def _pairs(multipliers: Any) -> list[list[float]]:
     return [[float(mu.real), float(mu.imag)] for mu in multipliers]
 
 
-def _show_multipliers(title: str, multipliers: Any) -> None:
+def _numbers(errors: Any) -> list[float | None] | None:
+    """JSON has no infinity."""
+    return None if errors is None else [float(one) if np.isfinite(one) else None for one in errors]
+
+
+def _show_multipliers(title: str, multipliers: Any, errors: Any) -> None:
     shown = ", ".join(f"{mu.real:+.4f}{mu.imag:+.4f}i (|μ| {abs(mu):.4f})" for mu in multipliers[:4])
     outside = sum(abs(mu) > 1.0 for mu in multipliers)
-    print(f"{title}: {outside} of {len(multipliers)} outside the unit circle; leading {shown}")
+    known = "" if errors is None else f"; each to ± {max(errors[:4]):.0e}"
+    print(f"{title}: {outside} of {len(multipliers)} outside the unit circle; leading {shown}{known}")
 
 
 def _start(chosen: Scene, name: str, seed: int) -> State | None:

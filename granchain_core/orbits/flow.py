@@ -62,6 +62,7 @@ class StroboscopicMap:
         refuse_cut(scene)
         self.engine = Engine(scene, certified(tolerance), 1, stop=stop)
         self.periods = periods
+        self.tolerance = tolerance
         row = self.engine.lowered.bodies
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
                           np.zeros((EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))

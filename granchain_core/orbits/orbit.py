@@ -25,6 +25,7 @@ from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenanc
 from ..tables.provenance import Attribute
 from ..tables.words import multiplier_columns, state_columns
 from .flow import Flow, StroboscopicMap, refuse_cut, relative_change
+from .multiplier_errors import derivative_change, multipliers_with_errors
 
 #: Residual at which an orbit is found, relative to the largest displacement and w.
 CONVERGED = 1e-11
@@ -63,6 +64,8 @@ class Orbit(Labelled):
         Contact events along the orbit.
     observer_multipliers : numpy.ndarray of complex or None
         Those of the observer of model (4), where they were requested.
+    multiplier_errors, observer_multiplier_errors : numpy.ndarray or None, shape (2N,)
+        How far they may be from the exact map's, absolute (multiplier_errors.py); None with more than 100 beads.
 
     Examples
     --------
@@ -81,11 +84,19 @@ class Orbit(Labelled):
     liouville: float | None
     changes: np.ndarray
     observer_multipliers: np.ndarray | None = None
+    multiplier_errors: np.ndarray | None = None
+    observer_multiplier_errors: np.ndarray | None = None
 
     @property
     def stable(self) -> bool:
         """Whether all multipliers are inside the unit circle."""
         return bool(np.abs(self.multipliers).max() < 1.0)
+
+    @property
+    def stability_certain(self) -> bool:
+        """Whether the largest multiplier is farther from the unit circle than its error; False if that is not known."""
+        errors = self.multiplier_errors
+        return errors is not None and bool(abs(abs(self.multipliers[0]) - 1.0) > errors[0])
 
     @property
     def observer_stable(self) -> bool | None:
@@ -96,9 +107,10 @@ class Orbit(Labelled):
 
     def tables(self) -> tuple[Table, ...]:
         """`multipliers`, the observer's too where they are known; `state`; `newton`, the residuals of the search."""
-        columns = multiplier_columns(self.multipliers, ("rank",))
+        columns = multiplier_columns(self.multipliers, ("rank",), self.multiplier_errors)
         if self.observer_multipliers is not None:
-            columns |= multiplier_columns(self.observer_multipliers, ("rank",), "observer_")
+            errors = self.observer_multiplier_errors
+            columns |= multiplier_columns(self.observer_multipliers, ("rank",), errors, "observer_")
         ranks = axis("rank", np.arange(len(self.multipliers)), "1", "place by modulus, 0 is the largest")
         residuals = Column(np.array(self.newton_residuals), ("iteration",), "1",
                            "change of the state by the map, over the state's largest entry")
@@ -120,7 +132,8 @@ class Orbit(Labelled):
         lead = self.multipliers[0]
         observer = "" if self.observer_stable is None else f"; observer {'' if self.observer_stable else 'un'}stable"
         return [f"period {self.period}, {'stable' if self.stable else 'unstable'}{observer}",
-                f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}",
+                f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}"
+                + ("" if self.multiplier_errors is None else f" ± {self.multiplier_errors[0]:.0e}"),
                 f"closes to {self.residual:.1e} of its largest entry"]
 
 
@@ -236,11 +249,14 @@ def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -
 
 def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
            observer: bool) -> Orbit:
-    liouville = None
+    liouville = watched = errors = watched_errors = None
     if _dense(x):
-        multipliers = sorted_multipliers(flow.derivative)
+        pushed = stroboscopic_map(x, observer=True).derivative if observer else None
+        change, pushed_change = derivative_change(stroboscopic_map, x, flow.derivative, pushed)
+        multipliers, errors = multipliers_with_errors(flow.derivative, change)
         liouville = _liouville(multipliers, flow.log_determinant)
-        watched = sorted_multipliers(stroboscopic_map(x, observer=True).derivative) if observer else None
+        if pushed is not None and pushed_change is not None:
+            watched, watched_errors = multipliers_with_errors(pushed, pushed_change)
     else:
         from .krylov import leading_multipliers
 
@@ -248,7 +264,7 @@ def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarra
         watched = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
     lowered = stroboscopic_map.engine.lowered
     return Orbit(scene, n, lowered.unscaled(lowered.embed(x)), history[-1], tuple(history), multipliers, liouville,
-                 flow.changes, watched)
+                 flow.changes, watched, errors, watched_errors)
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
@@ -67,6 +68,12 @@ def test_an_unstable_orbit_is_told_by_the_way_it_is_left(leading: tuple[complex,
     assert ("multipliers are outside" in said) == (len(leading) == 3)
 
 
+def test_as_near_to_one_as_it_is_known_is_not_decided() -> None:
+    orbit = with_leading(-1.00000001)
+    errors = np.full(len(orbit.multipliers), 2e-8)
+    assert verdict(replace(orbit, multiplier_errors=errors)).startswith("Not decided: |μ| is 1.000000 ± 2e-8")
+
+
 def test_the_observer_is_told_where_it_was_asked_for() -> None:
     orbit = replace(analysis().orbit, observer_multipliers=np.array([-4.2, 0.1], dtype=complex))
     assert verdict(orbit).endswith("Its observer is unstable, |μ| 4.20.")
@@ -98,7 +105,8 @@ def test_the_evidence_has_a_row_for_what_was_computed_only() -> None:
     assert names == ["regime", "distance to the orbit", "|μ| largest", "Newton's residual", "settled state", "Liouville",
                      "disturbance carried", "multipliers by", "settled by"]
     rows = {row["name"]: row["value"] for row in evidence(picture(), analysis(), None)}
-    assert rows["|μ| largest"].startswith("0.36; decay 0.4")
+    size, error, decay = re.fullmatch(r"(\S+) ± (\S+); decay (\S+) per orbit", rows["|μ| largest"]).groups()
+    assert size == "0.36" and 1e-12 < float(error) < 1e-7 and decay.startswith("0.4")
     assert " → " in rows["Newton's residual"] and float(rows["Liouville"]) < 1e-6
     chaotic = replace(picture(), regime=Regime("chaotic", None, None, None, 620, (0.265, 0.023)))
     assert [row["name"] for row in evidence(chaotic, None, None)] == ["regime", "Lyapunov exponent", "settled by"]

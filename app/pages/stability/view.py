@@ -64,6 +64,9 @@ def verdict(orbit: Orbit) -> str:
     """Whether a disturbance of the orbit dies out and, if it does not, which way it leaves."""
     leading = complex(orbit.multipliers[0])
     size = abs(leading)
+    if orbit.multiplier_errors is not None and not orbit.stability_certain:
+        return (f"Not decided: |μ| is {modulus_words(size)} ± {short_error(orbit.multiplier_errors[0])}, as near to 1 "
+                f"as it is known, for one period of the orbit ({period_words(orbit)}).{_observed(orbit)}")
     if size < 1.0:
         return (f"Stable: a disturbance shrinks to {modulus_words(size)} of itself in one period of the orbit "
                 f"({period_words(orbit)}).{_observed(orbit)}")
@@ -149,8 +152,10 @@ def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
     size = abs(orbit.multipliers[0])
     seen = picture.regime.decay
     decay = f"; decay {modulus_words(seen)} per orbit" if analysis.target.followed and seen else ""
-    row("|μ| largest", modulus_words(size) + decay,
-        "The largest multiplier, and how fast the changes from period to period died out while settling.")
+    error = "" if orbit.multiplier_errors is None else f" ± {short_error(orbit.multiplier_errors[0])}"
+    row("|μ| largest", modulus_words(size) + error + decay,
+        "The largest multiplier with its error (the change to a map of ten times the tolerance, by the multiplier's "
+        "condition), and how fast the changes from period to period died out while settling.")
     residuals = analysis.target.residuals or orbit.newton_residuals
     row("Newton's residual", " → ".join(short_error(r) for r in residuals),
         "Change over one orbit, relative to the largest displacement and w, before each Newton step and at the end.")

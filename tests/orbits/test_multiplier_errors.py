@@ -1,0 +1,77 @@
+"""The errors stated of multipliers: maps of larger tolerances against the finest, and a derivative that is known exactly."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import linear_sum_assignment
+
+from app.cli import main
+from granchain_core import Orbit, Scene, orbit, scene
+from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.multiplier_errors import derivative_change, multipliers_with_errors
+
+CHAINS = {"sec2": scene("sec2"), "1:2": scene("sec2").evolve(f=615.0), "fig12-90": scene("fig12-90"),
+          "fig12-60": scene("fig12-60"), "one bead": scene("sec2").evolve(N=1, f=900.0)}
+
+
+@pytest.fixture(scope="module", params=CHAINS)
+def found(request: pytest.FixtureRequest) -> Orbit:
+    return orbit(CHAINS[request.param])
+
+
+def of_a_coarser_map(chain: Scene, exact: Orbit, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Multipliers and stated errors of the same orbit by a map of this tolerance."""
+    coarse = StroboscopicMap(chain, exact.period, tolerance=tolerance)
+    x = coarse.inner(coarse.engine.lowered.scaled(exact.state))
+    for _ in range(3):
+        flow = coarse(x)
+        x = x + np.linalg.solve(np.eye(len(x)) - flow.derivative, flow.end - x)
+    derivative = coarse(x).derivative
+    change, _ = derivative_change(coarse, x, derivative)
+    return multipliers_with_errors(derivative, change)
+
+
+@pytest.mark.parametrize("tolerance", [1e-10, 1e-11, 1e-12])
+def test_coarser_maps_are_as_near_as_they_say(found: Orbit, tolerance: float) -> None:
+    """At 1e-13 the multipliers are as good as exact for them; the bound is not so wide that it says nothing."""
+    shown, errors = of_a_coarser_map(found.scene, found, tolerance)
+    distances = np.abs(shown[:, None] - found.multipliers[None, :])
+    mine, theirs = linear_sum_assignment(distances)
+    assert np.all(distances[mine, theirs] <= errors[mine])
+    assert found.multiplier_errors is not None
+    assert found.multiplier_errors[0] < errors[0] < 1e-3
+    assert found.multiplier_errors.max() < 1e-5
+
+
+def test_the_error_follows_a_known_change_of_the_derivative() -> None:
+    """To first order in a symmetric matrix, whose eigenvectors are orthogonal: between the change and twice it."""
+    matrix, change = np.diag([0.5, -0.3, 0.1]), 1e-6 * np.diag([1.0, 2.0, 0.0])
+    values, errors = multipliers_with_errors(matrix, change)
+    np.testing.assert_allclose(values, [0.5, -0.3, 0.1])
+    np.testing.assert_allclose(errors, [2e-6, 4e-6, 0.0], atol=1e-15)
+
+
+def test_where_two_multipliers_meet_nothing_is_claimed() -> None:
+    """A Jordan block: a change ε of the matrix moves the multipliers by √ε, and no first order holds."""
+    _, errors = multipliers_with_errors(np.array([[0.5, 1.0], [0.0, 0.5]]), np.full((2, 2), 1e-12))
+    assert np.all(errors > 1e-6)
+
+
+def test_as_near_to_the_circle_as_its_error_is_not_decided(found: Orbit) -> None:
+    assert found.stability_certain
+    leading = np.append(1.0 + 1e-9, found.multipliers[1:])
+    errors = np.full(len(leading), 1e-8)
+    assert not replace(found, multipliers=leading, multiplier_errors=errors).stability_certain
+    assert not replace(found, multiplier_errors=None).stability_certain
+
+
+def test_the_command_line_prints_and_keeps_them(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["orbit", "sec2", "--set", "N=2", "--observer"]) == 0
+    assert capsys.readouterr().out.count("; each to ± ") == 2
+    assert main(["orbit", "sec2", "--set", "N=2", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert len(told["multiplier_errors"]) == len(told["multipliers"]) == 4 and told["stability_certain"] is True
