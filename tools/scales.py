@@ -2,13 +2,15 @@
 
 Every scene of `assets/scenes` is settled from rest at POINTS equally spaced frequencies of its slider, with the knobs of
 its preset, and the largest values over all of them become its table in `assets/scales.toml`. Run it when a scene is new
-or changed:
+or changed; without names all scenes are computed again:
 
-    python -m tools.scales
+    python -m tools.scales NAME …
 """
 
 from __future__ import annotations
 
+import sys
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -37,15 +39,18 @@ def over_frequencies(chain: Scene, points: int = POINTS) -> Extremes:
     return found
 
 
-def main() -> None:
-    """Write `assets/scales.toml`."""
+def main(chosen: list[str]) -> None:
+    """Write `assets/scales.toml`: the scenes named afresh, or all, and the others as they are."""
+    old = tomllib.loads(Path(FILE).read_text(encoding="utf-8"))
     tables = [_HEAD]
     for name in scene_names():
-        rows = (f"{field} = {value:.3g}" for field, value in over_frequencies(scene(name)).items())
-        tables.append("\n".join((f"[{name}]", *rows)) + "\n")
-        print(tables[-1])
+        keep = chosen and name not in chosen
+        values = old[name].items() if keep else over_frequencies(scene(name)).items()
+        tables.append("\n".join((f"[{name}]", *(f"{field} = {value:.3g}" for field, value in values))) + "\n")
+        if not keep:
+            print(tables[-1])
     Path(FILE).write_text("\n".join(tables), encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

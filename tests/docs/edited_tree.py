@@ -10,7 +10,8 @@ from pathlib import Path
 
 from documents import ROOT, blocks, edited
 
-_PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml")
+_PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml", "README.md", "docs/model.md",
+          "tests/session/test_share.py")
 
 
 def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:
@@ -19,15 +20,20 @@ def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:
     return {block.path for block in found if not block.is_new_file}, {block.path for block in found if block.is_new_file}
 
 
+def copied(part: str, tree: Path) -> None:
+    """Copy a file or folder of the repository into a tree; what is there already stays."""
+    source, target = ROOT / part, tree / part
+    for file in [source] if source.is_file() else sorted(one for one in source.rglob("*") if one.is_file() and "__pycache__" not in one.parts):
+        there = target / file.relative_to(source) if source.is_dir() else target
+        if not there.exists():
+            there.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(file, there)
+
+
 def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
     """A copy of the repository with the page's edits before the heading `until` made; each fits at exactly one place."""
     for part in _PARTS:
-        source, target = ROOT / part, copy / part
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if source.is_dir():
-            shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy(source, target)
+        copied(part, copy)
     for block in blocks(page, until):
         if block.language == "console":
             continue
