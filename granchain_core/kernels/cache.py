@@ -29,6 +29,7 @@ import numba
 from numba.core import caching
 from numba.core.serialize import dumps
 
+from .compile_lock import CompileLock
 from .width import BATCH_SIZE
 
 #: Where messages for a person go: on stderr, unless the program keeps a log.
@@ -37,19 +38,20 @@ _LOG = logging.getLogger("granchain")
 _DIGEST = 32
 #: Folders of other versions are removed when they have not been used for this long [s].
 _MONTH = 30 * 86400.0
+#: Sources that decide where compiled code is kept, not what it is.
+_KEEPERS = ("cache.py", "compile_lock.py")
 #: Names of the folders of all versions.
 _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
 
 
 def sources_hash() -> str:
-    """Hash of all that makes compiled code what it is: the sources of the kernels, Numba, the kind of processor.
-
-    This file is left out: it decides where code is kept, not what it is.
-    """
+    """Hash of all that makes compiled code what it is: the sources of the kernels, Numba, the kind of processor."""
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()} {BATCH_SIZE}".encode())
-    for path in sorted(Path(__file__).parent.rglob("*.py")):
-        if path != Path(__file__):
-            digest.update(path.name.encode())
+    folder = Path(__file__).parent
+    for path in sorted(folder.rglob("*.py")):
+        name = path.relative_to(folder).as_posix()
+        if name not in _KEEPERS:
+            digest.update(name.encode())
             digest.update(path.read_bytes())
     return digest.hexdigest()[:12]
 
@@ -244,14 +246,19 @@ class KernelCache(caching.FunctionCache):
             numba.config.CACHE_DIR = before
         files = _Files(self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
         self._cache_file: Any = files
+        self._locks: dict[Path, CompileLock] = {}
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """A compiled version from disk, None where it has to be compiled."""
-        try:
-            return super().load_overload(sig, target_context)
-        except OSError as problem:
-            self._go_on_without(problem)
-            return None
+        """A compiled version from disk, None where it has to be compiled, which no other process does then."""
+        found = self._load(sig, target_context)
+        if found is None:
+            path = self._path(sig, target_context.codegen())
+            lock = self._locks.setdefault(path, CompileLock(path))
+            if lock.acquire():
+                found = self._load(sig, target_context)
+            if found is not None:
+                self._locks.pop(path).release()
+        return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Write a compiled version; where that is impossible, go on without."""
@@ -259,6 +266,22 @@ class KernelCache(caching.FunctionCache):
             super().save_overload(sig, data)
         except OSError as problem:
             self._go_on_without(problem)
+        finally:
+            lock = self._locks.pop(self._path(sig, data.codegen), None)
+            if lock is not None:
+                lock.release()
+
+    def _load(self, sig: Any, target_context: Any) -> Any:
+        try:
+            return super().load_overload(sig, target_context)
+        except OSError as problem:
+            self._go_on_without(problem)
+            return None
+
+    def _path(self, sig: Any, codegen: Any) -> Path:
+        """Where a version is, or would be."""
+        found: Path = self._cache_file.path(self._index_key(sig, codegen))
+        return found
 
     def _go_on_without(self, problem: OSError) -> None:
         say_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that are "

@@ -1,0 +1,66 @@
+"""One process compiles a kernel, the others that want the same one wait for it and load it.
+
+Without it the workers of a map or of the tests, and the processes of a server, would each compile the same kernel, at
+ten seconds of processor time apiece. The lock is on a file beside the kernel's own; the system releases it when its
+process ends, however it ends. Where locks cannot be had (another system, a disk that knows none) everyone compiles.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import time
+from pathlib import Path
+
+try:
+    import fcntl
+except ImportError:  # not a POSIX system
+    fcntl = None  # type: ignore[assignment]
+
+#: Longest wait for another process [s]: a kernel takes ten seconds, five times that where the machine is busy. One that
+#: failed to compile, or is held up, must not hold up others.
+PATIENCE = 120.0
+#: Seconds between two looks.
+_INTERVAL = 0.05
+
+
+class CompileLock:
+    """The right to compile one kernel, whose compiled code is or will be at `path`."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path.with_suffix(".lock")
+        self._file: int | None = None
+
+    def acquire(self, patience: float = PATIENCE) -> bool:
+        """Wait for the lock; whether another process had it meanwhile, so that its kernel may be there now."""
+        if fcntl is None:
+            return False
+        ends, waited = time.monotonic() + patience, False
+        try:
+            self._path.parent.mkdir(parents=True, exist_ok=True)
+            file = os.open(self._path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o644)
+        except OSError:
+            return False
+        while True:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                self._file = file
+                return waited
+            except BlockingIOError:
+                waited = True
+                if time.monotonic() > ends:
+                    break
+                time.sleep(_INTERVAL)
+            except OSError:
+                break
+        os.close(file)
+        return waited
+
+    def release(self) -> None:
+        """Let the next one look; its kernel is written before."""
+        if self._file is not None:
+            # those who wait hold the same file without its name; they look for the kernel next
+            with contextlib.suppress(OSError):
+                self._path.unlink(missing_ok=True)
+            os.close(self._file)
+            self._file = None
