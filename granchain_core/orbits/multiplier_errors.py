@@ -14,7 +14,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eig
 
-from .flow import StroboscopicMap
+from ..integrate import State
+from ..scene import Scene
+from ..stop import Stop
+from .flow import TOLERANCE, StroboscopicMap
 
 #: Tolerance of the coarser map over that of the map.
 _COARSER = 10.0
@@ -23,26 +26,24 @@ _COARSER = 10.0
 _CAUTION, _LEAST_PART = 2.0, 0.25
 
 
-def derivative_change(stroboscopic_map: StroboscopicMap, x: np.ndarray, derivative: np.ndarray,
-                      observer: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray | None]:
-    """ΔM (2N, 2N) of the derivative at the fixed point x, and that of the observer's derivative if it is given.
+def derivative_change(scene: Scene, period: int, state: State, derivative: np.ndarray,
+                      observed: np.ndarray | None = None, tolerance: float = TOLERANCE,
+                      stop: Stop | None = None) -> np.ndarray:
+    """ΔM (2N, 2N) of the map's derivative at its fixed point `state`, or of the observer's, `observed`.
 
     Infinite where the fixed point is not isolated, as at a fold.
     """
-    engine = stroboscopic_map.engine
-    coarse = StroboscopicMap(engine.lowered.scene, stroboscopic_map.periods, engine.stop,
-                             _COARSER * stroboscopic_map.tolerance)
+    coarse = StroboscopicMap(scene, period, stop, _COARSER * tolerance)
+    x = coarse.inner(coarse.engine.lowered.scaled(state))
     try:
         there = x + np.linalg.solve(np.eye(len(x)) - derivative, coarse.end(x) - x)
     except np.linalg.LinAlgError:
-        unknown = np.full(derivative.shape, np.inf)
-        return unknown, None if observer is None else unknown
-    change = derivative - coarse(there).derivative
-    return change, None if observer is None else observer - coarse(there, observer=True).derivative
+        return np.full(derivative.shape, np.inf)
+    return (derivative if observed is None else observed) - coarse(there, observer=observed is not None).derivative
 
 
-def multipliers_with_errors(derivative: np.ndarray, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues (2N,) of a derivative, largest modulus first, and their errors where it is known to ΔM = `change`."""
+def errors_of(multipliers: np.ndarray, derivative: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """Errors of the eigenvalues (2N,) of a derivative that is known to ΔM = `change`."""
     values, left, right = eig(derivative, left=True, right=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         seen = np.abs(np.einsum("ki,kl,li->i", left.conj(), change, right))
@@ -51,8 +52,7 @@ def multipliers_with_errors(derivative: np.ndarray, change: np.ndarray) -> tuple
         overlap = np.abs((left.conj() * right).sum(axis=0))
         errors = (np.maximum(_CAUTION * seen, _LEAST_PART * bound) + rounding) / overlap
     errors[np.isnan(errors)] = np.inf
-    order = np.argsort(-np.abs(values), kind="stable")
-    return values[order], errors[order]
+    return np.asarray(errors[np.abs(multipliers[:, None] - values[None, :]).argmin(axis=1)])
 
 
 def _between(left: np.ndarray, matrix: np.ndarray, right: np.ndarray) -> np.ndarray:

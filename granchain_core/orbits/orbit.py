@@ -8,6 +8,7 @@ without the driver's contact, so its multipliers come from the same orbit.
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +26,7 @@ from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenanc
 from ..tables.provenance import Attribute
 from ..tables.words import multiplier_columns, state_columns
 from .flow import Flow, StroboscopicMap, refuse_cut, relative_change
-from .multiplier_errors import derivative_change, multipliers_with_errors
+from .multiplier_errors import derivative_change, errors_of
 
 #: Residual at which an orbit is found, relative to the largest displacement and w.
 CONVERGED = 1e-11
@@ -64,8 +65,9 @@ class Orbit(Labelled):
         Contact events along the orbit.
     observer_multipliers : numpy.ndarray of complex or None
         Those of the observer of model (4), where they were requested.
-    multiplier_errors, observer_multiplier_errors : numpy.ndarray or None, shape (2N,)
-        How far they may be from the exact map's, absolute (multiplier_errors.py); None with more than 100 beads.
+    monodromy, observer_monodromy : numpy.ndarray or None, shape (2N, 2N)
+        Derivatives of the n-period map in scaled displacements, then w, whose eigenvalues the multipliers are; None
+        with more than 100 beads.
 
     Examples
     --------
@@ -84,8 +86,33 @@ class Orbit(Labelled):
     liouville: float | None
     changes: np.ndarray
     observer_multipliers: np.ndarray | None = None
-    multiplier_errors: np.ndarray | None = None
-    observer_multiplier_errors: np.ndarray | None = None
+    monodromy: np.ndarray | None = None
+    observer_monodromy: np.ndarray | None = None
+
+    @functools.cached_property
+    def multiplier_errors(self) -> np.ndarray | None:
+        """How far each multiplier may be from the exact map's, absolute (2N,); None with more than 100 beads.
+
+        Computed when it is first asked for (multiplier_errors.py), in the time of a Newton step.
+        """
+        return self._errors()
+
+    @functools.cached_property
+    def observer_multiplier_errors(self) -> np.ndarray | None:
+        """The same of the observer's multipliers; None where they were not requested."""
+        return self._errors(observer=True)
+
+    def find_errors(self, stop: Stop) -> None:
+        """Compute `multiplier_errors` now. Raises `Cancelled` when another thread sets `stop`."""
+        self.__dict__["multiplier_errors"] = self._errors(stop=stop)
+
+    def _errors(self, observer: bool = False, stop: Stop | None = None) -> np.ndarray | None:
+        multipliers = self.observer_multipliers if observer else self.multipliers
+        observed = self.observer_monodromy if observer else None
+        if self.monodromy is None or multipliers is None:
+            return None
+        change = derivative_change(self.scene, self.period, self.state, self.monodromy, observed, stop=stop)
+        return errors_of(multipliers, self.monodromy if observed is None else observed, change)
 
     @property
     def stable(self) -> bool:
@@ -249,14 +276,12 @@ def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -
 
 def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
            observer: bool) -> Orbit:
-    liouville = watched = errors = watched_errors = None
+    liouville = monodromy = pushed = None
     if _dense(x):
-        pushed = stroboscopic_map(x, observer=True).derivative if observer else None
-        change, pushed_change = derivative_change(stroboscopic_map, x, flow.derivative, pushed)
-        multipliers, errors = multipliers_with_errors(flow.derivative, change)
+        monodromy, multipliers = flow.derivative, sorted_multipliers(flow.derivative)
         liouville = _liouville(multipliers, flow.log_determinant)
-        if pushed is not None and pushed_change is not None:
-            watched, watched_errors = multipliers_with_errors(pushed, pushed_change)
+        pushed = stroboscopic_map(x, observer=True).derivative if observer else None
+        watched = None if pushed is None else sorted_multipliers(pushed)
     else:
         from .krylov import leading_multipliers
 
@@ -264,7 +289,7 @@ def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarra
         watched = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
     lowered = stroboscopic_map.engine.lowered
     return Orbit(scene, n, lowered.unscaled(lowered.embed(x)), history[-1], tuple(history), multipliers, liouville,
-                 flow.changes, watched, errors, watched_errors)
+                 flow.changes, watched, monodromy, pushed)
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:

@@ -64,6 +64,7 @@ def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
     if target.followed and distance > _SAME_ORBIT:
         raise NumbersFailed(f"Newton's method ended {distance:.0e} away from the settled motion, on another orbit; its "
                             "multipliers are not those of what the chain does.", "another-orbit")
+    orbit.find_errors(stop)  # here, because the words about the orbit are made in the event loop
     samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MODE_VALUES), 8)
     found = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
     if not found.closure <= _TRUSTED * max(1.0, abs(found.multiplier)):
