@@ -48,6 +48,7 @@ _COMMANDS = {
     "basins": "to which steady state each start of a plane leads",
     "pulse": "the first pulse along a chain: its force, speed and width at every contact",
     "bands": "pass bands of a precompressed chain: cut-off and band edges",
+    "virtual": "what the sensors of a rig would record of a scene: a virtual experiment, as CSV",
     "fit": "parameters of a scene from a measurement, with intervals and a verdict",
     "figure": "a figure of the paper with our numbers",
     "cite": "what to cite for the effects of a scene",

@@ -189,6 +189,7 @@ class Controller:
 
     def _arrived(self, picture: Settled) -> None:
         self.pinned.picture_ready(picture)
+        self.files.picture_ready(picture)
         for page in self.pages:
             page.picture_ready(picture)
 

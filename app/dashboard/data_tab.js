@@ -3,7 +3,8 @@
 import { button, download, element, paragraph, table } from "../parts/dom.js";
 
 const FORM =
-  "A curve of frequency and largest force: CSV or TSV as any spreadsheet writes it, WebPlotDigitizer, HDF5 or netCDF-4. " +
+  "A curve of frequency and largest force, or a series of time, input and output force: CSV or TSV as any spreadsheet " +
+  "writes it, WebPlotDigitizer, HDF5 or netCDF-4. " +
   "You will be asked about anything the file leaves open.";
 const SENSITIVITY = "V, with its sensor's sensitivity";
 const CHUNK = 0x8000; // bytes that are turned into text at once
@@ -131,12 +132,12 @@ function misfitTable({ sentence, rows, left }) {
   for (const row of rows) body.append(element("tr", {}, ...row.map((textContent) => element("td", { textContent }))));
   const titles = ["frequency", "measured", "model", "measured less model"];
   const more = left ? [paragraph(`and ${left} more`, "soft")] : [];
-  return [paragraph(sentence, "verdict"), table(titles, body), ...more];
+  return [paragraph(sentence, "verdict"), ...(rows.length ? [table(titles, body)] : []), ...more];
 }
 
 export function dataTab(model) {
-  const { understood, question, misfit } = model.state;
-  const ariaLabel = "your measured curve: frequency, force, optional error";
+  const { understood, question, misfit, series } = model.state;
+  const ariaLabel = "your measured curve or series";
   const accept = ".csv,.tsv,.txt,.dat,.json,.tar,.h5,.hdf5,.nc,text/csv";
   const file = element("input", { type: "file", accept, ariaLabel });
   file.addEventListener("change", async () => {
@@ -147,9 +148,12 @@ export function dataTab(model) {
   const sample = button("sample file", () => model.send_msg({ do: "csv-sample" }), {
     title: "A curve computed with noise, to try this with",
   });
-  const choice = element("div", { className: "row" }, file, sample, ...(understood ? [remove] : []));
+  const virtual = button("virtual experiment", () => model.send_msg({ do: "csv-virtual" }), {
+    title: "What sensors with noise and bandwidth would record of the present motion: computed, and marked so",
+  });
+  const choice = element("div", { className: "row" }, file, sample, virtual, ...(understood ? [remove] : []));
   const asking = question ? questionForm(model, question) : [paragraph(understood || FORM, "soft")];
-  const waits =
-    understood && !misfit ? [paragraph("The misfit appears once the curve from rest is complete.", "soft")] : [];
+  const awaited = series ? "the picture is settled" : "the curve from rest is complete";
+  const waits = understood && !misfit ? [paragraph(`The misfit appears once ${awaited}.`, "soft")] : [];
   return { content: [choice, ...asking, ...(question ? [] : misfit ? misfitTable(misfit) : waits)] };
 }

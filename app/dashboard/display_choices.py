@@ -35,6 +35,7 @@ class DisplayChoices:
         theme = THEMES.get(str(message.get("value")))
         if theme is not None:
             self._views.curve.ink(theme.ink, theme.line)
+            self._views.trains.ink(theme.ink)
             self._views.trains.thicken(theme.line)
             self._views.apply_theme(theme)
             self._theme_changed(theme)

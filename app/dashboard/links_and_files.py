@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from granchain_core import BadInput, Run
+from granchain_core import BadInput, Run, Settled
 from granchain_core.store import save
 
 from ..pages.curve.page import Curves
@@ -36,13 +36,17 @@ class LinksAndFiles:
         self._curves = curves
         self._pictures = pictures
         self._saving = Task(host, FILES, say_nothing, "Saving the picture", host.failed)
-        self._measurement = Measurement(host, views.tabs, curves)
+        self._measurement = Measurement(host, views, curves)
         self.actions: Actions = {"share": self._share, "save": self._save, **self._measurement.actions}
 
     def close(self) -> None:
         """The visitor left."""
         self._saving.cancel()
         self._measurement.close()
+
+    def picture_ready(self, picture: Settled) -> None:
+        """Another picture for a measured series."""
+        self._measurement.picture_ready(picture)
 
     def _share(self, _: dict[str, Any]) -> None:
         """Send the link; pins without room in it are told."""

@@ -8,9 +8,9 @@ import tempfile
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from granchain_core import BadInput
+from granchain_core import BadInput, Run, Scene, Settled, settle
 from granchain_core.experiment import (
     Answers,
     Difference,
@@ -26,20 +26,29 @@ from granchain_core.experiment import (
 from granchain_core.experiment.labelled import HDF5
 from granchain_core.experiment.measured import MOST_BYTES, MOST_ROWS
 from granchain_core.experiment.reader import KINDS
-from granchain_core.experiment.units import UNITS
+from granchain_core.experiment.units import QUANTITIES, UNITS
 from granchain_core.scene import ASSETS
+from granchain_core.scene.driven import refuse_undriven
 
 from ..pages.curve.page import Curves
-from ..parts.component import Component
 from ..pictures.axes import in_words, signed_in_words
+from ..serve.compiler import PICTURE_PIECES
 from ..serve.queues import FILES
+from ..session.budget import check_first_picture
 from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.task import Job, Task, say_nothing
+from .layout import Views
 
-#: What a column of a curve may hold, and its units.
-CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error of the force"}
-_DIMENSIONS = {"frequency": "frequency", "force": "force", "error": "force"}
+if TYPE_CHECKING:
+    from granchain_core.fit.overlay import Overlay
+
+#: What a column of a curve or of a series may hold.
+CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error of the force", "time": "time",
+           "input_force": "input force", "output_force": "output force", "velocity": "shaker velocity"}
+#: The name of a virtual experiment's data on the page; its length in drive periods, samples in each of them, and noise
+#: over the largest output force.
+VIRTUAL_FILE, _PERIODS, _RATE, _NOISE = "virtual.csv", 12, 256, 0.02
 #: Most rows of the table of differences.
 _ROWS = 100
 #: Files to try it with: computed by granchain with noise, and they say so.
@@ -52,20 +61,30 @@ _TOO_LARGE = (f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve 
 class Measurement:
     """Actions of the data tab. `tabs` shows what was understood, what is asked, and the misfit."""
 
-    def __init__(self, host: Host, tabs: Component, curves: Curves) -> None:
+    def __init__(self, host: Host, views: Views, curves: Curves) -> None:
         self._host = host
-        self._tabs = tabs
+        self._views = views
+        self._tabs = views.tabs
         self._curves = curves
+        self._series: Series | None = None
+        self._moving = Task(host, FILES, say_nothing, "Moving the series to the picture", host.failed)
         self._task = Task(host, FILES, say_nothing, "Reading the measurement", host.failed)
         self._name, self._content, self._answers = "", b"", Answers()
         curves.compared = self._compared
         self.actions: Actions = {"csv": self._read, "csv-answer": self._answer, "csv-too-large": self._too_large,
-                                 "csv-remove": self._remove, "csv-sample": self._sample}
+                                 "csv-remove": self._remove, "csv-sample": self._sample,
+                                 "csv-virtual": self._virtual}
 
     def close(self) -> None:
         """The visitor left."""
         self._task.cancel()
+        self._moving.cancel()
         self._curves.compared = lambda _: None
+
+    def picture_ready(self, picture: Settled) -> None:
+        """Move the series to another picture."""
+        if self._series is not None and picture.final:
+            self._moving.start(partial(self._overlay_in_thread, self._series, picture.run))
 
     def _read(self, message: dict[str, Any]) -> None:
         self._name, self._answers = str(message.get("name", "data"))[:60], Answers()
@@ -102,28 +121,67 @@ class Measurement:
                         for one in question.columns],
             "rows": [[line, list(fields)] for line, fields in question.rows],
             "quantities": list(CHOICES.items()),
-            "units": {name: list(UNITS[dimension]) for name, dimension in _DIMENSIONS.items()}})
+            "units": {name: list(UNITS[QUANTITIES[name]]) for name in CHOICES}})
 
-    def _show(self, measured: Measured) -> None:
-        difference = self._curves.measured(measured)
+    def _overlay_in_thread(self, series: Series, run: Run, job: Job) -> None:
+        """In a worker thread: where the series lies over the run."""
+        from granchain_core.fit.overlay import overlay  # what a fit needs is not loaded before
+
+        job.next_tick(self._show_overlay, overlay(series, run))
+
+    def _show_overlay(self, found: Overlay | None) -> None:
+        self._views.trains.measured(found)
+        self._tabs.update_state(misfit=None if found is None else {"sentence": found.sentence, "rows": [], "left": 0})
+
+    def _show(self, measured: Measured | Series) -> None:
+        """A curve goes over the curve, a series over the force trains."""
+        self._series = measured if isinstance(measured, Series) else None
+        difference = self._curves.measured(measured if isinstance(measured, Measured) else None)
+        self._views.trains.measured(None)
         self._tabs.update_state(understood=f"{self._name}: {measured.understood}", question=None,
-                                misfit=_misfit(difference))
+                                series=measured.word if self._series is not None else "", misfit=_misfit(difference))
+        picture = self._host.session.picture
+        if picture is not None:
+            self.picture_ready(picture)
 
     def _compared(self, difference: Difference | None) -> None:
         """The curve from rest is complete, or a new one was begun."""
-        self._tabs.update_state(misfit=_misfit(difference))
+        if self._series is None:
+            self._tabs.update_state(misfit=_misfit(difference))
 
     def _sample(self, _: dict[str, Any]) -> None:
         path = SAMPLES / "curve.csv"
         self._tabs.send(type="sample", name=path.name, text=path.read_text(encoding="utf-8"))
+
+    def _virtual(self, _: dict[str, Any]) -> None:
+        """A series of the present scene by sensors with noise and bandwidth, in place of a file."""
+        refuse_undriven(self._host.session.scene)
+        self._name, self._answers = VIRTUAL_FILE, Answers()
+        self._task.start(partial(self._record_in_thread, self._host.session.scene))
+
+    def _record_in_thread(self, scene: Scene, job: Job) -> None:
+        from granchain_core.virtual import Sensors, virtual_series_csv  # what a fit needs is not loaded before
+
+        check_first_picture(scene)
+        job.give_way()
+        job.compile(scene, *PICTURE_PIECES)
+        largest = settle(scene, stop=job.stop).run.max_output_force
+        rate = _RATE * scene.f
+        sensors = Sensors(noise=_NOISE * largest, velocity_noise=_NOISE * scene.A0 * scene.f, bandwidth=0.1 * rate,
+                          rate=rate)
+        self._content = virtual_series_csv(scene, _PERIODS, sensors, stop=job.stop).encode()
+        self._in_thread(self._content, self._answers, job)
 
     def _too_large(self, _: dict[str, Any]) -> None:
         raise BadInput(_TOO_LARGE)
 
     def _remove(self, _: dict[str, Any]) -> None:
         self._task.cancel()
+        self._moving.cancel()
+        self._series = None
         self._curves.measured(None)
-        self._tabs.update_state(understood="", question=None, misfit=None)
+        self._views.trains.measured(None)
+        self._tabs.update_state(understood="", question=None, series="", misfit=None)
 
 
 def _content(message: dict[str, Any]) -> bytes:
@@ -138,8 +196,8 @@ def _content(message: dict[str, Any]) -> bytes:
     return content
 
 
-def _found(content: bytes, answers: Answers, name: str) -> Measured:
-    """The curve in a file. Raises `Unclear` and `BadInput`."""
+def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
+    """The curve or the series in a file. Raises `Unclear` and `BadInput`."""
     found: Measured | Series | Shaker
     if content.startswith(HDF5):
         with tempfile.TemporaryDirectory() as folder:
@@ -151,10 +209,13 @@ def _found(content: bytes, answers: Answers, name: str) -> Measured:
             found = read_data(content, answers, KINDS, name, MOST_BYTES, MOST_ROWS)
         except Unclear:  # asked again for a curve alone, which is what the page offers
             found = read_data(content, answers, ("curve",), name, MOST_BYTES, MOST_ROWS)
-    if isinstance(found, (Series, Shaker)):
-        what, use = (("a time series", "granchain fit --data FILE and granchain figure 12 --data HZ=FILE")
-                     if isinstance(found, Series) else ("the shaker's amplitude", "granchain curve --amplitude FILE"))
-        raise BadInput(f"{name} is {what}, and the page draws curves of frequency and force; use {use}.")
+    if isinstance(found, Shaker):
+        raise BadInput(f"{name} is the shaker's amplitude, and the page draws curves of frequency and force, and "
+                       "series of forces; use granchain curve --amplitude FILE.")
+    if isinstance(found, Series):
+        if found.input_force is None and found.output_force is None:
+            raise BadInput(f"{name} is a time series without a force; the page draws input and output force.")
+        return found
     if len(found.frequency) > MOST_ROWS:
         raise BadInput(f"{name} has {len(found.frequency)} points, and the page draws up to {MOST_ROWS}.")
     return found

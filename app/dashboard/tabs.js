@@ -160,6 +160,9 @@ class Tabs {
   }
 
   stateChanged() {
+    const overlaid = document.getElementById("overlaid");
+    overlaid.hidden = !this.model.state.series;
+    overlaid.textContent = this.model.state.series || "";
     window.granchain.kept = { ...window.granchain.kept, uploaded: Boolean(this.model.state.understood) };
     if (!this.updatesItself) this.show();
   }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from bokeh.models import BasicTicker, ColumnDataSource, GlyphRenderer, Line, LinearAxis, Plot, Range1d
@@ -11,8 +12,13 @@ from granchain_core import Run
 
 from ..format import prefixed
 from ..frames import Extremes, Frames, round_up, with_jumps
+from ..pictures.theme import GREY
 from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_plot
+from .measured_trains import MeasuredTrains
 from .pinned_trains import PinnedTrains
+
+if TYPE_CHECKING:
+    from granchain_core.fit.overlay import Overlay
 
 _TITLES = ("drive u₀", "input force", "output force")
 _SHORT = ("drive", "in", "out")
@@ -37,6 +43,7 @@ class Trains:
         self.left = self._left_figure(time)
         self.right = self._right_figure(time)
         self._pinned = PinnedTrains(self.left, self.right)
+        self._measured = MeasuredTrains(self.left, self.right, GREY)
 
     def _left_figure(self, time: Range1d) -> Plot:
         plot = quiet_plot((LEFT, GAP), _TICKS, ("below", "left"), (1,), name="input force", y_range=time,
@@ -71,9 +78,9 @@ class Trains:
         (input_time, input_force), (output_time, output_force) = (
             with_jumps(time, force, jumps * np.array([scale, 1.0])) for force, jumps in
             ((frames.input_force, frames.input_jumps), (frames.output_force, frames.output_jumps)))
-        pinned = self._pinned.largest
-        input_range = _span(max(high.input_force, pinned[0]), input_force)
-        output_range = _span(max(high.output_force, pinned[1]), output_force, frames.output_force_elastic)
+        pinned, measured = self._pinned.largest, self._measured.largest
+        input_range = _span(max(high.input_force, pinned[0], measured[0]), input_force)
+        output_range = _span(max(high.output_force, pinned[1], measured[1]), output_force, frames.output_force_elastic)
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
         out, out_letter = prefixed(max(map(abs, output_range)))
@@ -86,7 +93,9 @@ class Trains:
         passed = {"time": output_time, "force": output_force / out}
         for source, values in ((self._source, columns), (self._input, pushed), (self._output, passed)):
             source.data = {name: np.asarray(column, dtype=np.float32) for name, column in values.items()}
-        self._pinned.update(0.0 if frames.time[-1] == 0.0 else float(frames.time[-1]), scale, push, out)
+        over = self._pinned, self._measured
+        for lines in over:
+            lines.update(0.0 if frames.time[-1] == 0.0 else float(frames.time[-1]), scale, push, out)
         edge = 1.15 * drive_high / drive
         self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
         self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)
@@ -102,6 +111,14 @@ class Trains:
     def pin(self, runs: Sequence[Run | None]) -> None:
         """Let these motions stay, as dashed grey lines over the same time; None leaves a place free."""
         self._pinned.load(runs)
+
+    def measured(self, shown: Overlay | None) -> None:
+        """Draw a measured series over the picture, or none."""
+        self._measured.load(shown)
+
+    def ink(self, colour: str) -> None:
+        """The colour of what was measured: dark on light, light on dark."""
+        self._measured.ink(colour)
 
     def fit(self, narrow: bool) -> None:
         """Fewer ticks and shorter titles where there is little room."""

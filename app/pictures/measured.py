@@ -13,9 +13,9 @@ from granchain_core.experiment import Measured
 from .axes import in_words, signed_in_words
 from .theme import frame, in_theme
 
-COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual")
-TOOLTIPS = [("measured at", "@frequency{0.0} Hz"), ("force", "@value"), ("repeats", "@repeats"),
-            ("measured less model", "@residual")]
+COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual", "word")
+TOOLTIPS = [("", "@word"), ("frequency", "@frequency{0.0} Hz"), ("force", "@value"), ("repeats", "@repeats"),
+            ("less the model", "@residual")]
 
 
 def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | None = None,
@@ -31,6 +31,7 @@ def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | 
     gap = np.full(len(measured.force), np.nan) if residuals is None else residuals
     return {"frequency": measured.frequency.tolist(), "force": (measured.force / factor).tolist(),
             "low": (low / factor).tolist(), "high": (high / factor).tolist(),
+            "word": [measured.word] * len(low),
             "value": [in_words(float(force), "N", 5) for force in measured.force], "repeats": count.tolist(),
             "residual": ["no model here" if not np.isfinite(one) else
                          signed_in_words(float(one), "N") for one in gap]}
@@ -42,9 +43,9 @@ def measured_over(plot: figure, measured: Measured, factor: float, sigma: np.nda
     in_theme(plot.segment("frequency", "low", "frequency", "high", source=source, level="overlay"), line_color="ink",
              line_width=1.0)
     dots = plot.scatter("frequency", "force", source=source, marker="square", size=7, fill_color=None, level="overlay",
-                        legend_label="measured")
+                        legend_label=measured.word)
     in_theme(dots, line_color="ink", line_width=1.0)
-    plot.add_tools(HoverTool(renderers=[dots], tooltips=TOOLTIPS[:3]))
+    plot.add_tools(HoverTool(renderers=[dots], tooltips=TOOLTIPS[:4]))
 
 
 def residuals_over(frequencies: np.ndarray, residuals: np.ndarray, unit: str) -> figure:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from ..errors import BadInput
-from .measured import Measured
+from .measured import VIRTUAL, Measured
 from .series import Series, Shaker
 
 _MOVES = ("velocity", "displacement", "acceleration")
@@ -63,9 +63,9 @@ def assembled(columns: Columns, kind: str, layout: str, source: str, note: str) 
     about = {"source": source, "note": note, "units": columns.units}
     named = ", ".join(f"{name.replace('_', ' ')} in {unit}" for name, unit in columns.units.items())
     layout = f"{named}; {layout}"
-    if kind == "curve":
-        return _curve(columns, layout, about)
-    return _shaker(columns, layout, about) if kind == "shaker" else _series(columns, layout, about)
+    made: dict[str, Callable[..., Measured | Series | Shaker]] = {"curve": _curve, "shaker": _shaker, "series": _series}
+    found = made[kind](columns, layout, about)
+    return replace(found, understood=f"{VIRTUAL}, nothing measured: {found.understood}") if found.virtual else found
 
 
 def _curve(at: Columns, layout: str, about: dict[str, Any]) -> Measured:

@@ -1,4 +1,4 @@
-"""A measured resonance curve."""
+"""A measured resonance curve, and how the data of a virtual experiment are told from measured ones."""
 
 from __future__ import annotations
 
@@ -10,10 +10,33 @@ import numpy as np
 MOST_BYTES = 2_000_000
 #: Most points that it draws.
 MOST_ROWS = 20_000
+#: The words at the beginning of the note of data that were computed (granchain_core/virtual).
+VIRTUAL = "virtual experiment"
+
+
+class Noted:
+    """Data with a note, which says whether they come from a virtual experiment."""
+
+    note: str
+
+    @property
+    def virtual(self) -> bool:
+        """Whether nothing of it was measured."""
+        return self.note.startswith(VIRTUAL)
+
+    @property
+    def word(self) -> str:
+        """What it is called in keys of pictures: "measured", or "virtual experiment"."""
+        return VIRTUAL if self.virtual else "measured"
+
+
+def note_of(own: str, given: str) -> str:
+    """The note of data: the reader's, if `given`, in place of the file's `own` comments, unless these say virtual."""
+    return f"{own}; {given}" if given and own.startswith(VIRTUAL) else given or own
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class Measured(Noted):
     """Measured points in ascending frequency [Hz]: force [N], error [N] or None; `understood` describes the file.
 
     Where a frequency was measured several times, `force` is the mean, `low` and `high` are the extremes [N], `repeats`

@@ -7,9 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .measured import Noted
+
 
 @dataclass(frozen=True, eq=False)
-class Series:
+class Series(Noted):
     """A measured time series: time (T,) [s] from 0 and, where measured, velocity [m/s] and forces [N], else None.
 
     `displacement` is the shaker's [m]. `units` are those of the file by quantity.
@@ -27,7 +29,7 @@ class Series:
 
 
 @dataclass(frozen=True, eq=False)
-class Shaker:
+class Shaker(Noted):
     """The shaker's amplitude over frequency [Hz], ascending: velocity V0 [m/s]; displacement A0 = V0/(2πf) [m]."""
 
     frequency: np.ndarray

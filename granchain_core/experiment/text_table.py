@@ -11,7 +11,7 @@ import numpy as np
 from ..errors import BadInput
 from .columns import Asked, chosen_columns, in_si
 from .grid import LIKE_A_NUMBER, Grid, Row
-from .measured import Measured
+from .measured import Measured, note_of
 from .numerals import decimal_mark, number_as
 from .question import Answers, Guess, Question, Unclear, first_rows
 from .series import Series, Shaker
@@ -138,7 +138,7 @@ def read_text_table(grid: Grid, answers: Answers, wanted: Sequence[str],
               + (f", {grid.encoding}" if grid.encoding != "UTF-8" else ""))
     left = [guess.title or str(guess.number) for i, guess in enumerate(guesses) if i not in used]
     layout += f"; left out: {', '.join(left)}" if left else ""
-    note = answers.note or " ".join((*parts.preface, *grid.comments))[:500]
+    note = note_of(" ".join((*parts.preface, *grid.comments))[:500], answers.note)
     return in_si(values, chosen, asked, [number for number, _ in parts.data], layout, wanted, answers.source or source,
                  note, bool(answers.columns))
 

@@ -109,7 +109,7 @@ def moved(series: Series, back: float) -> Series:
     kept = (time >= 0.0) & (time <= SHOWN)
     velocity, entered, arrived = (None if values is None else values[kept] for values in (
         series.velocity, series.input_force, series.output_force))
-    return Series(time[kept], velocity, entered, arrived, series.understood)
+    return Series(time[kept], velocity, entered, arrived, series.understood, note=series.note)
 
 
 def _component(time: np.ndarray, values: np.ndarray, f: float) -> tuple[float, float]:

@@ -105,6 +105,17 @@ def is_read_strictly(page: Page) -> None:
     expect(page.get_by_role("alert").filter(has_text="larger than 2 MB")).to_be_visible()
 
 
+def test_a_virtual_experiment_lies_over_the_trains_until_it_is_removed(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=1130")
+    settled(page)
+    page.get_by_role("tab", name="data").click()
+    page.get_by_role("button", name="virtual experiment").click()
+    expect(page.locator("#tabs")).to_contain_text("virtual experiment, nothing measured", timeout=COMPILED)
+    expect(page.locator("#tabs")).to_contain_text("rms difference from the model", timeout=COMPILED)
+    page.get_by_role("button", name="remove").click()
+    expect(page.locator("#tabs")).not_to_contain_text("virtual experiment, nothing measured")
+
+
 def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit) -> None:
     """The map keeps itself up to date by messages: drawn anew, it would lose what the pointer is on."""
     page = visit()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,15 @@ import pytest
 from opened import Dashboard
 
 from app.dashboard.measurement import SAMPLES
+from app.dashboard.show import show_settled
+from app.frames import samples_for
 from app.pictures.measured import measured_columns
-from granchain_core import CurvePoint, scene
+from granchain_core import CurvePoint, Scene, scene, settle
 from granchain_core.experiment import Measured, compared, read_data
 from granchain_core.regime import Regime
 from granchain_core.result import ForceErrors
 from granchain_core.state import rest
+from granchain_core.virtual import Sensors, virtual_series_csv
 
 FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
 
@@ -110,3 +114,43 @@ def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> No
     dashboard.views.tabs.send = lambda **message: told.append(message)  # type: ignore[method-assign]
     dashboard.received({"do": "csv-sample"})
     assert told[0]["type"] == "sample" and told[0]["text"].startswith("# Not measured")
+
+
+def show(dashboard: Dashboard) -> None:
+    """A settled picture, as the worker that computes it hands it over."""
+    chain = dashboard.session.scene
+    dashboard.session.picture = settle(chain, samples=samples_for(chain))
+    show_settled(dashboard.views, 1, dashboard.session.picture)
+
+
+def with_series(dashboard: Dashboard, chain: Scene) -> str:
+    """The tab's sentence on a series of `chain` over the settled picture of 340 Hz."""
+    text = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.005)).encode()
+    show(dashboard)
+    dashboard.received({"do": "csv", "name": "mine.csv", "content": base64.b64encode(text).decode()})
+    dashboard.work_off(lambda: "series" in str(dashboard.views.tabs.state.get("misfit")) or "rms" in str(dashboard.views.tabs.state.get("misfit")))
+    return str(dashboard.views.tabs.state["misfit"]["sentence"])
+
+
+def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboard: Dashboard) -> None:
+    """Of the same scene the differences are the noise; the lines are in front of both trains and go away again."""
+    sentence = with_series(dashboard, scene("sec2"))
+    left = [float(one) for one in re.findall(r"([0-9.e-]+) N for the", sentence)]
+    assert len(left) == 2 and all(0.003 < one < 0.02 for one in left)  # the noise is 5 mN; the jumps are smoothed alike
+    trains = dashboard.views.trains
+    lines = [[one for one in plot.renderers if one.level == "overlay"] for plot in (trains.left, trains.right)]
+    assert [len(one) for one in lines] == [1, 1]
+    assert all(len(one[0].data_source.data["time"]) > 1000 for one in lines)
+    dashboard.received({"do": "csv-remove"})
+    assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
+
+
+def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashboard: Dashboard) -> None:
+    show(dashboard)
+    assert "virtual experiment, nothing measured" in after(dashboard, {"do": "csv-virtual"}, "understood")
+    dashboard.work_off(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
+
+
+def test_a_series_without_a_force_is_refused(dashboard: Dashboard) -> None:
+    rows = "".join(f"{1e-3 * i},{0.1 * i}\n" for i in range(12)).encode()
+    assert "without a force" in after(dashboard, sent(b"time_s,velocity_m_s\n" + rows), "misfit")

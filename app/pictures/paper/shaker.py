@@ -28,8 +28,8 @@ def shaker(shown: ShakerAmplitude, theme: Theme) -> LayoutDOM:
             plot.add_tools(HoverTool(renderers=[line], tooltips=[
                 ("A0", f"{1e6 * a:g} µm"), ("frequency", "@x{0} Hz"), (label, "@y{0.00}")]))
         if shown.measured is not None:
-            hollow_points(plot, shown.measured.frequency, unit * getattr(shown.measured, name), None, "measured",
-                          [("frequency", "@x{0.0} Hz"), (label, "@y{0.000}")])
+            hollow_points(plot, shown.measured.frequency, unit * getattr(shown.measured, name), None,
+                          shown.measured.word, [("frequency", "@x{0.0} Hz"), (label, "@y{0.000}")])
         plot.xaxis.axis_label, plot.yaxis.axis_label = "drive frequency f (Hz)", label
         plot.y_range.start = 0
         plot.title.text = "(a) V0 = 2πf A0" if name == "velocity" else "(b) A0 = V0/(2πf)"

@@ -38,7 +38,7 @@ def trains(shown: Trains, theme: Theme) -> LayoutDOM:
                       label, [6, 3])
             measured = None if column.measured is None else getattr(column.measured, name)
             if column.measured is not None and measured is not None:
-                _line(plot, column.measured.time, unit * measured, "ink", "measured", label, [4, 3], 1.2)
+                _line(plot, column.measured.time, unit * measured, "ink", column.measured.word, label, [4, 3], 1.2)
             if place == 0:
                 plot.yaxis[0].axis_label = label
             if name == "output_force":

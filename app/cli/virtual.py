@@ -1,0 +1,70 @@
+"""`granchain virtual`: what the sensors of a rig would record of a scene, as a CSV file that says so."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from granchain_core import BadInput
+
+from .common import chosen_scene, in_background
+from .options import add_scene, number, whole
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `virtual`."""
+    add_scene(parser)
+    parser.add_argument("--kind", default="series", metavar="series|curve", help="a time series, or a resonance curve")
+    parser.add_argument("--out", metavar="FILE.csv", help="write a file instead of stdout")
+    parser.add_argument("--periods", type=whole, default=20, metavar="P", help="drive periods of each record")
+    parser.add_argument("--from", type=number, dest="low", metavar="HZ", help="first frequency of a curve")
+    parser.add_argument("--to", type=number, dest="high", metavar="HZ", help="last frequency of a curve")
+    parser.add_argument("--points", type=whole, default=15, help="frequencies of a curve")
+    parser.add_argument("--repeats", type=whole, default=3, help="records at each frequency of a curve")
+    parser.add_argument("--scatter", type=number, default=0.0, metavar="PART",
+                        help="scatter of the drive amplitude between the records of a curve, over A0")
+    parser.add_argument("--rate", type=number, default=100_000.0, metavar="HZ", help="samples a second")
+    parser.add_argument("--noise", type=number, default=0.0, metavar="N", help="noise of a force sample, rms")
+    parser.add_argument("--velocity-noise", type=number, default=0.0, metavar="M/S", help="noise of a velocity sample")
+    parser.add_argument("--bandwidth", type=number, default=math.inf, metavar="HZ",
+                        help="bandwidth of the force sensors, a low-pass of order 2")
+    parser.add_argument("--tip-mass", type=number, default=0.0, metavar="KG",
+                        help="mass between the input sensor and bead 1, which moves with the shaker")
+    parser.add_argument("--seed", type=whole, default=0, help="seed of noise, phase and scatter")
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Compute the motion and write what the sensors make of it."""
+    from granchain_core.virtual import Sensors, virtual_curve_csv, virtual_series_csv
+
+    chosen = chosen_scene(arguments)
+    if arguments.kind not in ("series", "curve"):
+        raise BadInput(f"--kind {arguments.kind[:40]} is neither series nor curve.")
+    sensors = Sensors(arguments.noise, arguments.velocity_noise, arguments.bandwidth, arguments.tip_mass,
+                      arguments.rate)
+    if arguments.kind == "series":
+        for name in ("low", "high"):
+            if getattr(arguments, name) is not None:
+                raise BadInput("--from and --to are for --kind curve; a series has the scene's own f.")
+        text = in_background(lambda stop: virtual_series_csv(chosen, arguments.periods, sensors, arguments.seed, stop))
+    else:
+        if arguments.low is None or arguments.high is None:
+            raise BadInput("A curve needs --from and --to, the first and the last frequency in Hz.")
+        if not 1 <= arguments.points <= 1000:
+            raise BadInput(f"--points {arguments.points} is outside 1 to 1000.")
+        frequencies = np.linspace(arguments.low, arguments.high, arguments.points)
+        text = in_background(lambda stop: virtual_curve_csv(
+            chosen, frequencies, sensors, arguments.repeats, arguments.scatter, arguments.periods, arguments.seed,
+            stop))
+    if arguments.out is None:
+        sys.stdout.write(text)
+        return
+    try:
+        Path(arguments.out).write_text(text, encoding="utf-8")
+    except OSError as problem:
+        raise BadInput(f"Cannot write {arguments.out[:200]}: {problem.strerror or problem}.") from None
+    print(f"{arguments.out}: {text.count(chr(10)) - 3} rows of a virtual experiment with {chosen.name}")

@@ -1,0 +1,67 @@
+"""A measured series over the force trains: thin dashed lines in front, in the colour of everything measured."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot
+
+if TYPE_CHECKING:
+    from granchain_core.fit.overlay import Overlay
+
+#: The forces in the order of the figures.
+_FORCES = ("input_force", "output_force")
+#: Most points of a line; beyond that the series ends before the picture does.
+_MOST = 30_000
+_EMPTY = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
+
+
+class MeasuredTrains:
+    """The lines in both figures, made when there is a series for the first time."""
+
+    def __init__(self, left: Plot, right: Plot, ink: str) -> None:
+        self._plots = left, right
+        self._ink = ink
+        self._lines: dict[int, GlyphRenderer] = {}
+        self._shown: Overlay | None = None
+        self._last: tuple[float, float, float, float] = (0.0, 1.0, 1.0, 1.0)
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """The largest measured force at the driver and at the wall [N]."""
+        forces = {} if self._shown is None else self._shown.forces
+        at = [float(forces[name].max()) if name in forces else 0.0 for name in _FORCES]
+        return at[0], at[1]
+
+    def load(self, shown: Overlay | None) -> None:
+        """Take another series, or none, and draw it over what is shown."""
+        self._shown = shown
+        self.update(*self._last)
+
+    def update(self, shown: float, scale: float, push: float, out: float) -> None:
+        """Draw over `shown` seconds; `scale` is the axis over the time [1/s], `push` and `out` [N] are its units."""
+        self._last = shown, scale, push, out
+        for place, unit in ((0, push), (1, out)):
+            values = _EMPTY
+            if self._shown is not None and shown > 0.0 and _FORCES[place] in self._shown.forces:
+                time = self._shown.time
+                inside = np.flatnonzero((time >= 0.0) & (time <= shown))[:_MOST]
+                values = {"time": (time[inside] * scale).astype(np.float32),
+                          "force": (self._shown.forces[_FORCES[place]][inside] / unit).astype(np.float32)}
+            self._draw(place, values)
+
+    def ink(self, colour: str) -> None:
+        """The colour of the theme."""
+        self._ink = colour
+        for line in self._lines.values():
+            line.glyph.line_color = colour
+
+    def _draw(self, place: int, values: dict[str, np.ndarray]) -> None:
+        line = self._lines.get(place)
+        if line is None:
+            if len(values["time"]):
+                glyph = Line(x="force", y="time", line_color=self._ink, line_width=1.3, line_dash=[4, 3])
+                self._lines[place] = self._plots[place].add_glyph(ColumnDataSource(values), glyph, level="overlay")
+        elif len(values["time"]) or len(line.data_source.data["time"]):
+            line.data_source.data = dict(values)

@@ -1,0 +1,57 @@
+"""A measured series over a periodic motion of the model: how far it is moved in time, and what is left between them.
+
+Equation   late = argmin_s Σ_t (F_model(t + s) − F_measured(t))²,   rms_i = √⟨(F_model,i(t + late) − F_measured,i(t))²⟩
+Note       The start of a recording is not known, so it is moved to where the squares of all its forces are least; the
+           model's force is the mean over the series' sampling interval, as in a fit (trains.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..experiment import Series
+from ..result import Run
+from .trains import Train, moved
+
+#: The forces that a series may have.
+_FORCES = ("input_force", "output_force")
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """A series beside a run, in SI.
+
+    `time` (T,) is that of the run, so that the series begins less than an orbit before the run does; `forces` are the
+    measured ones by name, `rms` the differences from the model [N], None of a motion that does not repeat, which the
+    series is not moved to.
+    """
+
+    time: np.ndarray
+    forces: dict[str, np.ndarray]
+    rms: dict[str, float] | None
+
+    @property
+    def sentence(self) -> str:
+        """How the series was moved, and the differences in words."""
+        if self.rms is None:
+            return "The present motion does not repeat: the series is drawn from its own start, and no misfit is given."
+        left = " and ".join(f"{rms:.3g} N for the {name.replace('_', ' ')}" for name, rms in self.rms.items())
+        return f"Moved in time to the least sum of squares; rms difference from the model {left}."
+
+
+def overlay(series: Series, run: Run) -> Overlay | None:
+    """The series over the run's orbit; None if no force was measured."""
+    forces = {name: values for name in _FORCES if (values := getattr(series, name)) is not None}
+    if not forces:
+        return None
+    if run.regime.name != "periodic":
+        return Overlay(series.time, forces, None)
+    trains = {name: Train.of(run, name) for name in forces}
+    width = float(np.median(np.diff(series.time)))
+    late = moved(series.time, forces, trains, width, len(run.time) - 1)
+    rms = {name: float(np.sqrt(np.mean((trains[name].mean_over(series.time + late, width) - values) ** 2)))
+           for name, values in forces.items()}
+    length = next(iter(trains.values())).length
+    return Overlay(series.time + late - np.ceil(late / length) * length, forces, rms)

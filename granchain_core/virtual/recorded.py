@@ -1,0 +1,203 @@
+"""The record of a virtual experiment: a time series, or a resonance curve with repeats, as the text of a CSV file.
+
+The text is what an experiment would leave behind, and its first line says that nothing was measured. It is read back
+by the reader of every measurement (experiment/reader.py), which keeps that mark.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from ..errors import BadInput, check_range
+from ..experiment.measured import VIRTUAL
+from ..fit.trains import Train
+from ..integrate import Engine, State, live
+from ..integrate.methods import typical_error
+from ..result import Cost, Run, run_from
+from ..scene import Scene
+from ..scene.driven import refuse_undriven
+from ..steady.settling.recorded import settled
+from ..stop import Stop
+from ..version import __version__
+from .sensors import Sensors
+
+#: The model's samples for one of the sensors, for one of a filter's time 1/f_c, and in a drive period at least.
+_FINER, _PER_BANDWIDTH, _LEAST = 4, 32, 96
+#: Relative error of the state that a record begins with, and steps of the record for one of a live picture.
+_ACCURACY, _REFINE = 1e-5, 2
+#: Most samples of a series, records of a curve, and values of the model's motion behind one of them.
+MOST_SAMPLES, MOST_RECORDS, MOST_VALUES = 1_000_000, 10_000, 20_000_000
+
+
+def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None) -> str:
+    """What the sensors record of the steady state over some drive periods: time, velocity, input and output force.
+
+    Parameters
+    ----------
+    scene : Scene
+        A driven chain.
+    periods : int
+        Length of the record in drive periods, 1 to 10,000. It begins at any phase.
+    sensors : Sensors
+        What they make of the motion.
+    seed : int
+        Of noise and phase.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+
+    Returns
+    -------
+    str
+        The text of a CSV file, marked as virtual.
+
+    Raises
+    ------
+    BadInput
+        No drive, or a number out of range.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene
+    >>> from granchain_core.experiment import read_data
+    >>> from granchain_core.virtual import Sensors, virtual_series_csv
+    >>> text = virtual_series_csv(scene("sec2").evolve(N=2, f=2000.0), 3, Sensors(noise=0.01))
+    >>> found = read_data(text.encode())
+    >>> found.virtual, len(found.time)
+    (True, 150)
+    """
+    refuse_undriven(scene)
+    check_range("periods =", periods, 1, 10_000)
+    count = round(periods * sensors.rate / scene.f)
+    check_range("samples (periods · rate / f) =", count, 8, MOST_SAMPLES)
+    random = np.random.default_rng(seed)
+    times, velocity, forces = _recorded(scene, count, sensors, random, stop)
+    rows = "\n".join(f"{t:.9g},{v:.7g},{i:.7g},{o:.7g}" for t, v, i, o in zip(times, velocity, *forces, strict=True))
+    return (f"{_head(scene, sensors, seed)}time (s),velocity (m/s),input force (N),output force (N)\n{rows}\n")
+
+
+def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, sensors: Sensors, repeats: int = 3,
+                      scatter: float = 0.0, periods: int = 20, seed: int = 0, stop: Stop | None = None,
+                      progress: Callable[[int, int], None] | None = None) -> str:
+    """A measured resonance curve: at each frequency, several times, the largest output force that the sensor records.
+
+    The largest of noisy samples is too large on average, as in the laboratory.
+
+    Parameters
+    ----------
+    scene : Scene
+        A driven chain; its own frequency does not matter.
+    frequencies : sequence of float
+        Drive frequencies [Hz].
+    sensors : Sensors
+        What they make of the motion.
+    repeats : int
+        Records at each frequency, 1 to 100.
+    scatter : float
+        Standard deviation of the drive amplitude between them, over its mean, 0 to 0.5.
+    periods : int
+        Length of each record in drive periods.
+    seed : int
+        Of noise, phase and scatter.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+    progress : callable, optional
+        Called with the numbers of records that are done, and of all.
+
+    Returns
+    -------
+    str
+        The text of a CSV file with a row for every record, marked as virtual.
+
+    Raises
+    ------
+    BadInput
+        No drive, or a number out of range.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene
+    >>> from granchain_core.experiment import read_data
+    >>> from granchain_core.virtual import Sensors, virtual_curve_csv
+    >>> text = virtual_curve_csv(scene("sec2").evolve(N=2), [1800.0, 2000.0], Sensors(noise=0.01), scatter=0.02)
+    >>> found = read_data(text.encode())
+    >>> found.repeats.tolist(), found.virtual
+    ([3, 3], True)
+    """
+    refuse_undriven(scene)
+    check_range("repeats =", repeats, 1, 100)
+    check_range("scatter =", scatter, 0.0, 0.5)
+    check_range("periods =", periods, 1, 10_000)
+    count = len(frequencies) * repeats
+    check_range("records (frequencies · repeats) =", count, 1, MOST_RECORDS)
+    random, rows = np.random.default_rng(seed), []
+    for frequency in frequencies:
+        for _ in range(repeats):
+            amplitude = scene.A0 * max(0.01, 1.0 + scatter * random.standard_normal())
+            one = scene.evolve(f=float(frequency), A0=amplitude)
+            samples = round(periods * sensors.rate / one.f)
+            check_range(f"samples at {one.f:g} Hz (periods · rate / f) =", samples, 8, MOST_SAMPLES)
+            _, _, (_, output) = _recorded(one, samples, sensors, random, stop)
+            rows.append(f"{one.f:.9g},{max(0.0, float(output.max())):.7g}")
+            if progress is not None:
+                progress(len(rows), count)
+    about = f"{repeats} records of {periods} periods at each frequency"
+    if scatter > 0.0:
+        about += f", drive amplitude scattered by {100.0 * scatter:g} %"
+    return f"{_head(scene, sensors, seed)}# {about}\nfrequency (Hz),force (N)\n" + "\n".join(rows) + "\n"
+
+
+def _head(scene: Scene, sensors: Sensors, seed: int) -> str:
+    changed = ", ".join(f"{name} = {value}" for name, value in scene.differences().items())
+    return (f"# {VIRTUAL} by granchain {__version__}, nothing was measured: scene {scene.name}"
+            f"{f' with {changed}' if changed else ''}\n# sensors: {sensors.words}; seed {seed}\n")
+
+
+def _recorded(scene: Scene, count: int, sensors: Sensors, random: np.random.Generator,
+              stop: Stop | None) -> tuple[np.ndarray, np.ndarray, list[np.ndarray]]:
+    """Time, velocity, and both forces of `count` samples that begin at a random phase of the steady state."""
+    begun = random.random() / scene.f + sensors.lead_in
+    samples = _samples(scene, sensors)
+    motion = _motion(scene, begun + (count + 1) / sensors.rate, samples, stop)
+    fine, period = samples * scene.f, 1.0 / scene.f
+    steps = np.arange(1, round(float(motion.time[-1] - motion.time[0]) / period) * samples - 1)
+    at = steps / fine
+    times = np.arange(count) / sensors.rate
+    omega = 2.0 * math.pi * scene.f
+    inertia = -sensors.tip_mass * scene.A0 * omega**2 * np.sin(omega * at)
+    forces = []
+    for name, added in (("input_force", inertia), ("output_force", 0.0)):
+        force = sensors.passed(Train.of(motion, name).mean_over(at, 1.0 / fine) + added, fine)
+        forces.append(np.interp(times + begun, at, force) + sensors.noise * random.standard_normal(count))
+    velocity = scene.A0 * omega * np.cos(omega * (times + begun))
+    return times, velocity + sensors.velocity_noise * random.standard_normal(count), forces
+
+
+def _samples(scene: Scene, sensors: Sensors) -> int:
+    """Samples of the model in a drive period: many for one of the sensors, and for the filter."""
+    fastest = _FINER * sensors.rate
+    if sensors.bandwidth < 0.5 * sensors.rate:
+        fastest = min(fastest, max(sensors.rate, _PER_BANDWIDTH * sensors.bandwidth))
+    return max(_LEAST, math.ceil(fastest / scene.f))
+
+
+def _motion(scene: Scene, length: float, samples: int, stop: Stop | None) -> Run:
+    """The steady state from phase 0 on, over `length` [s] and a little more."""
+    found = settled(scene.evolve(accuracy=max(scene.accuracy, _ACCURACY)), stop=stop)
+    periods = math.ceil(length * scene.f) + 1
+    if periods * samples * scene.N > MOST_VALUES:
+        raise BadInput(f"{periods} drive periods of {samples} samples for {scene.N} beads are more than "
+                       f"{MOST_VALUES:.0e} values; take fewer periods or a smaller rate.")
+    setting = live(_REFINE)
+    engine = Engine(scene, setting, samples, stop=stop)
+    engine.start(State(found.run.displacement[-1], found.run.velocity[-1]))
+    began, rows = time.perf_counter(), engine.record(periods * samples)
+    cost = Cost.of(time.perf_counter() - began, engine.counts, setting.method)
+    return run_from(engine, rows, 0, found.regime, typical_error(setting), cost)

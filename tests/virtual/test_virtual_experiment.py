@@ -1,0 +1,139 @@
+"""The virtual experiment: perfect sensors give the model's forces, each imperfection does what its formula says, and the
+mark stays with the data wherever they go."""
+
+from __future__ import annotations
+
+import doctest
+import inspect
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.cli import main
+from app.pictures.measured import measured_columns
+from granchain_core import BadInput, Scene, scene, settle
+from granchain_core.experiment import Answers, Measured, Series, read_data
+from granchain_core.experiment.measured import VIRTUAL
+from granchain_core.fit.trains import Train, moved
+from granchain_core.virtual import Sensors, virtual_curve_csv, virtual_series_csv
+
+CHAIN = scene("sec2").evolve(N=3, f=1000.0)
+
+
+def series(chain: Scene, periods: int, sensors: Sensors, seed: int = 0) -> Series:
+    found = read_data(virtual_series_csv(chain, periods, sensors, seed).encode())
+    assert isinstance(found, Series)
+    return found
+
+
+def test_perfect_sensors_record_the_models_forces() -> None:
+    """Whatever the phase at which the record begins; a rate of 256 samples a period, four of the model for each."""
+    found, run = series(CHAIN, 4, Sensors(rate=256e3)), settle(CHAIN, samples=1024).run
+    trains = {name: Train.of(run, name) for name in ("input_force", "output_force")}
+    late = moved(found.time, {"output_force": found.output_force}, {"output_force": trains["output_force"]}, 1e-6, 1024)
+    for name, train in trains.items():
+        exact = train.mean_over(found.time + late, 1.0 / 1024e3)
+        near_jump = np.abs(np.gradient(exact)) > 0.02 * exact.max()
+        difference = np.abs(getattr(found, name) - exact)[~near_jump]
+        # two samplings of a curve at 1024 a period, moved against each other by less than one of them
+        assert difference.max() < 0.01 * exact.max()
+    velocity = CHAIN.A0 * 2e3 * np.pi * np.cos(2e3 * np.pi * (found.time + late))
+    np.testing.assert_allclose(found.velocity, velocity, atol=1e-3 * np.abs(velocity).max())
+
+
+def test_a_tip_adds_its_inertia_to_the_input_force_alone() -> None:
+    """The same seed is the same phase: the difference is m_tip ü_0, whose phase the velocity has."""
+    bare, tipped = (series(CHAIN, 3, Sensors(tip_mass=mass)) for mass in (0.0, 0.01))
+    acceleration = np.gradient(bare.velocity, bare.time)
+    difference = tipped.input_force - bare.input_force
+    # the gradient of a sampled sine errs by (2π/100)²/6 inside
+    np.testing.assert_allclose(difference[1:-1], 0.01 * acceleration[1:-1], atol=2e-3 * np.abs(difference).max())
+    np.testing.assert_array_equal(tipped.output_force, bare.output_force)
+
+
+@pytest.mark.parametrize("cutoff", [800.0, 3000.0])
+def test_the_lines_of_a_force_are_those_of_the_low_pass(cutoff: float) -> None:
+    """Over whole periods the first four lines shrink by 1/√(1 + (f/f_c)⁴)."""
+    periods, wide, narrow = 8, *(series(CHAIN, 8, Sensors(bandwidth=one)) for one in (np.inf, cutoff))
+    lines = [np.abs(np.fft.rfft(one.output_force))[periods * np.arange(5)] for one in (wide, narrow)]
+    exact = 1.0 / np.sqrt(1.0 + (1000.0 * np.arange(5) / cutoff) ** 4)
+    # the bilinear filter at 100 kHz or more bends frequencies by (π f / rate)²/3, 0.5 % of the fourth line
+    np.testing.assert_allclose(lines[1] / lines[0], exact, rtol=0.02)
+
+
+def test_noise_is_as_strong_as_it_says_and_differs_from_seed_to_seed() -> None:
+    quiet, noisy, other = (series(CHAIN, 40, Sensors(noise=noise, velocity_noise=noise / 10.0), seed)
+                           for noise, seed in ((0.0, 3), (0.02, 3), (0.02, 4)))
+    for name, strength in (("input_force", 0.02), ("output_force", 0.02), ("velocity", 0.002)):
+        noise = getattr(noisy, name) - getattr(quiet, name)
+        # 4000 samples: the standard deviation is known to 1 %
+        assert noise.std() == pytest.approx(strength, rel=0.05) and abs(noise.mean()) < 0.1 * strength
+        assert not np.array_equal(getattr(noisy, name), getattr(other, name))
+
+
+def test_a_curve_has_repeats_that_scatter_with_the_drive() -> None:
+    """The scatter of the force is that of A0 times dF/dA0, here by differences; without scatter repeats are equal."""
+    still = read_data(virtual_curve_csv(CHAIN, [1000.0], Sensors(rate=256e3), repeats=2).encode())
+    assert isinstance(still, Measured) and still.repeats is not None and still.repeats.tolist() == [2]
+    assert still.high[0] - still.low[0] < 0.01 * still.force[0]  # the samples fall at other phases of the peak
+    assert still.force[0] == pytest.approx(settle(CHAIN).run.max_output_force, rel=0.02)
+    scattered = read_data(virtual_curve_csv(CHAIN, [1000.0], Sensors(), repeats=60, scatter=0.02, seed=5).encode())
+    up, down = (settle(CHAIN.evolve(A0=CHAIN.A0 * one)).run.max_output_force for one in (1.02, 0.98))
+    # 60 repeats know their standard deviation to 9 %
+    assert scattered.scatter[0] == pytest.approx(abs(up - down) / 2.0, rel=0.35)
+
+
+def test_motions_without_a_period_are_recorded_too() -> None:
+    chaotic = scene("sec2").evolve(f=1000.0, dissipation="none", N=3)
+    found = series(chaotic, 5, Sensors())
+    assert len(found.time) == 500 and np.isfinite(found.output_force).all() and found.output_force.max() > 0.0
+
+
+def test_the_mark_stays_with_the_data() -> None:
+    text = virtual_series_csv(CHAIN, 2, Sensors(noise=0.01))
+    assert text.startswith(f"# {VIRTUAL} by granchain")
+    found = read_data(text.encode(), Answers(note="my rig"))
+    assert found.virtual and found.word == VIRTUAL and found.note.endswith("my rig")
+    assert found.understood.startswith("virtual experiment, nothing measured")
+    real = read_data(b"f [Hz],F [N]\n300,0.1\n310,0.2\n")
+    assert not real.virtual and real.word == "measured" and "virtual" not in real.understood
+    curve = read_data(virtual_curve_csv(CHAIN, [900.0, 1000.0], Sensors(), repeats=1).encode())
+    assert isinstance(curve, Measured) and measured_columns(curve, 1.0)["word"] == [VIRTUAL, VIRTUAL]
+
+
+@pytest.mark.parametrize(("make", "sentence"), [
+    (lambda: Sensors(noise=-1.0), "noise"), (lambda: Sensors(bandwidth=0.0), "bandwidth"),
+    (lambda: Sensors(bandwidth=float("nan")), "bandwidth"), (lambda: Sensors(tip_mass=1e9), "tip mass"),
+    (lambda: Sensors(rate=0.0), "rate"), (lambda: virtual_series_csv(CHAIN, 0, Sensors()), "periods"),
+    (lambda: virtual_series_csv(CHAIN, 10_000, Sensors(rate=1e8)), "samples"),
+    (lambda: virtual_series_csv(scene("impact"), 3, Sensors()), "drive"),
+    (lambda: virtual_curve_csv(CHAIN, [1000.0], Sensors(), scatter=0.9), "scatter"),
+    (lambda: virtual_curve_csv(CHAIN, [], Sensors()), "records"),
+    (lambda: virtual_curve_csv(CHAIN, [1000.0], Sensors(), repeats=0), "repeats")])
+def test_what_cannot_be_is_refused(make, sentence: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(BadInput, match=sentence):
+        make()
+
+
+@pytest.mark.parametrize("subject", [Sensors, virtual_series_csv, virtual_curve_csv])
+def test_the_examples_run(subject) -> None:  # type: ignore[no-untyped-def]
+    found = doctest.DocTestParser().get_doctest(inspect.cleandoc(subject.__doc__), {}, subject.__name__, None, None)
+    assert found.examples and doctest.DocTestRunner().run(found).failed == 0
+
+
+def test_the_command_writes_a_file_that_every_reader_takes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "series.csv"
+    words = ["virtual", "sec2", "--set", "N=3", "--set", "f=1000", "--periods", "6", "--noise", "0.005", "--bandwidth", "20000"]
+    assert main([*words, "--out", str(out)]) == 0 and "virtual experiment" in capsys.readouterr().out
+    assert main(["fit", "sec2", "--set", "N=3", "--set", "f=1000", "--data", str(out), "--error", "0.005", "--free", "D=60:160",
+                 "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["parameters"][0]["low"] < 100.0 < told["parameters"][0]["high"] or told["verdict"] == "cannot"
+    assert main(["virtual", "sec2", "--set", "N=2", "--kind", "curve", "--from", "1800", "--to", "2000", "--points", "2"]) == 0
+    assert capsys.readouterr().out.count("\n") == 3 + 1 + 6
+    for bad, sentence in ((["--kind", "picture"], "neither series nor curve"), (["--kind", "curve"], "--from and --to"),
+                          (["--from", "3"], "are for --kind curve"), (["--out", str(tmp_path / "no" / "f.csv")], "Cannot write")):
+        assert main(["virtual", "sec2", "--set", "N=2", *bad]) == 2
+        assert sentence in capsys.readouterr().err
