@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from granchain_core import BadInput, Run, Settled
+from granchain_core.experiment import Measured, Series
 from granchain_core.store import save
 
 from ..pages.curve.page import Curves
@@ -60,7 +61,7 @@ class LinksAndFiles:
         if run is None:
             raise BadInput(_NONE)
         if what == "hdf5":
-            self._write(".h5", partial(_hdf5, run))
+            self._write(".h5", partial(_hdf5, run, self._measurement.shown))
         elif isinstance(what, str) and what in TEXTS:
             end, text = TEXTS[what]
             screen = self._screen(run, what)
@@ -92,8 +93,8 @@ class LinksAndFiles:
         self._saving.start(work)
 
 
-def _hdf5(run: Run) -> bytes:
+def _hdf5(run: Run, measured: Measured | Series | None) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.h5"
-        save(run, path)
+        save(run, path, measured)
         return path.read_bytes()

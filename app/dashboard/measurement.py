@@ -67,6 +67,8 @@ class Measurement:
         self._tabs = views.tabs
         self._curves = curves
         self._series: Series | None = None
+        #: What is drawn over the pictures, and goes into their files.
+        self.shown: Measured | Series | None = None
         self._moving = Task(host, FILES, say_nothing, "Moving the series to the picture", host.failed)
         self._task = Task(host, FILES, say_nothing, "Reading the measurement", host.failed)
         self._name, self._content, self._answers = "", b"", Answers()
@@ -135,7 +137,7 @@ class Measurement:
 
     def _show(self, measured: Measured | Series) -> None:
         """A curve goes over the curve, a series over the force trains."""
-        self._series = measured if isinstance(measured, Series) else None
+        self.shown, self._series = measured, measured if isinstance(measured, Series) else None
         difference = self._curves.measured(measured if isinstance(measured, Measured) else None)
         self._views.trains.measured(None)
         self._tabs.update_state(understood=f"{self._name}: {measured.understood}", question=None,
@@ -178,7 +180,7 @@ class Measurement:
     def _remove(self, _: dict[str, Any]) -> None:
         self._task.cancel()
         self._moving.cancel()
-        self._series = None
+        self.shown = self._series = None
         self._curves.measured(None)
         self._views.trains.measured(None)
         self._tabs.update_state(understood="", question=None, series="", misfit=None)

@@ -38,14 +38,15 @@ _TURN = 4
 
 def save_branch(branch: Branch, path: str | Path) -> Path:
     """Write a branch, finished or not; returns the path. Raises `BadInput` where it cannot be written."""
+    return write_file(path, lambda file: write_branch(file, branch))
 
-    def write(file: h5py.File) -> None:
-        write_result(file, branch)
-        turns = file.create_group("turns")
-        for place, arm in enumerate(branch.arms):
-            turns.create_dataset(str(place), data=arm.points[-1].turns)
 
-    return write_file(path, write)
+def write_branch(file: h5py.File, branch: Branch) -> None:
+    """Write a branch with what its walk needs to go on."""
+    write_result(file, branch)
+    turns = file.create_group("turns")
+    for place, arm in enumerate(branch.arms):
+        turns.create_dataset(str(place), data=arm.points[-1].turns)
 
 
 def load_branch(path: str | Path) -> Branch:

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import h5py
+
+from ..experiment import Measured, Series
 from ..orbits import Branch
 from ..tables import Labelled
-from .branches import save_branch
+from .branches import write_branch
+from .measured import write_measured
 from .writing import write_file, write_result
 
 
-def save(result: Labelled, path: str | Path) -> Path:
+def save(result: Labelled, path: str | Path, measured: Measured | Series | None = None) -> Path:
     """Write a result to an HDF5 file with labelled axes and units (README.md, "Files").
 
     Parameters
@@ -19,6 +23,8 @@ def save(result: Labelled, path: str | Path) -> Path:
         What a function of granchain returned.
     path : str or pathlib.Path
         The file; one that is there is replaced when the new one is complete.
+    measured : Measured or Series, optional
+        A measurement that belongs to it (`granchain_core.experiment.read_experiment`), kept in the group `measured`.
 
     Returns
     -------
@@ -40,6 +46,13 @@ def save(result: Labelled, path: str | Path) -> Path:
     >>> bool((again.displacement == result.displacement).all())
     True
     """
-    if isinstance(result, Branch):
-        return save_branch(result, path)
-    return write_file(path, lambda file: write_result(file, result))
+
+    def write(file: h5py.File) -> None:
+        if isinstance(result, Branch):
+            write_branch(file, result)
+        else:
+            write_result(file, result)
+        if measured is not None:
+            write_measured(file, measured)
+
+    return write_file(path, write)

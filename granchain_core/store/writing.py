@@ -17,7 +17,7 @@ import numpy as np
 from ..errors import BadInput
 from ..hdf5 import VERSIONS, seal
 from ..hdf5.border import SCHEMA
-from ..tables import Column, Labelled
+from ..tables import Column, Labelled, Table
 
 #: File systems take 255 bytes; the temporary name needs some of them.
 _LONGEST_NAME = 230
@@ -33,13 +33,18 @@ def write_result(file: h5py.File, result: Labelled) -> None:
     file.attrs["granchain_schema"] = SCHEMA
     file.attrs.update(result.attributes())
     for table in result.tables():
-        group = file.create_group(table.name)
-        for name, axis in table.axes.items():
-            _dataset(group, name, axis).make_scale(name)
-        for name, column in table.columns.items():
-            data = _dataset(group, name, column)
-            for place, along in enumerate(column.axes):
-                data.dims[place].attach_scale(group[along])
+        write_table(file, table)
+
+
+def write_table(file: h5py.File, table: Table) -> None:
+    """Write a table as a group with dimension scales."""
+    group = file.create_group(table.name)
+    for name, axis in table.axes.items():
+        _dataset(group, name, axis).make_scale(name)
+    for name, column in table.columns.items():
+        data = _dataset(group, name, column)
+        for place, along in enumerate(column.axes):
+            data.dims[place].attach_scale(group[along])
 
 
 def _dataset(group: h5py.Group, name: str, column: Column) -> h5py.Dataset:

@@ -80,7 +80,7 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
     threads = []
     save = links_and_files.save
     monkeypatch.setattr(links_and_files, "save",
-                        lambda run, path: (threads.append(threading.current_thread().name), save(run, path)))
+                        lambda run, path, measured: (threads.append(threading.current_thread().name), save(run, path, measured)))
     shown = run(scene("sec2"), periods=0, record=1, samples=24)
     monkeypatch.setattr(dashboard.pictures, "run", lambda: shown)
     dashboard.received({"do": "save"})
