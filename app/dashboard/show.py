@@ -27,13 +27,16 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
               (picture.run.max_input_force, picture.run.max_output_force), final=picture.final)
         views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
         views.shown = picture
-        views.status_line.update_state(**settled_entries(picture, views.curve.place(picture.run)))
+        views.status_line.update_state(**settled_entries(
+            picture, views.curve.place(picture.run), views.trains.output_words(picture.run.max_output_force)))
 
 
 def show_regime(views: Views) -> None:
     """Update the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
     if views.shown is not None:
-        views.status_line.update_state(**settled_entries(views.shown, views.curve.place(views.shown.run)))
+        run = views.shown.run
+        force = views.trains.output_words(run.max_output_force)
+        views.status_line.update_state(**settled_entries(views.shown, views.curve.place(run), force))
 
 
 def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
@@ -49,7 +52,8 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
         _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force),
               live=True, running=running)
         views.curve.now(run.scene.knobs["f"], frames.largest_output)
-        views.status_line.update_state(regime=f"live, {since}", regime_hint="", start="", **run_entries(run))
+        views.status_line.update_state(regime=f"live, {since}", regime_hint="", start="",
+                                       **run_entries(run, views.trains.output_words(run.max_output_force)))
 
 
 def _periods_shown(frames: Frames, scene: Scene) -> str:

@@ -8,7 +8,6 @@ from granchain_core import Run, Settled
 from granchain_core.steady.curve.resonance import Place, place_words, push_words, pushes
 
 from ..format import duration, short_error
-from ..pictures.axes import in_words
 from ..scripts import module
 from .component import Component, text
 
@@ -20,13 +19,17 @@ class StatusLine(Component):
     _stylesheets = [text("controls.css"), text("status_line.css")]  # noqa: RUF012
 
 
-def settled_entries(picture: Settled, place: Place | None) -> dict[str, Any]:
-    """The line for a settled picture; `place` is where it lies on the curve from rest, None while there is none."""
+def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[str, Any]:
+    """The line for a settled picture.
+
+    `place` is where it lies on the curve from rest, None while there is none; `force` is the largest output force in
+    words.
+    """
     return {
         "regime": regime_words(picture, place),
         "regime_hint": regime_hint(picture),
         "start": f"from {picture.start}",
-        **run_entries(picture.run),
+        **run_entries(picture.run, force),
     }
 
 
@@ -72,10 +75,10 @@ def errors_hint(run: Run) -> str:
     return f"Relative errors: {', '.join(errors)}. Click to see what accuracy costs."
 
 
-def run_entries(run: Run) -> dict[str, Any]:
+def run_entries(run: Run, force: str) -> dict[str, Any]:
     """Largest output force, accuracy, method and effects of a run."""
     return {
-        "force": f"{in_words(run.max_output_force, 'N')} at the wall",
+        "force": f"{force} at the wall",
         "force_hint": force_hint(run),
         "accuracy": accuracy_words(run),
         "accuracy_hint": errors_hint(run),

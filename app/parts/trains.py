@@ -12,6 +12,7 @@ from granchain_core import Run
 
 from ..format import prefixed
 from ..frames import Extremes, Frames, round_up, with_jumps
+from ..pictures.axes import in_words
 from ..pictures.theme import GREY
 from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_plot
 from .measured_trains import MeasuredTrains
@@ -24,6 +25,8 @@ _TITLES = ("drive u₀", "input force", "output force")
 _SHORT = ("drive", "in", "out")
 #: About how many ticks a force and the time have.
 _TICKS = (3, 6)
+#: The smallest number that is written in the unit of an axis.
+_READABLE = 0.01
 WIDEST_TITLES = {"left": f"{_TITLES[1]} (mN)", "right": f"{_TITLES[2]} (mN)"}
 """By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`)."""
 
@@ -107,6 +110,11 @@ class Trains:
         """The largest input and output force [N] of the picture in words, and the units of their axes."""
         return [(f"max {force / factor:#.3g}".rstrip("."), unit)
                 for force, factor, unit in zip(largest, self._factors, self._units[1:], strict=True)]
+
+    def output_words(self, force: float) -> str:
+        """A force at the wall [N] in the unit of its axis; in its own where it is too small for that."""
+        factor, unit = self._factors[1], self._units[2]
+        return f"{force / factor:.4g} {unit}" if force >= _READABLE * factor else in_words(force, "N")
 
     def pin(self, runs: Sequence[Run | None]) -> None:
         """Let these motions stay, as dashed grey lines over the same time; None leaves a place free."""
