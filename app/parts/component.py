@@ -10,7 +10,7 @@ import param
 from panel.custom import JSComponent
 
 from ..pictures.theme import Theme
-from ..serve.websocket import WithCommonProperties, WithoutBusyIndicator
+from ..serve.websocket import WithCommonProperties, WithoutBusyIndicator, WithoutDesign
 
 _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
 
@@ -20,7 +20,7 @@ def text(name: str) -> str:
     return _FILES[name].read_text(encoding="utf-8")
 
 
-class Component(WithCommonProperties, WithoutBusyIndicator, JSComponent):
+class Component(WithCommonProperties, WithoutDesign, WithoutBusyIndicator, JSComponent):
     """A part of the page. `state` is sent to the browser and kept; messages go both ways and are not kept.
 
     What the visitor does comes as messages, because Panel delays property changes by 50 ms and messages not at all.

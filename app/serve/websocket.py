@@ -19,6 +19,7 @@ from bokeh.events import Event
 from bokeh.model import Model, collect_models
 from bokeh.models import ImportedStyleSheet
 from bokeh.server.server import Server
+from panel.reactive import Syncable
 from tornado.iostream import IOStream
 from tornado.web import RequestHandler
 
@@ -204,6 +205,21 @@ class WithCommonProperties:
         if type(self) not in _COMMON:
             _COMMON[type(self)] = _Common.of(self, found)
         return found
+
+
+class WithoutDesign:
+    """A Panel component whose design is asked only when style sheets change: the one thing that it has a say in then.
+
+    Panel works out the design's parameters at every change of every property, half of the time of a change. With a
+    release that makes the changes elsewhere, it is asked again.
+    """
+
+    def _update_properties(self, *events: Any, doc: Document) -> dict[str, Any]:
+        plain = getattr(Syncable, "_update_properties", None)
+        if plain is None or any(event.name == "stylesheets" for event in events):
+            return super()._update_properties(*events, doc=doc)  # type: ignore[misc]
+        changes: dict[str, Any] = plain(self, *events, doc=doc)
+        return changes
 
 
 class WithoutBusyIndicator:

@@ -144,7 +144,7 @@ def test_private_attributes_of_others_are_used_in_one_file(module: str) -> None:
     if module == "app.serve.websocket":
         assert set(private_uses(module)) == {"_subscribed_connections", "_socket", "_pending_writes", "_handle_write",
                                              "_process_event", "_process_bokeh_event", "_tornado", "_get_default",
-                                             "_get_properties"}
+                                             "_get_properties", "_update_properties"}
     elif module != "app.cli.commands":  # argparse has no public way to its subcommands
         assert list(private_uses(module)) == []
 

@@ -10,6 +10,7 @@ import pytest
 from bokeh.document import Document
 from bokeh.models import Div, ImportedStyleSheet
 from panel.io.state import set_curdoc
+from panel.reactive import Reactive, Syncable
 
 from app.dashboard import entry
 from app.parts.status_line import StatusLine
@@ -67,3 +68,20 @@ def test_a_release_with_other_properties_is_asked_each_time(properties: dict[str
     document = Document()
     assert part._get_properties(document) is part._get_properties(document) is properties
     assert asked == [document, document]
+
+
+@pytest.mark.parametrize("release", ["this one", "another"])
+def test_a_change_reaches_the_model_without_the_design(release: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """State and style sheets both; with a release that makes the changes elsewhere Panel's own way is taken."""
+    part, document = StatusLine(None), Document()
+    model = part.get_root(document)
+    asked: list[object] = []
+    monkeypatch.setattr(part._design, "params", lambda *_: asked.append(1) or ({}, {}))
+    if release == "another":
+        monkeypatch.delattr(Syncable, "_update_properties")
+        monkeypatch.setattr(Reactive, "_update_properties", lambda self, *events, doc: {one.name: one.new for one in events})
+    part.update_state(force="1 N at the wall")
+    assert model.data.state["force"] == "1 N at the wall" and not asked
+    if release == "this one":
+        part.stylesheets = [*part.stylesheets, ":host { color: red }"]
+        assert asked and ":host { color: red }" in model.stylesheets
