@@ -79,6 +79,8 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
     settings.perform_document_validation.set_value(False)  # 40 ms of every opening, to find mistakes that tests find
+    if hasattr(settings, "perform_error_diagnostics"):  # Bokeh 3.9: Panel asks for a name that is not there at every change
+        settings.perform_error_diagnostics.set_value(False)
     remember_defaults()
     gc.collect()
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time

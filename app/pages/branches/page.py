@@ -58,10 +58,11 @@ class BranchesPage(Page):
         }
 
     def scene_changed(self) -> None:
-        """Tell whether the branches still belong to the chain on the screen."""
+        """Tell whether the branches still belong to the chain on the screen; without branches nothing is drawn."""
+        if not self._followed:
+            return
         now = self._host.session.scene
-        stale = bool(self._followed) and \
-            without_frequency(self._followed[0].branch.axis.scene) != without_frequency(now)
+        stale = without_frequency(self._followed[0].branch.axis.scene) != without_frequency(now)
         self._view.update_state(now=now.f, stale=stale)
 
     def stop(self) -> None:

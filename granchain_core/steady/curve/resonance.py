@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from math import gcd
 
@@ -79,7 +80,7 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     here = float(np.interp(at, f, F))
     if abs(here - output) > _OFF * max(here, output):
         return Place("")
-    turns, (peaks, valleys) = extrema(F), peaks_and_valleys(F)
+    turns, peaks, valleys = _shape(tuple(F.tolist()))
     if transmission < STOPS:
         return Place("stop band" if not any(f[i] >= at for i in peaks) and peaks else "")
     before, after = [i for i in turns if f[i] <= at], [i for i in turns if f[i] > at]
@@ -92,6 +93,13 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     if low in valleys and way < _AT_BOTTOM:
         return Place("valley")
     return Place("flank", float(f[high]), periods[high]) if high in peaks else Place("")
+
+
+@lru_cache(maxsize=64)
+def _shape(force: tuple[float, ...]) -> tuple[list[int], list[int], list[int]]:
+    """Extrema, peaks and valleys of a curve, on which a page asks for a place at every move of a knob."""
+    values = np.array(force)
+    return extrema(values), *peaks_and_valleys(values)
 
 
 def extrema(force: np.ndarray) -> list[int]:
