@@ -2,13 +2,15 @@
 
 /curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, their relative errors
         error_estimate (of the output force), error_estimate_elastic, error_estimate_input (frequency);
-        regime, status, period (frequency); drive_amplitude (frequency, m) where A0 depends on the frequency, which the
-        root's attribute `amplitude` describes
+        regime, status, period (frequency); periods_run, decay, multiplier, lyapunov, lyapunov_error, the evidence for
+        the regime, absent in older files (frequency); drive_amplitude (frequency, m) where A0 depends on the frequency,
+        which the root's attribute `amplitude` describes
 """
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -37,7 +39,7 @@ def save_curve(curve: Curve, path: str | Path) -> Path:
 
 
 def load_curve(path: str | Path) -> Curve:
-    """The curve in a file: forces, errors, regimes and periods; neither the evidence for a regime nor states are there.
+    """The curve in a file: forces, errors, regimes with their evidence; no states, and in old files no evidence.
 
     Raises `BadInput` for a file that is not one.
     """
@@ -55,12 +57,27 @@ def _read(file: File) -> Curve:
     periods = within("/curve/period", file.numbers("curve/period", shape, "i"), 0, np.iinfo(np.int32).max)
     names = file.words("curve/regime", shape[0], NAMES)
     outcomes = file.words("curve/status", shape[0], _OUTCOMES)
-    points = [_point(scene, *one) for one in zip(numbers.T, periods, names, outcomes, strict=True)]
+    proven = _evidence(file, shape)
+    points = [_point(scene, *one) for one in zip(numbers.T, periods, names, outcomes, proven, strict=True)]
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
     return Curve(scene, one_of("start", file.text("start"), STARTS), points, file.number("wall_s"), amplitude)
 
 
-def _point(scene: Scene, numbers: np.ndarray, period: int, name: str, outcome: str) -> CurvePoint:
+def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:
+    """What is known of each point's regime; nothing in files from before it was kept."""
+    if not file.has("curve/periods_run"):
+        return [{"decay": None, "periods_run": 0}] * shape[0]
+    run = within("/curve/periods_run", file.numbers("curve/periods_run", shape, "i"), 0, np.iinfo(np.int64).max)
+    decay, multiplier, mean, error = (file.numbers(f"curve/{name}", shape, "any")
+                                      for name in ("decay", "multiplier", "lyapunov", "lyapunov_error"))
+    return [{"periods_run": int(periods), "decay": or_none(d), "multiplier": or_none(m),
+             "lyapunov": None if np.isnan(a) else (float(a), float(b))}
+            for periods, d, m, a, b in zip(run, decay, multiplier, mean, error, strict=True)]
+
+
+def _point(scene: Scene, numbers: np.ndarray, period: int, name: str, outcome: str,
+           proven: dict[str, Any]) -> CurvePoint:
     frequency, input_force, output_force, elastic, *errors = map(float, numbers)
-    return CurvePoint(frequency, output_force, elastic, input_force, Regime(name, int(period) or None, None, None, 0),
+    regime = Regime(name, int(period) or None, distance=None, **proven)
+    return CurvePoint(frequency, output_force, elastic, input_force, regime,
                       ForceErrors(*(or_none(error) for error in errors)), rest(scene), status=outcome)

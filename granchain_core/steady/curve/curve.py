@@ -27,6 +27,7 @@ from ...tables import (
     regime_columns,
 )
 from ...tables.provenance import Attribute
+from ...tables.words import evidence_columns
 from ..steady_state import SteadyState
 
 
@@ -125,7 +126,7 @@ class Curve(Labelled):
         return np.array([getattr(p, name) for p in self.points])
 
     def tables(self) -> tuple[Table, ...]:
-        """One table, `curve`: largest forces with errors, regime, period and status over the frequency."""
+        """One table, `curve`: largest forces with errors, regime with its evidence, and status over the frequency."""
         along = ("frequency",)
         forces = np.array([[getattr(p, name) for name in MAXIMA] for p in self.points]).reshape(-1, 3)
         errors = np.array([p.force_errors.row for p in self.points]).reshape(-1, 3)
@@ -135,6 +136,7 @@ class Curve(Labelled):
         return (Table("curve", axis("frequency", self.column("frequency"), "Hz", "drive frequency"), {
             **drive, **force_columns(forces, along), **error_columns(errors, along),
             **regime_columns([p.regime for p in self.points], "frequency"),
+            **evidence_columns([p.regime for p in self.points], "frequency"),
             "status": Column(outcomes, along, "", "done, or how the computation failed")}),)
 
     def attributes(self) -> dict[str, Attribute]:
