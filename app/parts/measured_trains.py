@@ -1,4 +1,4 @@
-"""A measured series over the force trains: thin dashed lines in front, in the colour of everything measured."""
+"""A measured series over the force trains and the drive: thin dashed lines in front, in a colour of their own."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot
 if TYPE_CHECKING:
     from granchain_core.fit.overlay import Overlay
 
-#: The forces in the order of the figures.
+#: The forces in the order of the figures, and the place of the shaker's displacement after them.
 _FORCES = ("input_force", "output_force")
+_DRIVE = 2
 #: Most points of a line; beyond that the series ends before the picture does.
 _MOST = 30_000
 _EMPTY = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
@@ -25,7 +26,7 @@ class MeasuredTrains:
         self._ink = ink
         self._lines: dict[int, GlyphRenderer] = {}
         self._shown: Overlay | None = None
-        self._last: tuple[float, float, float, float] = (0.0, 1.0, 1.0, 1.0)
+        self._last: tuple[float, ...] = (0.0, 1.0, 1.0, 1.0, 1.0)
 
     @property
     def largest(self) -> tuple[float, float]:
@@ -34,22 +35,38 @@ class MeasuredTrains:
         at = [float(forces[name].max()) if name in forces else 0.0 for name in _FORCES]
         return at[0], at[1]
 
+    @property
+    def largest_displacement(self) -> float:
+        """The largest measured displacement of the shaker from its mean [m]."""
+        swing = None if self._shown is None else self._shown.displacement
+        return 0.0 if swing is None else float(np.abs(swing).max())
+
     def load(self, shown: Overlay | None) -> None:
         """Take another series, or none, and draw it over what is shown."""
         self._shown = shown
         self.update(*self._last)
 
-    def update(self, shown: float, scale: float, push: float, out: float) -> None:
-        """Draw over `shown` seconds; `scale` is the axis over the time [1/s], `push` and `out` [N] are its units."""
-        self._last = shown, scale, push, out
-        for place, unit in ((0, push), (1, out)):
+    def update(self, shown: float, scale: float, push: float, out: float, drive: float) -> None:
+        """Draw over `shown` seconds; `scale` is the axis over the time [1/s].
+
+        `push` and `out` [N] are the units of the forces, `drive` [m] that of the displacement.
+        """
+        self._last = shown, scale, push, out, drive
+        inside = np.zeros(0, dtype=np.int64)
+        if self._shown is not None and shown > 0.0:
+            inside = np.flatnonzero((self._shown.time >= 0.0) & (self._shown.time <= shown))[:_MOST]
+        for place, unit in ((0, push), (1, out), (_DRIVE, drive)):
+            measured = self._measured(place)
             values = _EMPTY
-            if self._shown is not None and shown > 0.0 and _FORCES[place] in self._shown.forces:
-                time = self._shown.time
-                inside = np.flatnonzero((time >= 0.0) & (time <= shown))[:_MOST]
-                values = {"time": (time[inside] * scale).astype(np.float32),
-                          "force": (self._shown.forces[_FORCES[place]][inside] / unit).astype(np.float32)}
+            if self._shown is not None and measured is not None:
+                values = {"time": (self._shown.time[inside] * scale).astype(np.float32),
+                          "force": (measured[inside] / unit).astype(np.float32)}
             self._draw(place, values)
+
+    def _measured(self, place: int) -> np.ndarray | None:
+        if self._shown is None:
+            return None
+        return self._shown.displacement if place == _DRIVE else self._shown.forces.get(_FORCES[place])
 
     def ink(self, colour: str) -> None:
         """The colour of the theme."""
@@ -62,6 +79,8 @@ class MeasuredTrains:
         if line is None:
             if len(values["time"]):
                 glyph = Line(x="force", y="time", line_color=self._ink, line_width=1.3, line_dash=[4, 3])
-                self._lines[place] = self._plots[place].add_glyph(ColumnDataSource(values), glyph, level="overlay")
+                where = {"x_range_name": "drive"} if place == _DRIVE else {}
+                plot = self._plots[place % _DRIVE]  # the drive is on the left, over the input force
+                self._lines[place] = plot.add_glyph(ColumnDataSource(values), glyph, level="overlay", **where)
         elif len(values["time"]) or len(line.data_source.data["time"]):
             line.data_source.data = dict(values)

@@ -77,7 +77,8 @@ class Trains:
     def update(self, frames: Frames, time: np.ndarray, high: Extremes) -> None:
         """Show `frames`, whose rows are at `time` on the shared axis, on axes that end at the forces of `high`."""
         scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
-        drive_high = round_up(float(np.abs(frames.drive_displacement).max()))
+        moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
+        drive_high = round_up(moved)
         (input_time, input_force), (output_time, output_force) = (
             with_jumps(time, force, jumps * np.array([scale, 1.0])) for force, jumps in
             ((frames.input_force, frames.input_jumps), (frames.output_force, frames.output_jumps)))
@@ -96,9 +97,9 @@ class Trains:
         passed = {"time": output_time, "force": output_force / out}
         for source, values in ((self._source, columns), (self._input, pushed), (self._output, passed)):
             source.data = {name: np.asarray(column, dtype=np.float32) for name, column in values.items()}
-        over = self._pinned, self._measured
-        for lines in over:
-            lines.update(0.0 if frames.time[-1] == 0.0 else float(frames.time[-1]), scale, push, out)
+        shown = 0.0 if frames.time[-1] == 0.0 else float(frames.time[-1])
+        self._pinned.update(shown, scale, push, out)
+        self._measured.update(shown, scale, push, out, drive)
         edge = 1.15 * drive_high / drive
         self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
         self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)

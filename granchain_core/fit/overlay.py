@@ -25,12 +25,14 @@ class Overlay:
 
     `time` (T,) is that of the run, so that the series begins less than an orbit before the run does; `forces` are the
     measured ones by name, `rms` the differences from the model [N], None of a motion that does not repeat, which the
-    series is not moved to.
+    series is not moved to. `displacement` is the shaker's less its mean, because a sensor's zero is arbitrary, None
+    where it was not measured.
     """
 
     time: np.ndarray
     forces: dict[str, np.ndarray]
     rms: dict[str, float] | None
+    displacement: np.ndarray | None = None
 
     @property
     def sentence(self) -> str:
@@ -46,12 +48,13 @@ def overlay(series: Series, run: Run) -> Overlay | None:
     forces = {name: values for name in _FORCES if (values := getattr(series, name)) is not None}
     if not forces:
         return None
+    swing = None if series.displacement is None else series.displacement - series.displacement.mean()
     if run.regime.name != "periodic":
-        return Overlay(series.time, forces, None)
+        return Overlay(series.time, forces, None, swing)
     trains = {name: Train.of(run, name) for name in forces}
     width = float(np.median(np.diff(series.time)))
     late = moved(series.time, forces, trains, width, len(run.time) - 1)
     rms = {name: float(np.sqrt(np.mean((trains[name].mean_over(series.time + late, width) - values) ** 2)))
            for name, values in forces.items()}
     length = next(iter(trains.values())).length
-    return Overlay(series.time + late - np.ceil(late / length) * length, forces, rms)
+    return Overlay(series.time + late - np.ceil(late / length) * length, forces, rms, swing)

@@ -145,6 +145,30 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
 
 
+def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> None:
+    """Its zero is arbitrary; moved by the forces, it is the drive of the picture."""
+    chain = scene("sec2")
+    rows = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f)).splitlines()
+    table = np.array([[float(one) for one in row.split(",")] for row in rows[3:]])
+    # the displacement whose velocity is in the second column: v = A0 ω cos(ωt + φ), u = A0 sin(ωt + φ) + offset
+    omega = 2.0 * np.pi * chain.f
+    phase = np.angle(np.mean((table[:, 1]) * np.exp(-1j * omega * table[:, 0])))
+    swing = 3e-6 + chain.A0 * np.sin(omega * table[:, 0] + phase)
+    text = "time (s),displacement (m),output force (N)\n" + "".join(
+        f"{t:.9g},{u:.9g},{force:.9g}\n" for t, u, force in zip(table[:, 0], swing, table[:, 3], strict=True))
+    show(dashboard)
+    dashboard.received(sent(text.encode()))
+    dashboard.work_off(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
+    trains = dashboard.views.trains
+    line, = (one for one in trains.left.renderers if one.level == "overlay")
+    drawn = {name: np.asarray(values, dtype=float) for name, values in line.data_source.data.items()}
+    factor = chain.A0 / 500.0  # the axis is in nm
+    model = np.interp(drawn["time"], np.asarray(trains._source.data["time"]), np.asarray(trains._source.data["drive"]))
+    assert line.x_range_name == "drive" and len(drawn["time"]) > 500
+    # the model's samples are joined by straight lines
+    np.testing.assert_allclose(drawn["force"], model, atol=0.02 * chain.A0 / factor)
+
+
 def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashboard: Dashboard) -> None:
     show(dashboard)
     assert "virtual experiment, nothing measured" in after(dashboard, {"do": "csv-virtual"}, "understood")
