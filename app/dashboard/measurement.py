@@ -84,9 +84,13 @@ class Measurement:
         self._curves.compared = lambda _: None
 
     def picture_ready(self, picture: Settled) -> None:
-        """Move the series to another picture."""
-        if self._series is not None and picture.final:
+        """Move the series to another picture; the difference from the last one is not that of a preview."""
+        if self._series is None:
+            return
+        if picture.final:
             self._moving.start(partial(self._overlay_in_thread, self._series, picture.run))
+        else:
+            self._tabs.update_state(misfit=None)
 
     def _read(self, message: dict[str, Any]) -> None:
         self._name, self._answers = str(message.get("name", "data"))[:60], Answers()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -141,6 +142,11 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     lines = [[one for one in plot.renderers if one.level == "overlay"] for plot in (trains.left, trains.right)]
     assert [len(one) for one in lines] == [1, 1]
     assert all(len(one[0].data_source.data["time"]) > 1000 for one in lines)
+    preview = replace(dashboard.session.picture, final=False)  # of knobs that have moved
+    dashboard.files.picture_ready(preview)
+    assert dashboard.views.tabs.state["misfit"] is None
+    dashboard.files.picture_ready(dashboard.session.picture)
+    dashboard.work_off(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
     dashboard.received({"do": "csv-remove"})
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
 
