@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import BadInput, unknown_name
+from ..experiment import Series, read_data
 from ..hdf5 import File, opened
 from ..hdf5.plain import Refused
 from ..integrate import State
@@ -58,7 +59,25 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
         if time_unit is not None or force_unit is not None:
             raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")
         return checked(_from_hdf5(path))
-    return read_force_csv(content, time_unit, force_unit)
+    try:
+        return read_force_csv(content, time_unit, force_unit)
+    except BadInput:
+        found = None if time_unit or force_unit else _from_series(content, path.name)
+        if found is None:
+            raise
+        return found
+
+
+def _from_series(content: bytes, name: str) -> ForceRecord | None:
+    """The input force of a series that has other columns too, as that of a rig; None where it is not clear."""
+    try:
+        series = read_data(content, wanted=("series",), source=name)
+    except BadInput:
+        return None
+    if not isinstance(series, Series) or series.input_force is None:
+        return None
+    record = checked(ForceRecord(series.time, series.input_force, series.output_force))
+    return replace(record, understood=series.understood)
 
 
 def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: str | None = None) -> ForceRecord:

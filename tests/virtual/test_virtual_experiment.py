@@ -17,6 +17,7 @@ from granchain_core import BadInput, Scene, scene, settle
 from granchain_core.experiment import Answers, Measured, Series, read_data
 from granchain_core.experiment.measured import VIRTUAL
 from granchain_core.fit.trains import Train, moved
+from granchain_core.observe.read import read_force
 from granchain_core.virtual import Sensors, virtual_curve_csv, virtual_series_csv
 
 CHAIN = scene("sec2").evolve(N=3, f=1000.0)
@@ -115,6 +116,21 @@ def test_the_mark_stays_with_the_data() -> None:
 def test_what_cannot_be_is_refused(make, sentence: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=sentence):
         make()
+
+
+def test_an_observer_takes_it_and_says_what_it_is(tmp_path: Path) -> None:
+    """Of a series with more columns than its own strict reader knows; a table that is not clear stays refused."""
+    path = tmp_path / "virtual.csv"
+    path.write_text(virtual_series_csv(CHAIN, 3, Sensors(noise=0.001)), "utf-8")
+    record, found = read_force(path), read_data(path.read_bytes())
+    assert record.understood.startswith("virtual experiment, nothing measured")
+    np.testing.assert_array_equal(record.force, found.input_force)
+    np.testing.assert_array_equal(record.output, found.output_force)
+    for text, sentence in (("time_s,velocity_m_s\n" + "".join(f"{i},1\n" for i in range(12)), "not understood"),
+                           ("time_s,input_force_N,velocity\n" + "".join(f"{i},1,1\n" for i in range(12)), "velocity")):
+        path.write_text(text, "utf-8")
+        with pytest.raises(BadInput, match=sentence):
+            read_force(path)
 
 
 @pytest.mark.parametrize("subject", [Sensors, virtual_series_csv, virtual_curve_csv])
