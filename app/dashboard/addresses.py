@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from typing import TypeVar
+
 from granchain_core import BadInput, State
 
+from ..pages.analysis.questions import read_question
 from ..pages.stories.page import story_places
 from ..session.pins import Pin, read_pin
 from ..session.session import Session
-from ..session.share import EXTRAS, PINS, START, decode
+from ..session.share import EXTRAS, PINS, QUESTION, START, decode
 from ..session.starts import read_start
 from .table import overlay_names, tab_names
+
+T = TypeVar("T")
 
 
 def take_address(session: Session, query: str) -> tuple[State | None, list[str]]:
@@ -27,20 +34,22 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
     session.place = {name: fields[name] for name in places if name in fields}
     session.story = fields.get("story", "")
     session.pins = tuple(_pins([fields[name] for name in PINS if name in fields], sentences))
+    session.question = fields.get(QUESTION, "")
+    if session.question and _read(lambda: read_question(session.question, scene), sentences) is None:
+        session.question = ""
     session.picture, session.started_from = None, None
-    try:
-        start = read_start(fields[START], scene) if START in fields else None
-    except BadInput as problem:
-        sentences.append(str(problem))
-        start = None
-    return start, sentences
+    return _read(lambda: read_start(fields[START], scene), sentences) if START in fields else None, sentences
 
 
 def _pins(texts: list[str], sentences: list[str]) -> list[Pin]:
-    found = []
-    for text in texts:
-        try:
-            found.append(read_pin(text))
-        except BadInput as problem:
-            sentences.append(str(problem))
-    return found
+    pins = (_read(partial(read_pin, text), sentences) for text in texts)
+    return [pin for pin in pins if pin is not None]
+
+
+def _read(read: Callable[[], T], sentences: list[str]) -> T | None:
+    """What `read` gives; where it refuses, None, and its sentence among the others."""
+    try:
+        return read()
+    except BadInput as problem:
+        sentences.append(str(problem))
+        return None

@@ -15,7 +15,7 @@ from granchain_core.scene import Bead
 from ..serve.turns import Account
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
-from .share import EXTRAS, SPEEDS, START, encode, pins_in
+from .share import EXTRAS, QUESTION, SPEEDS, START, encode, pins_in
 from .starts import start_text
 from .switches import ACCOUNT, changes
 
@@ -27,7 +27,8 @@ class Session:
     """The state of one page; methods change it or raise `BadInput` and leave it as it was.
 
     `used` is the processor time of its pictures, and `insisted` the scene that is computed however long it takes.
-    `started_from` is the state in which the motion on the screen began, None for rest; `story` is "NAME.STEP".
+    `started_from` is the state in which the motion on the screen began, None for rest; `story` is "NAME.STEP", and
+    `question` the Analysis page's with its values, as in a link.
     """
 
     scene: Scene = field(default_factory=lambda: scene("sec2"))
@@ -49,6 +50,7 @@ class Session:
     insisted: Scene | None = None
     pins: tuple[Pin, ...] = ()
     story: str = ""
+    question: str = ""
 
     @property
     def link(self) -> str:
@@ -56,7 +58,8 @@ class Session:
         view = {"mode": self.mode, "start": self.start, "scale": self.scale, "curves": self.curves,
                 "speed": f"{self.speed:g}", "account": "on" if self.account else "off"}
         began = self.started_from if self.mode == "settled" else None
-        return encode(self.scene, view, {START: start_text(began), "story": self.story, **pin_texts(self.pins)})
+        texts = {START: start_text(began), "story": self.story, QUESTION: self.question, **pin_texts(self.pins)}
+        return encode(self.scene, view, texts)
 
     @property
     def pins_left_out(self) -> str:

@@ -39,18 +39,21 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "speed": tuple(f"{speed:g}" for speed in SPEEDS),
     "account": ("off", "on"),
 }
-#: Where the motion began, and the pinned pictures: texts that `starts.py` and `pins.py` read.
+#: Where the motion began, the pinned pictures, and the question of the Analysis page: texts that `starts.py`, `pins.py`
+#: and `pages/analysis/questions.py` read.
 START = "from"
 PINS = ("pin", "pin2", "pin3")
+QUESTION = "question"
 #: Most characters of a link, and how many of them are left to what the browser adds: tab, page, look, embed.
 LONGEST = 4500
 _OF_THE_BROWSER = 100
 
 
 def encode(shown: Scene, extras: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
-    """The query string (without "?") that brings back this scene and view; `texts` has `START`, `PINS` and "story".
+    """The query string (without "?") that brings back this scene and view.
 
-    Pins for which there is no room are left out, the last one first (`pins_in`).
+    `texts` has `START`, `PINS`, `QUESTION` and "story". Pins for which there is no room are
+    left out, the last one first (`pins_in`).
     """
     fields: dict[str, Any] = {"v": VERSION, "scene": shown.name}
     for name, value in shown.differences().items():
@@ -74,7 +77,7 @@ def pins_in(query: str) -> int:
 
 
 def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple[Scene, dict[str, str], list[str]]:
-    """Scene, view settings, and one sentence for every field that was refused; `START` and `PINS` come as they are.
+    """Scene, view settings, and one sentence for every field that was refused; the texts come as they are.
 
     `more` has further view settings with their values, which only the page itself knows.
     """
@@ -89,7 +92,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
     extras: dict[str, str] = {}
     # kappa last: it is converted with the link's own A0, and replaces k only if it is valid
     for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
-        if name in (START, *PINS):
+        if name in (START, QUESTION, *PINS):
             extras[name] = text
             continue
         if name in known:
@@ -99,7 +102,8 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
                 refused.append(f"{name} = {text[:40]!r} in the link is not one of {', '.join(known[name])}.")
             continue
         if name not in QUANTITIES:
-            refused.append(f"In the link: {unknown_name('field', name, ('scene', *known, START, *PINS, *QUANTITIES))}")
+            fields_known = ("scene", *known, START, QUESTION, *PINS, *QUANTITIES)
+            refused.append(f"In the link: {unknown_name('field', name, fields_known)}")
             continue
         try:
             shown = shown.evolve(**{name: text})
@@ -130,5 +134,5 @@ def _scene(name: str, refused: list[str]) -> Scene:
         return scene(scene_names()[0])
 
 
-if {*EXTRAS, START, *PINS} & set(QUANTITIES):
+if {*EXTRAS, START, QUESTION, *PINS} & set(QUANTITIES):
     raise RuntimeError("a view setting has the name of a knob")

@@ -9,7 +9,17 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from app.pages.analysis.questions import MOST_BEADS, QUESTIONS, Plan, planned, question_of
+from app.pages.analysis.questions import (
+    MOST_BEADS,
+    QUESTIONS,
+    Plan,
+    chosen_fields,
+    offered_fields,
+    planned,
+    question_of,
+    question_text,
+    read_question,
+)
 from app.pictures.theme import THEMES
 from granchain_core import BadInput, Stop, scene
 
@@ -82,3 +92,28 @@ def test_what_a_browser_should_not_send_is_refused() -> None:
             planned(question_of("basins"), CHAIN, values)
         except BadInput as refused:
             assert "starts along each" in str(refused)
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_a_link_keeps_what_was_chosen(name: str) -> None:
+    question = question_of(name)
+    fields = chosen_fields(question, CHAIN, SMALL[name])
+    assert {field.name: field.value for field in fields}.items() >= SMALL[name].items()
+    assert read_question(question_text(question, fields), CHAIN) == (question, fields)
+    assert read_question(question_text(question), CHAIN) == (question, question.fields(CHAIN))
+
+
+def test_a_chosen_value_stays_while_the_knobs_move_if_it_can() -> None:
+    basins = question_of("basins")
+    chosen = chosen_fields(basins, CHAIN, {"x": "v2", "starts": "31"})
+    longer = {field.name: field.value for field in offered_fields(basins, CHAIN.evolve(N=3, A0=1e-6), chosen)}
+    assert (longer["x"], longer["starts"]) == ("v2", "31")
+    assert longer["x to"] == {field.name: field.value for field in basins.fields(CHAIN.evolve(A0=1e-6))}["x to"]
+    shorter = {field.name: field.value for field in offered_fields(basins, CHAIN.evolve(N=1), chosen)}
+    assert (shorter["x"], shorter["starts"]) == ("u1", "31")
+
+
+@pytest.mark.parametrize("text", ["self", "strobes?self=1", "strobes?knob=self", "basins?x=u9", "?", "strobes?" + 40 * "9" + "=1"])
+def test_a_question_of_a_damaged_link_is_refused(text: str) -> None:
+    with pytest.raises(BadInput):
+        read_question(text, CHAIN)

@@ -138,10 +138,11 @@ def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, am
     states = [State(1e-6 * rng.standard_normal(beads), 1e-2 * rng.standard_normal(beads), 0.12345678901234567)
               if started >> place & 1 else None for place in range(1 + pins)]
     left = Session(shown, start="previous", scale="fit", speed=0.25, account=True, curves="rest.up.down.features",
-                   started_from=states[0], story="coexisting.2", pins=tuple(Pin(shown, one) for one in states[1:]))
+                   started_from=states[0], story="coexisting.2", pins=tuple(Pin(shown, one) for one in states[1:]),
+                   question="strobes?knob=A0&from=1.23456789012345e-07&to=1.23456789012345e-06&values=199&keep=499")
     back = Session()
     start, refused = take_address(back, left.link + "&tab=stability&page=stability&look=projector&embed=1")
-    assert refused == [] and back.scene == shown
+    assert refused == [] and back.scene == shown and back.question == left.question
     assert (start is None) == (states[0] is None)
     assert len(back.pins) == pins_in(left.link) and (len(back.pins) == pins) == (left.pins_left_out == "")
 

@@ -7,11 +7,12 @@ const ABOUT =
   "Four questions about the motion of the present scene. Choose one; it is computed when you press “compute”.";
 
 // What a visitor chooses for one field: an entry of a list, or a text.
-function control({ label, value, choices }) {
+function control({ label, value, choices, chosen }) {
   const input = choices.length
     ? element("select", {}, ...choices.map((choice) => new Option(choice, choice)))
     : element("input", { type: "text", inputMode: "decimal", spellcheck: false });
   input.value = value;
+  if (chosen) input.dataset.changed = "yes";
   input.addEventListener("input", () => {
     input.dataset.changed = "yes";
   });

@@ -9,7 +9,17 @@ from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
-from .questions import Plan, Question, planned, question_of
+from .questions import (
+    Field,
+    Plan,
+    Question,
+    chosen_fields,
+    offered_fields,
+    planned,
+    question_of,
+    question_text,
+    read_question,
+)
 from .view import Analysis
 
 #: Parts of a computation between two reports of how far it is.
@@ -19,15 +29,22 @@ WORDS = StatusWords("the kernels of the analysis", 20)
 
 
 class AnalysisPage(Page):
-    """An answer stays, with the scene that it is about in its title, until another question is asked."""
+    """An answer stays, with the scene that it is about in its title, until another question is asked.
+
+    The question and the values with which it was last computed are in the address. A page that is opened with them
+    offers them again; it computes when it is asked to.
+    """
 
     def __init__(self, host: Host, view: Analysis) -> None:
         self._host = host
         self._view = view
         self._task = Task(host, LONG, self._say, "The analysis")
         self._question: Question | None = None
+        self._text = ""
+        self._fields: tuple[Field, ...] = ()
         self.actions: Actions = {
             "analysis-ask": self._ask, "analysis-compute": self._begin, "analysis-stop": lambda _: self._stop()}
+        self.address_taken()
 
     def close(self) -> None:
         """The visitor left."""
@@ -37,18 +54,39 @@ class AnalysisPage(Page):
         """The knobs have moved: what is under way is about another scene, and so are the values in the fields."""
         self._stop()
         if self._question is not None:
-            self._view.offer(self._question.fields(self._host.session.scene))
+            self._fields = offered_fields(self._question, self._host.session.scene, self._fields)
+            self._view.offer(self._fields)
+
+    def address_taken(self) -> None:
+        """The address says what is asked, and with which values; what is on the page already stays."""
+        text = self._host.session.question
+        if text and text != self._text:
+            question, fields = read_question(text, self._host.session.scene)
+            self._offer(question, fields, text)
 
     def _ask(self, message: dict[str, Any]) -> None:
+        question = question_of(message.get("question"))
+        self._offer(question, question.fields(self._host.session.scene), question_text(question))
+        self._keep()
+
+    def _offer(self, question: Question, fields: tuple[Field, ...], text: str) -> None:
         self._task.cancel()
-        self._question = question_of(message.get("question"))
-        self._view.ask(self._question, self._question.fields(self._host.session.scene))
+        self._question, self._text, self._fields = question, text, fields
+        self._view.ask(question, fields)
         self._say("none")
+
+    def _keep(self) -> None:
+        self._host.session.question = self._text
+        self._host.address_changed()
 
     def _begin(self, message: dict[str, Any]) -> None:
         if self._question is None:
             return
-        plan = planned(self._question, self._host.session.scene, message.get("values"))
+        scene, values = self._host.session.scene, message.get("values")
+        plan = planned(self._question, scene, values)
+        self._fields = chosen_fields(self._question, scene, values)
+        self._text = question_text(self._question, self._fields)
+        self._keep()
         self._view.clear()
         self._say("waiting")
         self._task.start(lambda job: self._compute(plan, job))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
+from urllib.parse import parse_qsl, urlencode
 
 import numpy as np
 from bokeh.models import LayoutDOM
@@ -36,12 +37,16 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class Field:
-    """One choice of a question: a list to choose from, or a text; `value` is what it begins with."""
+    """One choice of a question: a list to choose from, or a text; `value` is what it begins with.
+
+    A value that was `chosen` stays when the knobs move, if it can; an offered one follows them.
+    """
 
     name: str
     label: str
     value: str
     choices: tuple[str, ...] = ()
+    chosen: bool = False
 
 
 @dataclass(frozen=True)
@@ -73,14 +78,47 @@ class Question:
 def planned(question: Question, chain: Scene, values: object) -> Plan:
     """The plan of a question with the texts that a browser sent. Raises `BadInput` for what is wrong in them."""
     check_range("the Analysis page: N =", chain.N, 1, MOST_BEADS)
+    return question.plan(chain, {field.name: field.value for field in chosen_fields(question, chain, values)})
+
+
+def chosen_fields(question: Question, chain: Scene, values: object) -> tuple[Field, ...]:
+    """The fields of a question with the texts that a browser or a link has for them.
+
+    Raises `BadInput` for an entry that is in no list. Whether a text is a number in range is asked by `planned`.
+    """
     sent = values if isinstance(values, dict) else {}
-    chosen = {}
+    fields = []
     for field in question.fields(chain):
         text = str(sent.get(field.name, field.value)).strip()[:40]
         if field.choices and text not in field.choices:
             raise unknown_name(field.label, text, field.choices)
-        chosen[field.name] = text
-    return question.plan(chain, chosen)
+        fields.append(replace(field, value=text, chosen=text != field.value))
+    return tuple(fields)
+
+
+def offered_fields(question: Question, chain: Scene, kept: Sequence[Field]) -> tuple[Field, ...]:
+    """The fields of a question for a scene; what was chosen before stays where it still can."""
+    chosen = {field.name: field.value for field in kept if field.chosen}
+    fields = question.fields(chain)
+    possible = {field.name: chosen[field.name] for field in fields if field.name in chosen and (
+        not field.choices or chosen[field.name] in field.choices)}
+    return chosen_fields(question, chain, possible)
+
+
+def question_text(question: Question, fields: Sequence[Field] = ()) -> str:
+    """A question and the values that were chosen, as one text for a link: "strobes?knob=A0&values=31"."""
+    values = urlencode({field.name: field.value for field in fields if field.chosen})
+    return f"{question.name}?{values}" if values else question.name
+
+
+def read_question(text: str, chain: Scene) -> tuple[Question, tuple[Field, ...]]:
+    """Question and fields of the text of a link. Raises `BadInput` for what is no question and no field of it."""
+    name, _, query = text.partition("?")
+    question, values = question_of(name[:40]), dict(parse_qsl(query))
+    known = tuple(field.name for field in question.fields(chain))
+    for unknown in values.keys() - set(known):
+        raise unknown_name("field", unknown[:40], known)
+    return question, chosen_fields(question, chain, values)
 
 
 def _number(label: str, text: str) -> float:

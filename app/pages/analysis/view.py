@@ -34,7 +34,7 @@ class Analysis(Component):
     def offer(self, fields: Sequence[Field]) -> None:
         """Offer these fields, with values for the present scene."""
         self.update_state(fields=[{"name": one.name, "label": one.label, "value": one.value,
-                                   "choices": list(one.choices)} for one in fields])
+                                   "choices": list(one.choices), "chosen": one.chosen} for one in fields])
 
     def clear(self) -> None:
         """Take the figure away."""
