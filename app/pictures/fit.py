@@ -12,7 +12,6 @@ from bokeh.plotting import figure
 
 from granchain_core import Curve, Fit
 from granchain_core.fit import CurveTarget, FeatureTarget, Free, SeriesTarget
-from granchain_core.fit.intervals import limit
 
 from ..format import prefixed
 from .axes import Scale, force_scale
@@ -128,7 +127,7 @@ def _landscape(found: Fit, i: int, theme: Theme) -> figure:
         for end in (there.low, there.high):
             upright = Span(location=end / axis.factor, dimension="height", line_dash=[4, 4])
             plot.add_layout(in_theme(upright, line_color="accent", line_width=1.2))
-        plot.add_layout(in_theme(Span(location=limit(found.scale), dimension="width", line_dash=[2, 4]),
+        plot.add_layout(in_theme(Span(location=found.limit, dimension="width", line_dash=[2, 4]),
                                  line_color="soft", line_width=1.2))
     plot.xaxis.axis_label = axis.label
     plot.yaxis.axis_label = "Δχ²"
@@ -147,7 +146,7 @@ def _axis(one: Free) -> Scale:
 
 def _verdict(found: Fit) -> str:
     words = {"can": "the model can describe it", "cannot": "the model cannot describe it", "not known": "no verdict"}
-    return f"χ² = {found.misfit:.4g}, {found.freedom} degrees of freedom: {words[found.verdict]}"
+    return f"χ² = {found.chi_squared:.4g}, {found.freedom} degrees of freedom: {words[found.verdict]}"
 
 
 def _best(found: Fit, i: int) -> str:

@@ -17,13 +17,13 @@ from ..scene.driven import refuse_undriven
 from ..stop import Stop
 from ..tables import Labelled, Table, or_nan, provenance
 from ..tables.provenance import Attribute
-from .intervals import LEVEL, Lower, Profile, profile
+from .intervals import LEVEL, BetterMinimum, Profile, limit, profile
 from .parameters import Free, with_values
 from .search import Problem, Target, descended, searched
 from .tables import data_table, landscape_table, parameter_table, profile_table
 from .targets import CurveTarget, Evaluation, FeatureTarget
 
-#: Probability of a misfit as large, if the model were true, below which the verdict is that it cannot.
+#: Probability of a χ² as large, if the model were true, below which the verdict is that it cannot.
 CANNOT = 0.01
 #: Most parameters, and times that the search goes on from a better place that a profile found.
 MOST_FREE, _AGAIN = 30, 4
@@ -46,13 +46,13 @@ class Fit(Labelled):
     profiles : tuple of Profile
         For each parameter its profile and its 95 % interval; empty if none was asked for.
     misfit : float
-        Least χ².
+        The least −2 ln likelihood, but for a constant: χ² and the logarithms of the variances.
     data : int
         Data and priors compared.
     freedom : int
         Data and priors less parameters.
     probability : float or None
-        Of a misfit as large if the model were true; None where the data's errors are not known.
+        Of a χ² as large if the model were true; None where the data's errors are not known.
     verdict : str
         "can", "cannot" or "not known".
     sentence : str
@@ -60,11 +60,11 @@ class Fit(Labelled):
     evaluation : Evaluation
         Residuals and model values at the best place.
     landscape : tuple of numpy.ndarray
-        Values (n, p) and χ² (n,) of everything that was evaluated.
+        Values (n, p) and misfits (n,) of everything that was evaluated.
     target : CurveTarget, SeriesTarget or FeatureTarget
         What was compared.
     scale : float
-        Unit of χ²: 1, or χ² per degree of freedom where the data's errors are not known.
+        Unit of the misfit: 1, or χ² per degree of freedom where the data's errors are not known.
     wall_s : float
         Wall-clock time [s].
 
@@ -112,6 +112,16 @@ class Fit(Labelled):
                 "verdict": self.verdict, "sentence": self.sentence, "scale": self.scale, "level": LEVEL,
                 "wall_s": self.wall_s, **drive}
 
+    @property
+    def chi_squared(self) -> float:
+        """The sum of the squared residuals and priors: the misfit without the logarithms of the variances."""
+        return self.misfit - self.evaluation.log_variance
+
+    @property
+    def limit(self) -> float:
+        """How far the misfit has risen at the ends of the 95 % intervals."""
+        return limit(self.scale, None if self.target.sigma_known else self.freedom)
+
     def summary(self) -> list[str]:
         """Each parameter with its interval, and the verdict."""
         lines = []
@@ -134,8 +144,9 @@ class Fit(Labelled):
                           "open_high": found.open_high, "profile": [list(found.values), list(found.rises)]}
             parameters.append(entry)
         return {"scene": self.scene.name, "knobs": self.scene.knobs, "parameters": parameters, "level": LEVEL,
-                "misfit": self.misfit, "data": self.data, "freedom": self.freedom, "probability": self.probability,
-                "verdict": self.verdict, "sentence": self.sentence, "evaluations": len(self.landscape[1]),
+                "misfit": self.misfit, "chi_squared": self.chi_squared, "data": self.data, "freedom": self.freedom,
+                "probability": self.probability, "verdict": self.verdict, "sentence": self.sentence,
+                "evaluations": len(self.landscape[1]),
                 "residuals": [float(r) for r in self.evaluation.residuals],
                 "model": [float(m) if np.isfinite(m) else None for m in self.evaluation.model],
                 "frequency": [float(f) for f in self.target.frequencies],
@@ -202,19 +213,20 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
         raise BadInput(f"{data} data and priors do not determine {len(free)} parameters; give priors or fewer of them.")
     known = target.sigma_known
 
-    def enough(misfit: float) -> bool:
-        return _verdict(_probability(problem, misfit, data, freedom)) != "cannot"
+    def enough(place: np.ndarray) -> bool:
+        return _verdict(_probability(problem, place, data, freedom)) != "cannot"
 
     best = searched(problem, design or (32 if len(free) <= 2 else 64 if len(free) == 3 else 128), enough)
     profiles: tuple[Profile, ...] = ()
     for again in range(_AGAIN):
-        scale = 1.0 if known else problem.misfit(best) / max(freedom, 1)
+        scale = 1.0 if known else problem.chi_squared(best) / max(freedom, 1)
         try:
             if intervals and target.smooth and freedom > 0:
-                profiles = tuple(profile(problem, best, j, scale, again == _AGAIN - 1) for j in range(len(free)))
+                profiles = tuple(profile(problem, best, j, scale, None if known else freedom, again == _AGAIN - 1)
+                                 for j in range(len(free)))
             break
-        except Lower as lower:
-            best = descended(problem, lower.place, range(len(free)))
+        except BetterMinimum as better:
+            best = descended(problem, better.place, range(len(free)))
     return _result(problem, best, profiles, data, freedom, scale, time.perf_counter() - began)
 
 
@@ -223,10 +235,10 @@ def _counted(problem: Problem, data: int, freedom: int) -> int:
     return data if isinstance(problem.target, FeatureTarget) else freedom
 
 
-def _probability(problem: Problem, misfit: float, data: int, freedom: int) -> float | None:
-    """Of a misfit as large as this if the model were true; None where no errors are known, or nothing is left free."""
+def _probability(problem: Problem, place: np.ndarray, data: int, freedom: int) -> float | None:
+    """Of a χ² as large as this if the model were true; None where no errors are known, or nothing is left free."""
     counted = _counted(problem, data, freedom)
-    return float(chi2.sf(misfit, counted)) if problem.target.sigma_known and counted > 0 else None
+    return float(chi2.sf(problem.chi_squared(place), counted)) if problem.target.sigma_known and counted > 0 else None
 
 
 def _verdict(probability: float | None) -> str:
@@ -238,22 +250,22 @@ def _result(problem: Problem, best: np.ndarray, profiles: tuple[Profile, ...], d
     misfit, evaluation = problem.misfit(best), problem.evaluate(best)
     values = problem.values(best)
     fitted, amplitude = with_values(problem.scene, problem.free, values)
-    probability = _probability(problem, misfit, data, freedom)
+    probability = _probability(problem, best, data, freedom)
     verdict = _verdict(probability)
     landscape = (np.array([problem.values(place) for place in problem.places]), np.array(problem.misfits))
     return Fit(fitted, amplitude, tuple(problem.free), values, profiles, misfit, data, freedom, probability, verdict,
-               _sentence(problem, evaluation, best, misfit, _counted(problem, data, freedom), probability, verdict),
+               _sentence(problem, evaluation, best, _counted(problem, data, freedom), probability, verdict),
                evaluation, landscape,
                problem.target, scale, wall_s)
 
 
-def _sentence(problem: Problem, evaluation: Evaluation, best: np.ndarray, misfit: float, counted: int,
+def _sentence(problem: Problem, evaluation: Evaluation, best: np.ndarray, counted: int,
               probability: float | None, verdict: str) -> str:
     """The verdict with its evidence."""
     if verdict == "not known":
         return ("Whether the model can describe the data is not known: their errors are not. Intervals hold if it can."
                 if not problem.target.sigma_known else "There are as many parameters as data: any model would fit.")
-    numbers = f"χ² = {misfit:.4g} for {counted} degrees of freedom, probability {probability:.2g}"
+    numbers = f"χ² = {problem.chi_squared(best):.4g} for {counted} degrees of freedom, probability {probability:.2g}"
     edge = [one.name for one, x in zip(problem.free, best, strict=True) if min(x, 1.0 - x) < 1e-3]
     bounds = f"; {', '.join(edge)} at {'a bound' if len(edge) == 1 else 'bounds'}" if edge else ""
     if verdict == "can":

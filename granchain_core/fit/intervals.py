@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.stats import chi2, f
 
 from .search import Problem, descended
 
@@ -18,7 +18,7 @@ _STEPS, _DESCENT, _NEAR = 8, 6, 0.03
 _LOWER = 0.3
 
 
-class Lower(Exception):
+class BetterMinimum(Exception):
     """A profile found a place with a smaller misfit than the best one; the search goes on from there."""
 
     def __init__(self, place: np.ndarray) -> None:
@@ -41,14 +41,21 @@ class Profile:
     open_high: bool
 
 
-def limit(scale: float) -> float:
-    """Δχ² at the ends of an interval for one parameter; `scale` is the misfit's unit."""
-    return float(chi2.ppf(LEVEL, 1)) * scale
+def limit(scale: float = 1.0, freedom: int | None = None) -> float:
+    """Rise of the misfit at the ends of an interval for one parameter.
+
+    Where the errors are known it is that of χ² with one degree of freedom. Where they are not, their variance `scale`
+    is estimated from the fit with `freedom` degrees of freedom, and the rise in this unit has the distribution F.
+    """
+    return float(chi2.ppf(LEVEL, 1) if freedom is None else f.ppf(LEVEL, 1, freedom)) * scale
 
 
-def profile(problem: Problem, best: np.ndarray, j: int, scale: float, last: bool) -> Profile:
-    """The profile of parameter j. Raises `Lower` where the best place is not, unless it is the `last` try."""
-    least, top = problem.misfit(best), math.sqrt(limit(scale))
+def profile(problem: Problem, best: np.ndarray, j: int, scale: float, freedom: int | None, last: bool) -> Profile:
+    """The profile of parameter j; `scale` and `freedom` are those of `limit`.
+
+    Raises `BetterMinimum` where it finds a place that is better than `best`, unless it is the `last` try.
+    """
+    least, top = problem.misfit(best), math.sqrt(limit(scale, freedom))
     others = [i for i in range(len(best)) if i != j]
     slopes = problem.jacobian(best, range(len(best)))
     normal = slopes.T @ slopes
@@ -86,7 +93,7 @@ def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: n
         place = descended(problem, place, others, _DESCENT)
         rise = problem.misfit(place) - least
         if rise < lowest:
-            raise Lower(place)
+            raise BetterMinimum(place)
         root = math.sqrt(max(rise, 0.0))
         found[float(trial)] = max(rise, 0.0)
         if root <= top:

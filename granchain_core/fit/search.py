@@ -83,16 +83,20 @@ class Problem:
                          for one, value in zip(self.free, self.values(np.clip(place, 0, 1)), strict=True) if one.prior])
 
     def residuals(self, place: np.ndarray) -> np.ndarray:
-        """All residuals; the last one is the root of what χ² has beyond their squares."""
+        """All residuals; the last one is the root of the logarithms of the variances."""
         found = self.evaluate(place)
-        return np.concatenate([found.residuals, self.priors(place), [np.sqrt(max(found.beyond, 0.0))]])
+        return np.concatenate([found.residuals, self.priors(place), [np.sqrt(max(found.log_variance, 0.0))]])
 
     def misfit(self, place: np.ndarray) -> float:
-        """χ² at a place."""
+        """What is made least: χ² and the logarithms of the variances, −2 ln of the likelihood but for a constant."""
         return self._misfit(self.evaluate(place), np.clip(place, 0.0, 1.0))
 
+    def chi_squared(self, place: np.ndarray) -> float:
+        """The sum of the squared residuals and priors at a place, whose distribution is known if the model is true."""
+        return self.misfit(place) - self.evaluate(place).log_variance
+
     def _misfit(self, found: Evaluation, place: np.ndarray) -> float:
-        return float((found.residuals**2).sum() + (self.priors(place) ** 2).sum() + found.beyond)
+        return float((found.residuals**2).sum() + (self.priors(place) ** 2).sum() + found.log_variance)
 
     def jacobian(self, place: np.ndarray, moving: Sequence[int]) -> np.ndarray:
         """Derivatives of the residuals by differences to the side that stays within the bounds."""
@@ -153,11 +157,11 @@ def simplex(problem: Problem, place: np.ndarray, size: float) -> np.ndarray:
     return better if problem.misfit(better) <= problem.misfit(place) else place
 
 
-def searched(problem: Problem, design: int, enough: Callable[[float], bool]) -> np.ndarray:
+def searched(problem: Problem, design: int, enough: Callable[[np.ndarray], bool]) -> np.ndarray:
     """The best place: a design over the bounds, descents from its best places, a simplex where regimes change.
 
-    Where the misfit is not good `enough`, the design is doubled until there were `_ROUNDS`: a valley that was missed
-    must not be a verdict on the model.
+    Where the best place is not good `enough`, the design is doubled until there were `_ROUNDS`: a valley that was
+    missed must not be a verdict on the model.
     """
     count = len(problem.free)
     size = max(1, (design - 1).bit_length())
@@ -170,7 +174,7 @@ def searched(problem: Problem, design: int, enough: Callable[[float], bool]) -> 
         tried += list(0.02 + 0.96 * (new + 0.5 * 2.0**-size) % 1.0)
         ends += [_down(problem, start) for start in _apart(problem, tried, starts)]
         best = min(ends, key=problem.misfit)
-        if enough(problem.misfit(best)):
+        if enough(best):
             break
     if problem.target.smooth and problem.jumps_beside(best):
         best = descended(problem, simplex(problem, best, 0.02), range(count))

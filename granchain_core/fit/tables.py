@@ -69,4 +69,4 @@ def landscape_table(free: Sequence[Free], landscape: tuple[np.ndarray, np.ndarra
     along = ("trial",)
     return Table("landscape", axis("trial", np.arange(len(misfits)), "1", "number of the evaluation"), {
         **{one.name: Column(values[:, i], along, one.unit, f"value of {one.name}") for i, one in enumerate(free)},
-        "misfit": Column(misfits, along, "1", "χ²")})
+        "misfit": Column(misfits, along, "1", "χ² and the logarithms of the variances")})

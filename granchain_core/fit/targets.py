@@ -40,13 +40,15 @@ _TRAIN, _COMPARED = 768, 4000
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """Residuals (n,) in standard deviations, the term added to the sum of their squares in χ², and the regimes.
+    """Residuals (n,) in standard deviations, and the regimes.
 
-    `model` is the model's value for each datum, for pictures: forces [N], frequencies [Hz].
+    `log_variance` is Σ 2 ln(σ'/σ) over the data whose standard deviation σ' is enlarged, because the motion there has
+    no period: it belongs to the likelihood, and not to χ². `model` is the model's value for each datum, for pictures:
+    forces [N], frequencies [Hz].
     """
 
     residuals: np.ndarray
-    beyond: float
+    log_variance: float
     regimes: tuple[str, ...]
     model: np.ndarray
     curve: Curve | None = None

@@ -110,7 +110,7 @@ def test_chaos_does_not_win() -> None:
     force = curve.column("max_output_force")
     found = CurveTarget(Measured(np.array([100.0]), force, 0.01 * force, "")).evaluate(irregular, None, None)
     assert found.residuals == pytest.approx([0.0], abs=1e-9)
-    assert found.beyond == pytest.approx(2.0 * np.log(np.hypot(0.01, SCATTER) / 0.01))
+    assert found.log_variance == pytest.approx(2.0 * np.log(np.hypot(0.01, SCATTER) / 0.01))
 
 
 def test_peaks_and_valleys_are_found_between_the_points() -> None:

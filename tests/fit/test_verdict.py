@@ -1,0 +1,66 @@
+"""Verdict and intervals on a straight line, whose distributions are known exactly; no chain is computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import pytest
+from scipy.stats import f
+
+from granchain_core import Amplitude, Fit, Scene, Stop, fit, scene
+from granchain_core.fit import Free
+from granchain_core.fit.intervals import limit
+from granchain_core.fit.search import Target
+from granchain_core.fit.targets import Evaluation
+
+CHAIN = scene("sec2")
+AT = np.linspace(-1.0, 1.0, 6)
+FREE = [Free("D", 50.0, 150.0)]
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """Data on a line whose slope is D / 100, with errors of 0.1 that are `sigma_known` or not."""
+
+    data: np.ndarray
+    sigma_known: bool
+    log_variance: float = 0.0
+    smooth: bool = True
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        return AT
+
+    def evaluate(self, chain: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
+        model = AT * chain.knobs["D"] / 100.0
+        assumed = 0.1 if self.sigma_known else 0.5
+        return Evaluation((model - self.data) / assumed, self.log_variance, ("periodic",) * len(AT), model)
+
+
+def fitted(line: Line) -> Fit:
+    return fit(CHAIN, cast(Target, line), FREE, design=8)
+
+
+def test_the_logarithm_of_a_variance_is_no_evidence_against_the_model() -> None:
+    """It ranks sets of parameters; a sum of squares of 0 is possible whatever it is."""
+    found = fitted(Line(AT.copy(), True, log_variance=60.0))
+    assert found.verdict == "can" and found.probability == pytest.approx(1.0)
+    assert found.chi_squared == pytest.approx(0.0, abs=1e-6) and found.misfit == pytest.approx(60.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_intervals_hold_the_truth_in_95_of_100(known: bool) -> None:
+    """300 draws: 95 % ± 1.26 % (one standard deviation). With χ² in place of F, unknown errors would give 89 %."""
+    rng = np.random.default_rng(11)
+    held = 0
+    for _ in range(300):
+        found = fitted(Line(AT + 0.1 * rng.standard_normal(len(AT)), known))
+        held += found.profiles[0].low <= 100.0 <= found.profiles[0].high
+    assert abs(held / 300 - 0.95) < 3 * 0.0126
+
+
+def test_the_limit_is_that_of_f_where_the_variance_is_estimated() -> None:
+    assert limit(2.0, 5) == pytest.approx(2.0 * f.ppf(0.95, 1, 5)) == pytest.approx(2.0 * 6.608, rel=1e-3)
+    assert limit(1.0) == pytest.approx(3.841, rel=1e-3) and limit(1.0, 10**7) == pytest.approx(limit(), rel=1e-5)
