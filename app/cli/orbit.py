@@ -51,6 +51,7 @@ def do(arguments: argparse.Namespace) -> None:
             data["observer_multipliers"] = _pairs(found.observer_multipliers)
             data["observer_stable"] = found.observer_stable
             data["observer_multiplier_errors"] = _numbers(found.observer_multiplier_errors)
+            data["observer_stability_certain"] = found.observer_stability_certain
         show_json(data)
         return
     print(f"{chosen.name}: orbit of period {found.period}, {'stable' if found.stable else 'unstable'}, "
@@ -59,7 +60,10 @@ def do(arguments: argparse.Namespace) -> None:
     if found.observer_multipliers is not None:
         _show_multipliers("observer", found.observer_multipliers, found.observer_multiplier_errors)
     if found.multiplier_errors is not None and not found.stability_certain:
-        print("the leading multiplier is not farther from the unit circle than its error: the stability is not certain")
+        print("a multiplier is no farther from the unit circle than its error: the stability is not certain")
+    if found.observer_multiplier_errors is not None and not found.observer_stability_certain:
+        print("a multiplier of the observer is no farther from the unit circle than its error: its stability is not "
+              "certain")
 
 
 def _pairs(multipliers: Any) -> list[list[float]]:

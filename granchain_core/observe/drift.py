@@ -1,19 +1,35 @@
 """Drift: an observer that nothing holds moves away as a whole.
 
 The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
-wall alone, and only while they touch it. A multiplier outside the unit circle that is real and whose mode moves all
-beads the same way is not an instability of the shape but a drift: to one side if it is positive, alternating between
+wall alone, and only while they touch it. A multiplier outside the unit circle that is real and whose mode is nearly one
+shift of all beads is not an instability of the shape but a drift: to one side if it is positive, alternating between
 the sides if it is negative (at 200 Hz).
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..orbits import Orbit
 from ..orbits.flow import StroboscopicMap
 from ..orbits.modes import eigenpair
+from ..scene import Scene
 
 #: A multiplier this near to the unit circle counts as on it: the error of the tangents.
 _NEAR = 1e-6
+#: Squared cosine between a difference and one shift of all beads above which it is called a translation.
+TRANSLATION = 0.7
+
+
+def share_of_translation(difference: np.ndarray) -> float:
+    """Squared cosine between a difference of displacements and one shift of all beads."""
+    size = float(difference @ difference)
+    return float(difference.sum() ** 2 / (len(difference) * size)) if size > 0.0 else 0.0
+
+
+def is_drift(scene: Scene, share: float) -> bool:
+    """Whether a growing difference with this share of a translation is a drift: nothing else holds the beads."""
+    return scene.k == 0.0 and share >= TRANSLATION
 
 
 def observer_drift(orbit: Orbit) -> str | None:
@@ -24,9 +40,8 @@ def observer_drift(orbit: Orbit) -> str | None:
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
     x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
     value, vector = eigenpair(stroboscopic_map, x, 0, observer=True)
-    moved = vector[: orbit.scene.N].real
-    if value.imag != 0.0 or not ((moved > 0.0).all() or (moved < 0.0).all()):
+    if value.imag != 0.0 or not is_drift(orbit.scene, share_of_translation(vector[: orbit.scene.N].real)):
         return None
     way = "the same way" if value.real > 0.0 else "the same way, alternating between the sides"
-    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads "
+    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves the beads "
             f"{way}, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")

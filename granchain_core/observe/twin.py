@@ -21,6 +21,7 @@ from ..result import Cost
 from ..scene import Scene
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
+from .drift import is_drift, share_of_translation
 from .pair import Pair
 
 #: Largest distance, relative to the motion, at which the difference of two motions still grows linearly.
@@ -37,8 +38,6 @@ _TRANSIENT = 1.0 / 3.0
 _FEWEST = 4
 #: Part that a fit by one multiplier may leave unexplained before two are fitted.
 _ONE_IS_ENOUGH = 0.03
-#: Squared cosine between a difference and a uniform shift above which it is called a translation.
-TRANSLATION = 0.7
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +94,7 @@ class Twin:
             return "neither yet"
         if not grows:
             return "synchronises"
-        return "drifts" if self.scene.k == 0.0 and self.translation >= TRANSLATION else "breaks down"
+        return "drifts" if is_drift(self.scene, self.translation) else "breaks down"
 
     @property
     def sentence(self) -> str:
@@ -213,9 +212,3 @@ def rates(strobes: np.ndarray) -> tuple[float | None, tuple[complex, ...]]:
     a, b = np.linalg.lstsq(terms, (strobes[2:] * unit).ravel(), rcond=None)[0]
     found = sorted((complex(z) for z in np.roots([1.0, -a, -b])), key=abs, reverse=True)
     return rate, tuple(found)
-
-
-def share_of_translation(difference: np.ndarray) -> float:
-    """Squared cosine between a difference of displacements and one shift of all beads."""
-    size = float(difference @ difference)
-    return float(difference.sum() ** 2 / (len(difference) * size)) if size > 0.0 else 0.0

@@ -121,9 +121,15 @@ class Orbit(Labelled):
 
     @property
     def stability_certain(self) -> bool:
-        """Whether the largest multiplier is farther from the unit circle than its error; False if that is not known."""
-        errors = self.multiplier_errors
-        return errors is not None and bool(abs(abs(self.multipliers[0]) - 1.0) > errors[0])
+        """Whether `stable` holds in spite of the errors; False if these are not known."""
+        return _is_certain(self.multipliers, self.multiplier_errors)
+
+    @property
+    def observer_stability_certain(self) -> bool | None:
+        """The same of `observer_stable`; None where the observer's multipliers were not requested."""
+        if self.observer_multipliers is None:
+            return None
+        return _is_certain(self.observer_multipliers, self.observer_multiplier_errors)
 
     @property
     def observer_stable(self) -> bool | None:
@@ -276,20 +282,26 @@ def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -
 
 def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],
            observer: bool) -> Orbit:
-    liouville = monodromy = pushed = None
+    liouville = monodromy = observer_monodromy = None
     if _dense(x):
         monodromy, multipliers = flow.derivative, sorted_multipliers(flow.derivative)
         liouville = _liouville(multipliers, flow.log_determinant)
-        pushed = stroboscopic_map(x, observer=True).derivative if observer else None
-        watched = None if pushed is None else sorted_multipliers(pushed)
+        observer_monodromy = stroboscopic_map(x, observer=True).derivative if observer else None
+        observer_multipliers = None if observer_monodromy is None else sorted_multipliers(observer_monodromy)
     else:
         from .krylov import leading_multipliers
 
         multipliers = leading_multipliers(stroboscopic_map, x)
-        watched = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
+        observer_multipliers = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
     lowered = stroboscopic_map.engine.lowered
     return Orbit(scene, n, lowered.unscaled(lowered.embed(x)), history[-1], tuple(history), multipliers, liouville,
-                 flow.changes, watched, monodromy, pushed)
+                 flow.changes, observer_multipliers, monodromy, observer_monodromy)
+
+
+def _is_certain(multipliers: np.ndarray, errors: np.ndarray | None) -> bool:
+    """Whether all multipliers are inside the unit circle by more than their errors, or at least one is outside."""
+    sizes = np.abs(multipliers)
+    return errors is not None and bool((sizes + errors < 1.0).all() or (sizes - errors > 1.0).any())
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:

@@ -70,7 +70,7 @@ def test_orbit_prints_the_contracts_keys(capsys: pytest.CaptureFixture[str]) -> 
     assert main(["orbit", "fig11-free", "--observer", "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     contract = {"period", "residual", "newton_residuals", "multipliers", "stable", "observer_multipliers", "observer_stable"}
-    beside = {"multiplier_errors", "observer_multiplier_errors", "stability_certain"}
+    beside = {"multiplier_errors", "observer_multiplier_errors", "stability_certain", "observer_stability_certain"}
     assert set(data) == contract | beside and contract.isdisjoint(beside)
     assert data["stable"] and not data["observer_stable"]
     moduli = [abs(complex(*mu)) for mu in data["multipliers"]]

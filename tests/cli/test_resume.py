@@ -76,7 +76,8 @@ def head(out: Path, kind: str, capsys: pytest.CaptureFixture[str], words: list[s
     remove = Kept.remove
 
     def read_and_remove(self: Kept[object]) -> None:
-        self._begin()
+        with self._lock:  # the timer's thread may be writing the last block
+            self._begin()
         kept.append(self._head_file.read_bytes())
         remove(self)
 

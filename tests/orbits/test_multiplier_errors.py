@@ -67,6 +67,14 @@ def test_as_near_to_the_circle_as_its_error_is_not_decided(found: Orbit) -> None
     undecided = replace(found, multipliers=leading)
     undecided.__dict__["multiplier_errors"] = np.full(len(leading), 1e-8)
     assert not undecided.stability_certain
+    second = replace(found, multipliers=np.array([0.99, 0.98, 0.1, 0.1]))
+    second.__dict__["multiplier_errors"] = np.array([1e-9, 0.05, 1e-9, 1e-9])
+    assert not second.stability_certain  # not the largest one, but it may be outside
+    second.__dict__["multiplier_errors"] = np.array([1e-9, 0.01, 1e-9, 1e-9])
+    assert second.stability_certain
+    outside = replace(found, multipliers=np.array([1.2, 1.0, 0.1, 0.1]))
+    outside.__dict__["multiplier_errors"] = np.full(4, 0.05)
+    assert outside.stability_certain  # one outside is enough
     assert not replace(found, monodromy=None).stability_certain
 
 

@@ -71,7 +71,7 @@ def test_an_unstable_orbit_is_told_by_the_way_it_is_left(leading: tuple[complex,
 def test_as_near_to_one_as_it_is_known_is_not_decided() -> None:
     orbit = with_leading(-1.00000001)
     orbit.__dict__["multiplier_errors"] = np.full(len(orbit.multipliers), 2e-8)
-    assert verdict(orbit).startswith("Not decided: |μ| is 1.000000 ± 2e-8")
+    assert verdict(orbit).startswith("Not decided: a |μ| is 1.000000 ± 2e-8, no farther from 1 than its error")
 
 
 def test_the_observer_is_told_where_it_was_asked_for() -> None:

@@ -83,7 +83,7 @@ class ObserverRun:
         try:
             self.orbit = periodic_orbit(self.scene, picture.regime.period, picture.state, observer=True,
                                         stop=self.pair.engine.stop)
-            self.drifts = self.scene.k == 0.0 and observer_drift(self.orbit) is not None
+            self.drifts = observer_drift(self.orbit) is not None
         except (NumbersFailed, BadInput) as problem:  # the latter where tension is cut
             self.failure = str(problem)
 

@@ -65,8 +65,10 @@ def verdict(orbit: Orbit) -> str:
     leading = complex(orbit.multipliers[0])
     size = abs(leading)
     if orbit.multiplier_errors is not None and not orbit.stability_certain:
-        return (f"Not decided: |μ| is {modulus_words(size)} ± {short_error(orbit.multiplier_errors[0])}, as near to 1 "
-                f"as it is known, for one period of the orbit ({period_words(orbit)}).{_observed(orbit)}")
+        nearest = int(np.argmin(np.abs(np.abs(orbit.multipliers) - 1.0) - orbit.multiplier_errors))
+        return (f"Not decided: a |μ| is {modulus_words(abs(orbit.multipliers[nearest]))} ± "
+                f"{short_error(orbit.multiplier_errors[nearest])}, no farther from 1 than its error, for one period of "
+                f"the orbit ({period_words(orbit)}).{_observed(orbit)}")
     if size < 1.0:
         return (f"Stable: a disturbance shrinks to {modulus_words(size)} of itself in one period of the orbit "
                 f"({period_words(orbit)}).{_observed(orbit)}")
@@ -81,7 +83,9 @@ def _observed(orbit: Orbit) -> str:
     if orbit.observer_multipliers is None:
         return ""
     size = float(np.abs(orbit.observer_multipliers).max())
-    return f" Its observer is {'stable' if orbit.observer_stable else 'unstable'}, |μ| {modulus_words(size)}."
+    certain = orbit.observer_multiplier_errors is None or orbit.observer_stability_certain
+    said = ("stable" if orbit.observer_stable else "unstable") if certain else "not decided to be stable or unstable"
+    return f" Its observer is {said}, |μ| {modulus_words(size)}."
 
 
 def _leaves(leading: complex) -> str:
