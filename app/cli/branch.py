@@ -9,11 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from granchain_core import BadInput, Cancelled, NumbersFailed
+from granchain_core.kept import folder_of
 from granchain_core.orbits import CONTINUOUS, Arm, Branch, Continuation, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
 from granchain_core.orbits.branch.kept_orbits import KeptOrbits
 from granchain_core.orbits.branch.special import SpecialPoint
 
+from . import ending
 from .common import check_points, chosen_scene, in_background, say, say_if, show_json, unbroken
 from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
@@ -88,6 +90,8 @@ def _followed(arguments: argparse.Namespace) -> Branch:
     from granchain_core.store import save_branch
 
     begun: list[_Begun] = []
+    if arguments.out:
+        ending.keeps(str(folder_of(arguments.out)))
 
     def work(stop: Any) -> Branch:
         begun.append(one := _begun(arguments, stop))

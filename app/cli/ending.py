@@ -32,12 +32,16 @@ _WORDS = {130: "Cancelled", 143: "Terminated"}
 
 
 class _Asked:
-    """What has been asked of this process: the exit status of the first signal, and whom to tell of it."""
+    """What has been asked of this process: the exit status of the first signal, and whom to tell of it.
+
+    `kept` is the folder of what the command has finished so far, if it keeps anything.
+    """
 
     def __init__(self) -> None:
         self.lock = threading.Lock()
         self.status: int | None = None
         self.tell: Callable[[], None] | None = None
+        self.kept = ""
 
 
 _ASKED = _Asked()
@@ -83,9 +87,15 @@ def _wait(reading: int) -> None:
         _end()
 
 
+def keeps(folder: str) -> None:
+    """Name the folder of what is finished, for the sentence with which a computation ends that does not end in time."""
+    _ASKED.kept = folder
+
+
 def _end() -> NoReturn:
+    kept = f": what was finished is kept in {_ASKED.kept}; go on with --resume" if os.path.isdir(_ASKED.kept) else ""
     with suppress(OSError):
-        os.write(2, f"{word()}.\n".encode())
+        os.write(2, f"{word()}{kept}.\n".encode())
     os._exit(status())
 
 

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from granchain_core import BadInput, Cancelled
 from granchain_core.kept import Kept, folder_of
 
+from . import ending
 from .common import say
 
 Result = TypeVar("Result")
@@ -29,6 +30,8 @@ def finished(arguments: argparse.Namespace, what: str, load: Callable[[str], Res
     Its blocks may still stand, if the command was killed between writing the result and removing them. Raises
     `BadInput` for --resume without --out, and for another result where there are no blocks to go on with.
     """
+    if arguments.out:
+        ending.keeps(str(folder_of(arguments.out)))
     if not arguments.resume:
         return None
     if not arguments.out:

@@ -128,9 +128,12 @@ def test_the_page_of_hard_cases_leaves_no_process_either(started: Callable[..., 
     assert command.left() == []
 
 
-def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[..., Command]) -> None:
-    program = ("import time\nfrom app.cli import ending\nending.begin()\nwith ending.asking():\n"
-               "    print('inside', flush=True)\n    time.sleep(1000)\n")
+def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[..., Command],
+                                                               tmp_path: Path) -> None:
+    """And the sentence says where the finished part is."""
+    (tmp_path / "out.h5.blocks").mkdir()
+    program = ("import time\nfrom app.cli import ending\nending.begin()\nending.keeps('out.h5.blocks')\n"
+               "with ending.asking():\n    print('inside', flush=True)\n    time.sleep(1000)\n")
     command = started(program=("-c", program))
     assert command.process.stdout is not None and command.process.stdout.readline() == "inside\n"
     command.send(signal.SIGTERM)
@@ -138,6 +141,7 @@ def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[...
     assert command.process.poll() is None  # it has some time to end
     command.send(signal.SIGINT)
     assert command.end() == 143  # that of the first
+    assert command.err == "Terminated: what was finished is kept in out.h5.blocks; go on with --resume.\n"
 
 
 @pytest.mark.parametrize("number", SENTENCE)
