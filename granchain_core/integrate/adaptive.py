@@ -9,7 +9,7 @@ import numpy as np
 from ..kernels.dop853.run import Stretch, run_certified
 from ..kernels.dop853.step import ALL_STAGES, Cycle, Dop853, Work
 from ..kernels.equations.motion import Trajectory, place
-from ..kernels.forces.peaks import MEMORY, ROWS, next_period
+from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE
 from ..lower import Lowered
@@ -73,7 +73,7 @@ class Adaptive:
             strobes[p + 1] = y[:row], self.work.k[0, :row]
             self.pause()
             if watch:
-                maxima[p] = out.log.peaks[:MEMORY:ROWS]
+                maxima[p] = largest_forces(out.log.peaks)
         return DONE, len(maxima)
 
     def _run(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
-from ..kernels.forces.peaks import MEMORY, ROWS, reset_peaks
+from ..kernels.forces.peaks import MEMORY, largest_forces, reset_peaks
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE, NOT_FINITE
 from ..lower import Lowered, lower
@@ -151,7 +151,7 @@ class Engine:
     @property
     def maxima(self) -> np.ndarray:
         """The largest input, output and elastic output force since they were last reset, in scaled units."""
-        return self.log.peaks[:MEMORY:ROWS].copy()
+        return largest_forces(self.log.peaks).copy()
 
     @property
     def jumps(self) -> np.ndarray:

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..kernels.forces.largest import CLOSED
-from ..kernels.forces.peaks import MEMORY, ROWS, next_period
+from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import Output, Samples, keep_strobe
 from ..kernels.status import CANCELLED, DONE
 from ..lower import Lowered
@@ -73,7 +73,7 @@ def periods_in_parts(stepper: InParts, y: np.ndarray, part: int, strobes: np.nda
         if status != DONE:
             return status, i
         keep_strobe(y, slope, strobes[i + 1])
-        maxima[i] = out.log.peaks[:MEMORY:ROWS]
+        maxima[i] = largest_forces(out.log.peaks)
     return DONE, len(maxima)
 
 

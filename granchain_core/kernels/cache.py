@@ -45,7 +45,7 @@ _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
 
 
 def sources_hash() -> str:
-    """Hash of all that makes compiled code what it is: the sources of the kernels, Numba, the kind of processor."""
+    """Hash of the kernels' sources but for `_KEEPERS`, of Numba's version, the processor and the batch's size."""
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()} {BATCH_SIZE}".encode())
     folder = Path(__file__).parent
     for path in sorted(folder.rglob("*.py")):

@@ -3,9 +3,8 @@
 * `nogil`, so that threads really run kernels side by side.
 * No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`: sums are vectorised and `x + 0.0` folds
   away, but `x * 0.0` does not, so the code for an absent effect must not multiply by zero.
-* Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by a hash of the sources
-  in this package but cache.py, of Numba's version, the processor and the size of a batch: any edit starts a new
-  folder, and with an unchanged tree the second process compiles nothing.
+* Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by `cache.sources_hash()`:
+  any edit of a kernel starts a new folder, and with an unchanged tree the second process compiles nothing.
 """
 
 from __future__ import annotations

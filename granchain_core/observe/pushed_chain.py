@@ -17,7 +17,7 @@ from ..kernels.effects.driver import Moved
 from ..kernels.effects.given_force import Sampled
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
-from ..kernels.forces.peaks import MEMORY, ROWS, reset_peaks
+from ..kernels.forces.peaks import MEMORY, largest_forces, reset_peaks
 from ..kernels.rk4.observed import SampledForce, run_observed
 from ..kernels.rk4.step import DriveTable, Rk4Split, Stages
 from ..kernels.samples import Output, Samples, first_not_finite
@@ -53,7 +53,7 @@ class ChainInPieces:
     @property
     def maxima(self) -> np.ndarray:
         """Largest input, output and elastic output force of the last run, in scaled units."""
-        return self._log.peaks[:MEMORY:ROWS].copy()
+        return largest_forces(self._log.peaks).copy()
 
     @property
     def jumps(self) -> np.ndarray:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..kernels.strobes import periodicity as section
+from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 from ..regime import Regime
 
@@ -43,7 +43,7 @@ class SlowDecay:
 def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
     """The last `count` relative changes of the state over `period` drive periods; strobes (P + 1, 2, N)."""
     out = np.zeros(count)
-    section.record_changes(np.ascontiguousarray(strobes), period, np.zeros(2), out)
+    periodicity.record_changes(np.ascontiguousarray(strobes), period, np.zeros(2), out)
     return out
 
 
@@ -54,24 +54,25 @@ def regime_and_approach(strobes: np.ndarray, longest: int = LONGEST_PERIOD, roun
     Strobes (P + 1, 2, N). Changes below `rounding` are the method's own and count as none; `slowest` is a
     rate of decay per drive period that is known to be there.
     """
-    seen = section.find(np.ascontiguousarray(strobes), longest, rounding, SETTLED_DISTANCE, slowest, np.zeros(2),
-                        np.zeros(max(section.LEAST_WINDOW, 3 * longest)))
+    workspace = np.zeros(max(periodicity.LEAST_WINDOW, 3 * longest))
+    seen = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding, SETTLED_DISTANCE, slowest,
+                                     np.zeros(2), workspace)
     return regime_from_numbers(seen, len(strobes) - 1, rounding)
 
 
 def regime_from_numbers(seen: Sequence[float] | np.ndarray, run: int,
                         rounding: float = ROUNDING) -> tuple[Regime, SlowDecay | None]:
-    """The six numbers of section.find after `run` periods as a regime and the orbit approached, if any.
+    """The six numbers of `periodicity.detect_period` after `run` periods as a regime and the orbit approached, if any.
 
     Changes that are lost in rounding may still be those of a slow approach: the distance is no better known than
     rounding·r/(1 − r) with the decay r.
     """
-    period, rate, distance, approached, its_rate, its_change = seen
+    period, rate, distance, approached, approach_rate, approach_change = seen
     if period > 0:
         if 0.0 < rate < 1.0:
             distance = max(distance, rounding * rate / (1.0 - rate))
         return Regime("periodic", int(period), None if rate < 0.0 else float(rate), float(distance), run), None
-    approach = SlowDecay(int(approached), float(its_rate), float(its_change)) if approached else None
+    approach = SlowDecay(int(approached), float(approach_rate), float(approach_change)) if approached else None
     return Regime.unsettled(run), approach
 
 
@@ -147,7 +148,7 @@ def _windows(strobes: np.ndarray) -> np.ndarray:
     if len(strobes) < SLOW_RECORD:
         return np.zeros((0, 3))
     seen = np.zeros((LONGEST_PERIOD, 3))
-    section.window_changes(np.ascontiguousarray(strobes), _SLOW_WINDOW, np.zeros(2), seen)
+    periodicity.window_changes(np.ascontiguousarray(strobes), _SLOW_WINDOW, np.zeros(2), seen)
     return seen
 
 
@@ -221,7 +222,7 @@ def returns_near(strobes: np.ndarray) -> bool:
 def return_distance(strobes: np.ndarray) -> float:
     """Median distance from a state of the record's second half to the nearest of its first half, relative."""
     nearest = np.zeros(len(strobes) - len(strobes) // 2)
-    section.nearest_neighbours(np.ascontiguousarray(strobes), np.zeros(2), nearest)
+    periodicity.nearest_neighbours(np.ascontiguousarray(strobes), np.zeros(2), nearest)
     return float(np.median(nearest))
 
 

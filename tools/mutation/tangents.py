@@ -51,7 +51,7 @@ FLOW = (
 )
 
 TANGENTS = (
-    Mutant("no-saltation", _FLOW, "@apply_saltation.of(Tangent)\ndef _(tangent, slots, c, closes):\n    pass\n", _WITHOUT_SALTATION,
+    Mutant("no-saltation", _FLOW, "apply_saltation.absent_for(Tangent)\n", _WITHOUT_SALTATION,
            "tangents go on across an event as if the dashpot's force did not jump there", k.COLUMNS, blind=k.LIOUVILLE),
     Mutant("no-saltation-in-second-route", _SALTATION, "shear = tangent.jumps * damping(slots.dissipation, 1.0)",
            "shear = 0.0 * tangent.jumps", "the (u, v) form without its jumps", k.ROUTES),

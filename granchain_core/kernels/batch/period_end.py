@@ -22,7 +22,7 @@ from ..strobes.periodicity import (
     ROUNDING,
     SETTLED_DISTANCE,
     change_between,
-    find,
+    detect_period,
     largest_of,
     window_of,
 )
@@ -111,7 +111,7 @@ def extrapolate_member(state, member, n, rate, change):
 def check_coarse(state, member):
     """Whether a member's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
     kept, periods = state.kept[member], state.periods[member]
-    period, rate, distance, n, its_rate, change = find(
+    period, rate, distance, n, approach_rate, change = detect_period(
         state.strobes[member, max(0, kept - SEEN) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
         state.slowest[member], state.scale, state.change)
     state.last_check[member, 0], state.last_check[member, 1], state.last_check[member, 2] = period, rate, distance
@@ -128,16 +128,16 @@ def check_coarse(state, member):
             state.pause[member] *= 2
             state.extrapolate_from[member] = periods + state.pause[member]
             return False
-    left = change * its_rate / (1.0 - its_rate) if n > 0 else 0.0
+    left = change * approach_rate / (1.0 - approach_rate) if n > 0 else 0.0
     if periods < state.extrapolate_from[member] or left <= SETTLED_DISTANCE:
         return False
-    if log(SETTLED_DISTANCE / left) > _TOO_LONG * log(its_rate):
+    if log(SETTLED_DISTANCE / left) > _TOO_LONG * log(approach_rate):
         return False  # it settles sooner without extrapolation
     copy(state.strobes[member, kept - 1, 0], state.before[member, 0])
     copy(state.strobes[member, kept - 1, 1], state.before[member, 1])
-    if extrapolate_member(state, member, n, its_rate, change):
+    if extrapolate_member(state, member, n, approach_rate, change):
         state.change_before_extrapolation[member] = change
-        state.slowest[member] = min(_SLOWEST, max(state.slowest[member], its_rate ** (1.0 / n)))
+        state.slowest[member] = min(_SLOWEST, max(state.slowest[member], approach_rate ** (1.0 / n)))
         state.earliest[member] = periods + window_of(n) + n + 1
         state.extrapolate_from[member] = periods + ORBITS * n
     else:

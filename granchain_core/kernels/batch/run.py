@@ -51,7 +51,7 @@ class BatchState(NamedTuple):
     overlaps (N+1, L)            overlaps one step ago
     ends (4, L)              overlap and rate of the first and of the last contact one step ago
     phase (2, L)             sin and cos of the drive phase
-    peaks (17, L)            largest forces
+    peaks (PEAKS, L)         largest forces
     steps, left (L,)         steps in a period, and those left of it
     periods, return_at (L,)  periods run, and the period at which the kernel returns at the latest
     earliest (L,)            next period at which the strobes are checked

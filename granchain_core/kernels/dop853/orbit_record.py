@@ -27,7 +27,7 @@ class OrbitRecord(NamedTuple):
 
     Turning points are rows of `turns` (T, 4): contact, +1 for a largest and −1 for a smallest overlap, scaled time
     since the orbit's phase 0, overlap.
-    `peaks` (17,) hold the largest input, output and elastic output force (forces/peaks.py).
+    `peaks` (PEAKS,) hold the largest input, output and elastic output force (forces/peaks.py).
     """
 
     turns: np.ndarray

@@ -55,7 +55,7 @@ def _(driver, theta):
 
 @driver_velocity.of(Sampled)
 def _(driver, theta):
-    # a force, which prescribe_force takes from here: there is no body 0 that could have a velocity
+    # carries the sampled force in the velocity's place, as there is no body 0; prescribe_force moves it to contact 0
     p = driver.piece
     return p[0] + theta * (p[1] + theta * (p[2] + theta * p[3]))
 
@@ -75,19 +75,7 @@ def prescribe_primitive(driver, slots, y, G):
     """Copy the input force's G to the contact of the observer. Absent: nothing."""
 
 
-@prescribe_primitive.of(Harmonic)
-def _(driver, slots, y, G):
-    pass
-
-
-@prescribe_primitive.of(Moved)
-def _(driver, slots, y, G):
-    pass
-
-
-@prescribe_primitive.of(Sampled)
-def _(driver, slots, y, G):
-    pass
+prescribe_primitive.absent_for(Harmonic, Moved, Sampled)
 
 
 @prescribe_primitive.of(ObserverCoupling)
@@ -100,14 +88,7 @@ def prescribe_force(driver, dy, e):
     """Put the given force into the contact it acts in. Absent: nothing."""
 
 
-@prescribe_force.of(Harmonic)
-def _(driver, dy, e):
-    pass
-
-
-@prescribe_force.of(Moved)
-def _(driver, dy, e):
-    pass
+prescribe_force.absent_for(Harmonic, Moved)
 
 
 @prescribe_force.of(Sampled)

@@ -3,8 +3,7 @@
 Equation   m_i ẇ_i = F^el_{i-1} − F^el_i + P_i(u_i, v_i),   P = −k u for a foundation
 Terms      P itself; the energy stored in it; the power −P v that it takes away for good; its linearisation
            δP = ∂P/∂u δu + ∂P/∂v δv for tangents; and ∂P/∂v for the trace, which is the rate at which volumes shrink
-Users      motion.py and naive.py (force), motion.py (energy), flow/tangent.py and flow/saltation.py (linearisation),
-           lower.py (linearisation, for the largest stable step). The SIMD kernels write out the terms that they have
+The SIMD kernels repeat the terms that they support.
 """
 
 from __future__ import annotations

@@ -27,9 +27,7 @@ def apply_saltation(tangent, slots, c, closes):
     """Let tangents jump where contact c opens or closes. Absent: there are none, or they are continuous in w."""
 
 
-@apply_saltation.of(Tangent)
-def _(tangent, slots, c, closes):
-    pass
+apply_saltation.absent_for(Tangent)
 
 
 @internal

@@ -28,7 +28,7 @@ from .contact_events import (
 
 
 class Rk4(NamedTuple):
-    """Method slot: RK4 in w without looking for events; order 2 at the kinks of opening and closing contacts."""
+    """Method slot: RK4 in w that ignores contact events; its order is in `integrate.METHODS`."""
 
     steps_per_period: int
 

@@ -122,8 +122,10 @@ def earlier_rate(strobes, scale, n, rounding, change):
 
 
 @kernel
-def find(strobes, longest, rounding, settled, slowest, scale, change):
-    """(period, rate, distance, approached, its rate, its change) of a record; 0 for a period that is not there.
+def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
+    """The shortest period of a record of strobes, and the decay towards it; 0 for a period that is not there.
+
+    Returns (period, rate, distance, approached, approach_rate, approach_change).
 
     `period` is the smallest whose distance bound change·rate/(1 − rate) is at most `settled`; changes below
     `rounding` count as none, the rate is −1 where none was seen. `approached` is the first period over which changes
@@ -132,7 +134,7 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
     """
     run = strobes.shape[0] - 1
     largest_of(strobes, scale)
-    approaching, approached, its_rate, its_change = 0, 0, 0.0, 0.0
+    approaching, approached, approach_rate, approach_change = 0, 0, 0.0, 0.0
     for n in range(1, longest + 1):
         count = window_of(n)
         if run < count + n:
@@ -151,7 +153,7 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
         if rate >= 1.0:
             continue
         if approached == 0:
-            approached, its_rate, its_change = n, rate, recent
+            approached, approach_rate, approach_change = n, rate, recent
         if now > _NOT_SETTLED:
             continue
         if rate < _APPROACHING:
@@ -161,7 +163,7 @@ def find(strobes, longest, rounding, settled, slowest, scale, change):
         if distance <= settled and (even or recent <= _DEEP * settled):
             q = shortest(strobes, scale, n, max(10.0 * distance, 3.0 * settled))
             return q, rate ** (q / n), distance, 0, 0.0, 0.0
-    return 0, 0.0, 0.0, approached, its_rate, its_change
+    return 0, 0.0, 0.0, approached, approach_rate, approach_change
 
 
 @kernel

@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import NumbersFailed
 from ...integrate import Engine, State, certified
 from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
-from ...kernels.forces.peaks import MEMORY, PEAKS, ROWS
+from ...kernels.forces.peaks import PEAKS, largest_forces
 from ...kernels.status import FULL
 from ...lower import lower
 from ...scene import Scene
@@ -83,7 +83,7 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
     x, value = equations.state(solved.z), equations.value(solved.z)
     multipliers = sorted_multipliers(solved.flow.derivative)
     engine, record = record_along(equations, x, value)
-    maxima = record.peaks[:MEMORY:ROWS] * engine.lowered.scales.force
+    maxima = largest_forces(record.peaks) * engine.lowered.scales.force
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
