@@ -14,7 +14,8 @@ from ..scene import Amplitude, Bead, Scene
 from ..text import number_in
 
 #: What can be fitted, with its unit. K is the contact stiffness; it is changed by Young's modulus of all beads.
-UNITS = {"A0": "m", "k": "N/m", "kappa": "1", "D": "N s/m", "K": "N/m^{3/2}", "F0": "N", "wall": "1"}
+UNITS = {name: "N/m^{3/2}" if name == "K" else QUANTITIES[name].unit
+         for name in ("A0", "k", "kappa", "D", "K", "F0", "wall")}
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from ..lower import scales_of
 from ..regime import modulus_words
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
+from ..steady.settling.nearby_orbit import MOST_BEADS
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
@@ -32,8 +33,6 @@ from .multiplier_errors import derivative_change, errors_of
 CONVERGED = 1e-11
 #: Newton's iterations at most.
 MOST_ITERATIONS = 12
-#: Beads up to which the whole derivative is computed; of longer chains only the leading multipliers are.
-MOST_BEADS_DENSE = 100
 #: Multipliers smaller than this part of the largest are rounding.
 _ROUNDING = 1e-13
 #: Most halvings of a Newton step before the iteration fails.
@@ -260,7 +259,7 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
 
 
 def _dense(x: np.ndarray) -> bool:
-    return len(x) <= 2 * MOST_BEADS_DENSE
+    return len(x) <= 2 * MOST_BEADS
 
 
 def _flow(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Flow:

@@ -31,15 +31,15 @@ from .kept_run import KeptRun, Reached
 #: Most drive periods of one run.
 MOST_PERIODS = 10_000_000
 #: Most recorded values of one run: rows times beads.
-MOST_ROWS = 50_000_000
+MOST_VALUES = 50_000_000
 #: Stated error above which a motion may be chaotic: finer computations do not help then.
-_LOST = 0.3
+_CHAOS_SUSPECTED_ABOVE = 0.3
 #: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.
-_CLOSES = 10.0
+_RESIDUAL_PER_ACCURACY = 10.0
 #: Time of the next finer computation over that of the last.
-_TWICE = 2.0
+_REFINED_COST_RATIO = 2.0
 #: Fewest periods after which multipliers or a Lyapunov exponent are computed; a shorter run is judged by its strobes.
-_ENOUGH = 40
+_FEWEST_PERIODS_CLASSIFIED = 40
 
 
 @dataclass(eq=False)
@@ -143,21 +143,22 @@ def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Sett
     It ends where the error is as small as asked for, where finer steps would not help, or before a computation that
     would exceed `budget` seconds.
     """
-    spent, shown = Stopwatch(), Computations(scene.cuts_tension)
-    shown.begin(setting)
+    spent, errors = Stopwatch(), Computations(scene.cuts_tension)
+    errors.begin(setting)
     before = attempt(setting)
     while True:
         setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
         now = attempt(setting)
-        shown.add(setting, now.engine.counts.steps, _differences(now, before), _least(now, setting))
-        error = float(shown.stated[0])
+        errors.add(setting, now.engine.counts.steps, _differences(now, before), _least(now, setting))
+        error = float(errors.stated[0])
         if error <= scene.accuracy:
-            return now, "done", shown.final(done=True)
-        lost = error > _LOST and (residual(now.samples.energy) or 0.0) <= _CLOSES * scene.accuracy
-        if setting.finest or shown.rounded or lost:
-            return now, "accuracy-not-reached", shown.final(done=False)
-        if spent.seconds + _TWICE * lap.seconds > budget:
-            return now, "over-budget", shown.final(done=False)
+            return now, "done", errors.final(done=True)
+        left = residual(now.samples.energy) or 0.0
+        chaotic = error > _CHAOS_SUSPECTED_ABOVE and left <= _RESIDUAL_PER_ACCURACY * scene.accuracy
+        if setting.finest or errors.rounded or chaotic:
+            return now, "accuracy-not-reached", errors.final(done=False)
+        if spent.seconds + _REFINED_COST_RATIO * lap.seconds > budget:
+            return now, "over-budget", errors.final(done=False)
         before = now
 
 
@@ -172,9 +173,9 @@ def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
                                    ("samples", samples, 1, 1_000_000)):
         check_range(f"{name} =", value, low, high)
     rows = record * samples * scene.N
-    if rows > MOST_ROWS:
+    if rows > MOST_VALUES:
         raise BadInput(f"{record} periods of {samples} samples for {scene.N} beads are {rows:.1e} values; at most "
-                       f"{MOST_ROWS:.0e} are recorded: record {max(1, MOST_ROWS // (samples * scene.N))} periods.")
+                       f"{MOST_VALUES:.0e} are recorded: record {max(1, MOST_VALUES // (samples * scene.N))} periods.")
 
 
 def _attempt(reached: Reached, sizes: tuple[int, int], progress: Callable[[float], None] | None, total: Counts,
@@ -238,9 +239,9 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime
     """The regime shown by these periods; a slow motion is classified by multipliers or its Lyapunov exponent."""
     if not scene.is_driven:
         return Regime.undriven(periods)
-    tolerance = 10.0 * scene.accuracy
-    regime = replace(find_period(attempt.strobes, rounding=min(1e-6, tolerance)), periods_run=periods)
-    if periods < _ENOUGH or attempt.engine.grid_index != 0:
+    noise = min(1e-6, 10.0 * scene.accuracy)  # strobes carry the error of the motion; ten times it is no change
+    regime = replace(find_period(attempt.strobes, rounding=noise), periods_run=periods)
+    if periods < _FEWEST_PERIODS_CLASSIFIED or attempt.engine.grid_index != 0:
         return regime
     engine = Engine(scene, live(), 1, stop=stop)
     engine.start(attempt.engine.state)

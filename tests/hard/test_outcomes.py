@@ -91,7 +91,7 @@ def test_the_steps_of_a_run_are_estimated_within_a_factor_of_two(knobs: dict[str
 
 def test_a_finer_computation_that_does_not_fit_is_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
     """This run needs a third computation; where that is taken for a very long one the second is what is returned."""
-    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "_TWICE", 1e9)
+    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "_REFINED_COST_RATIO", 1e9)
     result = run(scene("sec2"), periods=20, record=1, samples=8)
     assert result.status == "over-budget"
     assert result.error_estimate > result.scene.accuracy

@@ -40,8 +40,8 @@ class ForceLog(NamedTuple):
     """The forces so far: the largest, the last ones followed, and the jumps.
 
     `peaks` (PEAKS,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value
-    and slope of each force at the last state followed. Rows of `closings` (C, 4) are the number of the last sample before a
-    contact closed, the drive phase θ, the contact and the force after the jump; `counts` (3,) are the numbers
+    and slope of each force at the last state followed. Rows of `closings` (C, 4) are the number of the last sample
+    before a contact closed, the drive phase θ, the contact and the force after the jump; `counts` (3,) are the numbers
     CLOSED, UNRESOLVED and SAMPLE.
     """
 

@@ -107,7 +107,7 @@ class Branch(Labelled):
                  if one.kind != "grazing"]
         grazings = sum(one.kind == "grazing" for one in self.special)
         undamped = [] if self.axis.scene.has_dissipation else [
-            "without damping the multipliers of stable orbits are on the unit circle, and rounding decides which are stable"]
+            "without damping stable orbits have their multipliers on the unit circle, where rounding decides"]
         return [f"{len(self.points)} orbits of period {self.period}, {sum(p.stable for p in self.points)} stable, from "
                 f"{self.axis.text(self.axis.start)} towards {self.axis.text(self.axis.end)}", *ends, *kinds,
                 *([f"{grazings} grazings"] if grazings else []), *undamped]
