@@ -16,8 +16,8 @@ import { dataTab, saveSample } from "./data_tab.js";
 import { lookAtTab, regimesTab } from "./scene_tabs.js";
 import { explainTerms } from "./terms.js";
 
-// The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name. A tab
-// that `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
+// The content of each tab. `show`, where there is one, draws it again when its page publishes something. A tab that
+// `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
 const TABS = {
   stories: storiesTab,
   "look at": lookAtTab,
@@ -37,7 +37,7 @@ const TABS = {
 function plainTab(_, { name, placeholder }) {
   const line = paragraph();
   const show = () => {
-    line.textContent = window.granchain[name]?.sentence || placeholder;
+    line.textContent = window.granchain.pages.get(name)?.sentence || placeholder;
   };
   show();
   return { content: [element("div", { className: "row top" }, line, openButton(name))], show };
@@ -176,7 +176,7 @@ export function render({ model }) {
   model.on("msg:custom", compareMessage);
   model.on("msg:custom", numbersMessage);
   for (const { name } of model.state.tabs)
-    window.granchain.on(name, () => {
+    window.granchain.on(`page:${name}`, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
   window.granchain.on("overlay", (name) => {

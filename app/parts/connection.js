@@ -135,7 +135,7 @@
     const [tab, over] = ["tab", "page"].map((name) => query.get(name) ?? "");
     page.restoreTheme(query.get("look"));
     unanswered.clear();
-    if (!page.lost) page.go(location.search.slice(1));
+    if (!page.lost) page.go?.(location.search.slice(1));
     Object.assign(place, { tab, page: over });
     page.emit("place", place);
     for (const name of ["tab", "page", "look"]) query.delete(name);
@@ -279,6 +279,6 @@
       if (!page.lost) say("");
     });
   }
-  Object.assign(page, { lost: false, kept: {}, again, requested, linkReceived, answerReceived, connect, address });
-  Object.assign(page, { place, placed, linkRefined, went, undo, redo, steps, isSettled, go: () => {} });
+  Object.assign(page, { again, requested, linkReceived, linkRefined, answerReceived, connect, address, isSettled });
+  Object.assign(page, { place, placed, went, undo, redo, steps });
 })();

@@ -39,7 +39,7 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
     settled(page)
     # the server computes for whoever looks (tests/pages/test_stability.py), and nobody has said that they do
     assert looks(page) == []
-    assert page.evaluate("granchain.stability.state.sentence") is None
+    assert page.evaluate("granchain.pages.get('stability').state.sentence") is None
     page.get_by_role("tab", name="stability").click()
     assert looks(page) == ["true"]
     expect(tab).to_contain_text("Stable: a disturbance shrinks to 0.36", timeout=COMPILED)
@@ -51,7 +51,7 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
     type_into(page, "f", "615")
     settled(page)
     assert looks(page) == ["true", "false"]
-    assert "3 drive periods" in page.evaluate("granchain.stability.state.sentence")
+    assert "3 drive periods" in page.evaluate("granchain.pages.get('stability').state.sentence")
     page.get_by_role("tab", name="stability").click()
     expect(tab).to_contain_text("2 drive periods")
 

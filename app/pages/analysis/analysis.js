@@ -99,8 +99,8 @@ class AnalysisPage {
     this.caption.replaceChildren(...(title ? [element("b", { textContent: `${title}.` })] : []));
     this.words.replaceChildren(...words.map((textContent) => element("li", { textContent })));
     this.command.textContent = command ?? "";
-    window.granchain.analysis = { figure: this.figure, sentence: title ? `${title}: ${words[0] ?? ""}` : "" };
-    window.granchain.emit("analysis");
+    const sentence = title ? `${title}: ${words[0] ?? ""}` : "";
+    window.granchain.publish("analysis", { figure: this.figure, sentence });
   }
 
   // A figure is drawn where it is seen: hidden, it would have no size.

@@ -110,8 +110,7 @@ class HardCases {
     this.meter.value = done ?? 0;
     this.line.textContent = summary || this.model.state.about;
     for (const [name, card] of this.cards) card.show(results[name]);
-    window.granchain.hard = { sentence: summary };
-    window.granchain.emit("hard");
+    window.granchain.publish("hard", { sentence: summary });
   }
 
   // Once a second: how long the case under way has been running.

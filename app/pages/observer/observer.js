@@ -63,7 +63,7 @@ class ObserverPage {
       (step) => this.begin(step),
     );
     const picture = element("div", { className: "fill" });
-    this.figure = new Embedded(picture, (one) => fillDistance(one, window.granchain.observer));
+    this.figure = new Embedded(picture, (one) => fillDistance(one, this.known));
     this.root = element(
       "div",
       { className: "part sheet" },
@@ -94,9 +94,9 @@ class ObserverPage {
     const { figures, state } = this.model;
     const page = window.granchain;
     const prediction = this.replay.now?.message.prediction ?? [];
-    page.observer = { history: this.history, prediction, sentence: state.sentence, small: figures.small };
-    page.emit("observer");
-    if (page.overlay === "observer") showDistance(this.figure, figures.page, page.observer);
+    this.known = { history: this.history, prediction, sentence: state.sentence, small: figures.small };
+    page.publish("observer", this.known);
+    if (page.overlay === "observer") showDistance(this.figure, figures.page, this.known);
   }
 
   // A period begins to play; one with a lower number begins another history.

@@ -60,8 +60,8 @@ class PaperPage {
     );
     if (rows !== this.stated) this.rows.replaceChildren(...(rows.length ? [statedTable(rows)] : [paragraph()]));
     this.stated = rows;
-    window.granchain.paper = { figure: this.figure, sentence: chosen ? `Figure ${chosen}: ${title}.` : "" };
-    window.granchain.emit("paper");
+    const sentence = chosen ? `Figure ${chosen}: ${title}.` : "";
+    window.granchain.publish("paper", { figure: this.figure, sentence });
   }
 
   // A figure is drawn where it is seen: hidden, it would have no size.

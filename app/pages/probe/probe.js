@@ -21,7 +21,6 @@ class ProbePage {
     this.figures = new Map();
     const places = Object.entries(TITLES).map(([name, words]) => this.place(name, words));
     this.root = element("div", { className: "part sheet" }, this.title, this.line, ...places);
-    window.granchain.probe = { figures: [] };
   }
 
   steps() {
@@ -56,13 +55,12 @@ class ProbePage {
     this.before.disabled = bead <= 1;
     this.after.disabled = bead >= beads;
     this.line.textContent = sentence;
-    Object.assign(window.granchain.probe, { sentence, small: this.model.figures.small, drawn: this.drawn });
     if (window.granchain.overlay === "probe" && this.drawn)
       for (const [name, figure] of this.figures) {
         if (figure.item !== this.model.figures[name]) figure.load(this.model.figures[name], TITLES[name]);
         else fillModels(figure, this.drawn[name]);
       }
-    window.granchain.emit("probe");
+    window.granchain.publish("probe", { sentence, small: this.model.figures.small, drawn: this.drawn });
   }
 }
 

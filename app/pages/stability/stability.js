@@ -46,8 +46,7 @@ class StabilityPage {
   }
 
   show() {
-    const { state, figures } = this.model;
-    window.granchain.stability = { state, small: figures.small };
+    const { state } = this.model;
     this.root.classList.toggle("stale", Boolean(state.stale));
     this.status.textContent = state.progress ?? "";
     this.said.textContent = state.sentence ?? "";
@@ -61,13 +60,14 @@ class StabilityPage {
   }
 
   redraw() {
+    const { state, figures } = this.model;
     const page = window.granchain;
     if (page.overlay === "stability") {
       this.plane.draw();
-      this.section.draw(this.model.state, this.model.figures.section);
+      this.section.draw(state, figures.section);
       this.mode.measure();
     }
-    page.emit("stability");
+    page.publish("stability", { state, small: figures.small });
   }
 
   receive(message) {
