@@ -237,7 +237,7 @@ export function render({ model }) {
   model.on("msg:custom", (message) => chain.receive(message));
   listen(chain);
   document.addEventListener("visibilitychange", () => {
-    if (!document.hidden) model.send_msg({ do: "page-visible" });
+    if (!document.hidden) model.send_msg({ do: "window-shown" });
   });
   chain.wake();
   setTimeout(() => chain.begin(), 0);

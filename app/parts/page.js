@@ -113,6 +113,8 @@ window.granchain = (() => {
     nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % THEMES.length], true),
     drawer,
     showCurve,
+    // visibility.js: the names of what somebody looks at
+    visible: new Set(),
     // page.html: the glossary's terms with their definitions
     terms: {},
     // connection.js: the connection, the share link and the history
@@ -141,7 +143,5 @@ window.granchain = (() => {
     // knobs.js and status_line.js: the knobs of the scene, and the regime in words
     knobNames: [],
     regime: "",
-    // observer_tab.js: its element
-    observerTab: null,
   });
 })();

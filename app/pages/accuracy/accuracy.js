@@ -67,11 +67,6 @@ class AccuracyPage {
     else if (message.type === "no-naive") this.naive.forget();
   }
 
-  open() {
-    this.model.send_msg({ do: "accuracy-open" });
-    requestAnimationFrame(() => this.redraw());
-  }
-
   show() {
     const { state } = this.model;
     const { running } = state;
@@ -105,7 +100,7 @@ export function render({ model }) {
   model.on("figures", () => page.redraw());
   model.on("msg:custom", (message) => page.receive(message));
   window.granchain.on("overlay", (name) => {
-    if (name === "accuracy") page.open();
+    if (name === "accuracy") requestAnimationFrame(() => page.redraw());
   });
   page.show();
   return page.root;

@@ -22,7 +22,7 @@ function sentence({ running, progress, done, asked }) {
   return asked?.stale ? STALE : (asked?.sentence ?? "");
 }
 
-export function accuracyTab(model) {
+export function accuracyTab() {
   const known = () => window.granchain.pages.get("accuracy") ?? { drawn: {} };
   const host = element("div", { className: "small" });
   const figure = new Embedded(host, (one) => fillAccuracy(one, known()));
@@ -33,7 +33,6 @@ export function accuracyTab(model) {
     host.classList.toggle("stale", Boolean(asked?.stale));
     if (host.isConnected) showAccuracy(figure, small, known());
   };
-  model.send_msg({ do: "accuracy-open" });
   requestAnimationFrame(show);
   return { content: [element("div", { className: "row top" }, line, openButton("accuracy")), host], show };
 }

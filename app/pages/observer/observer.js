@@ -108,7 +108,7 @@ class ObserverPage {
     this.showDistance();
   }
 
-  // Asks for an animation frame. Each asks for the next while the page or its tab is on the screen.
+  // Asks for an animation frame. Each asks for the next while somebody looks at the page or its tab.
   wake() {
     this.asked ||= requestAnimationFrame((time) => {
       this.asked = 0;
@@ -117,8 +117,8 @@ class ObserverPage {
   }
 
   tick(time) {
-    const { overlay, observerTab } = window.granchain;
-    if (overlay !== "observer" && !observerTab?.isConnected) return;
+    const { overlay, visible } = window.granchain;
+    if (!visible.has("observer")) return;
     this.replay.advance(this.replay.seconds(time));
     if (overlay === "observer" && this.replay.now) this.chains.draw(this.replay.now, this.replay.row);
     this.wake();
@@ -145,10 +145,8 @@ export function render({ model }) {
   });
   window.granchain.on("overlay", (name) => {
     if (name === "observer") requestAnimationFrame(() => page.open());
-    page.wake();
   });
-  window.granchain.on("observer-tab", () => page.wake());
+  window.granchain.on("visible", () => page.wake());
   page.show();
-  page.wake();
   return page.root;
 }

@@ -21,8 +21,7 @@ export function showDistance(figure, item, known) {
 }
 
 export function observerTab(_, { placeholder }) {
-  const page = window.granchain;
-  const known = () => page.pages.get("observer") ?? { history: [], prediction: [] };
+  const known = () => window.granchain.pages.get("observer") ?? { history: [], prediction: [] };
   const host = element("div", { className: "small" });
   const figure = new Embedded(host, (one) => fillDistance(one, known()));
   const said = paragraph();
@@ -30,8 +29,6 @@ export function observerTab(_, { placeholder }) {
     said.textContent = known().sentence || placeholder;
     if (host.isConnected) showDistance(figure, known().small, known());
   };
-  page.observerTab = host; // while it is on the screen the observer runs
-  page.emit("observer-tab");
   requestAnimationFrame(show);
   return { content: [element("div", { className: "row top" }, said, openButton("observer")), host], show };
 }

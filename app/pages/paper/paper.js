@@ -30,7 +30,7 @@ class PaperPage {
       }),
     );
     this.numbers = figures.map(({ number }) => number);
-    this.stop = button("stop", () => send({ do: "paper-leave" }));
+    this.stop = button("stop", () => send({ do: "paper-stop" }));
     this.meter = meter("progress of the figure");
     this.status = element("span", { className: "status" });
     const choice = element("div", { className: "choice" }, "figure ", ...this.buttons);
@@ -42,7 +42,7 @@ class PaperPage {
     const found = element("div", { className: "found" }, this.picture, this.caption, this.rows);
     this.root = element("div", { className: "part sheet" }, head, choice, this.warning, found);
     this.figure = new Embedded(this.picture);
-    this.leave = () => model.state.running && send({ do: "paper-leave" });
+    this.leave = () => model.state.running && send({ do: "paper-stop" });
   }
 
   show() {

@@ -67,14 +67,7 @@ class ProbePage {
 export function render({ model }) {
   const page = window.granchain;
   const probe = new ProbePage(model);
-  const watch = () => {
-    const value = page.overlay === "probe" || (!page.overlay && page.place.tab === "probe");
-    if (value !== probe.watched) model.send_msg({ do: "probe-watched", value });
-    probe.watched = value;
-    probe.show();
-  };
-  page.on("tab", watch);
-  page.on("overlay", watch);
+  page.on("overlay", () => probe.show());
   page.on("bead", (bead) => model.send_msg({ do: "probe-bead", bead }));
   model.on("state", () => probe.show());
   model.on("figures", () => probe.show());
@@ -82,6 +75,6 @@ export function render({ model }) {
     probe.drawn = message.drawn;
     probe.show();
   });
-  watch();
+  probe.show();
   return probe.root;
 }
