@@ -239,7 +239,7 @@ class Controller:
         session = self.session
         self.views.header.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
-            speeds=sorted(SPEEDS), speed=session.speed, playing=session.playing, account=session.account,
+            speeds=sorted(SPEEDS), speed=session.speed, playing=session.playing,
             query=session.link, view_fields=list(EXTRAS))
 
     def _tell_pages(self) -> None:

@@ -145,7 +145,7 @@ class Header {
   makeTimeControls() {
     this.play = iconButton("", "Play or pause (space)", () => this.setPlaying(!this.playing));
     this.speed = chooser("drive periods shown per second", "speed", (value) =>
-      this.send("speed", { value: Number(value) }),
+      this.request("speed", value, { value: Number(value) }),
     );
     this.modes = MODES.map(([mode, title]) =>
       button(mode, () => this.request("mode", mode, { value: mode }), { title, ariaLabel: `${mode}: ${title}` }),
@@ -244,20 +244,20 @@ class Header {
     this.fit();
   }
 
-  showPlaying({ playing = this.playing, speed, account = false }) {
+  showPlaying({ playing = this.playing }) {
     if (playing !== this.playing) {
       this.playing = playing;
       window.granchain.emit("play", playing);
     }
     this.drawPlay();
-    window.granchain.kept = { ...window.granchain.kept, speed, playing, account };
+    window.granchain.kept = { ...window.granchain.kept, playing };
   }
 
   // After a lost connection: what the share link does not carry.
   restore(again) {
     window.granchain.again = null;
-    const { speed = 1, playing = true, account = false, uploaded = false } = again;
-    this.send("reconnected", { speed, playing, account, uploaded });
+    const { playing = true, uploaded = false } = again;
+    this.send("reconnected", { playing, uploaded });
   }
 
   receive(message) {

@@ -172,11 +172,12 @@ def test_what_is_no_page_or_no_answer_is_refused(dashboard: Dashboard, name: obj
     assert dashboard.session.sentence == f"There is no page {str(name)!r} to look at."
 
 
-def test_a_reconnected_page_has_its_speed_its_pause_and_its_energy_account_back(dashboard: Dashboard) -> None:
-    dashboard.received({"do": "reconnected", "speed": 5, "playing": False, "account": True, "uploaded": True})
+def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashboard: Dashboard) -> None:
+    dashboard.received({"do": "go", "query": "v=1&scene=sec2&speed=5&account=on"})
+    dashboard.received({"do": "reconnected", "playing": False, "uploaded": True})
     session = dashboard.session
     assert (session.speed, session.playing, session.account) == (5.0, False, True)
-    assert dashboard.views.header.state["account"]
+    assert not dashboard.views.header.state["playing"]
     assert session.sentence.endswith("has started again from rest and your uploaded data are gone.")
 
 
