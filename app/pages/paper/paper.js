@@ -30,7 +30,8 @@ class PaperPage {
       }),
     );
     this.numbers = figures.map(({ number }) => number);
-    this.stop = button("stop", () => send({ do: "paper-stop" }));
+    const stop = () => send({ do: "paper-stop" });
+    this.stop = button("stop", stop);
     this.meter = meter("progress of the figure");
     this.status = element("span", { className: "status" });
     const choice = element("div", { className: "choice" }, "figure ", ...this.buttons);
@@ -41,7 +42,7 @@ class PaperPage {
     this.rows = element("div", { className: "rows" });
     const found = element("div", { className: "found" }, this.result.root, this.caption, this.rows);
     this.root = element("div", { className: "part sheet" }, head, choice, this.warning, found);
-    this.leave = () => model.state.running && send({ do: "paper-stop" });
+    this.leave = () => model.state.running && stop();
   }
 
   show() {
