@@ -53,7 +53,7 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
     expect(sheet.get_by_label("starts along each")).to_have_value("40")  # what was typed stays
     expect(sheet.locator(".picture")).to_be_hidden()
 
-    until(page, lambda: "starts%253D40" in page.url)  # the address has the question and what was chosen
+    until(page, lambda: "starts%3D40" in page.url)  # the address has the question and what was chosen
     page.reload()
     expect(sheet.get_by_role("button", name="Which start leads where?")).to_have_attribute("aria-pressed", "true")
     expect(sheet.get_by_label("starts along each")).to_have_value("40")
