@@ -17,7 +17,7 @@ from granchain_core.experiment.measured import MOST_BYTES
 
 from ..pages.curve.bar import CurveBar
 from ..pages.curve.view import Curve
-from ..parts.chain import Chain
+from ..parts.chain import SCALES, Chain
 from ..parts.component import text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
@@ -51,7 +51,7 @@ class Views:
         self.knobs = Knobs(received, sizing_mode="stretch_width")
         self.equation = Equation(received)
         self.chain = Chain(received, sizing_mode="stretch_both",
-                           state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES})
+                           state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES, "scales": SCALES})
         self.trains = Trains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = Curve(choose)

@@ -13,8 +13,14 @@
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
+  // What an address says beside tab, page and look, which only the browser knows.
+  const linkOf = (search) => {
+    const query = new URLSearchParams(search);
+    for (const name of ["tab", "page", "look"]) query.delete(name);
+    return query.toString();
+  };
   // The last share link from the server, and the requests since then that it has not answered.
-  let link = "v=1";
+  let link = linkOf(location.search);
   let known = false; // whether the server has sent one
   const unanswered = new Map();
   let viewFields = []; // the fields of a link that belong to no scene
@@ -138,8 +144,7 @@
     if (!page.lost) page.go?.(location.search.slice(1));
     Object.assign(place, { tab, page: over });
     page.emit("place", place);
-    for (const name of ["tab", "page", "look"]) query.delete(name);
-    link = query.toString();
+    link = linkOf(location.search);
   });
   // The server shows what the address says.
   const went = (query) => {
