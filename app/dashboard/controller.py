@@ -9,7 +9,7 @@ from typing import Any
 from bokeh.document import Document
 from panel.io import unlocked
 
-from granchain_core import Scene, Settled, State
+from granchain_core import BadInput, Scene, Settled, State
 
 from ..pages.curve.page import Curves
 from ..parts.foundation import beside_kappa, foundation_words
@@ -19,7 +19,7 @@ from ..serve.compiler import COMPILER
 from ..serve.meters import METERS
 from ..serve.websocket import disable_nagle, gather_writes, with_document_lock
 from ..session.activities import Activity, account_activity, picture_activities
-from ..session.hooks import Actions, all_actions
+from ..session.hooks import Actions, Page, all_actions
 from ..session.live import LiveRun
 from ..session.message_checks import is_number, quoted
 from ..session.session import Session, presets, slider_range
@@ -59,10 +59,13 @@ class Controller:
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
+        self._looked_at: dict[str, Page | Curves] = {
+            "curve": self.curves, **{row.name: page for row, page in zip(PAGES, self.pages, strict=True)}}
         own: Actions = {
             "ping": lambda _: views.chain.send(type="pong"),
-            "ready": self._ready, "page-visible": lambda _: self.pictures.restart(),
+            "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
             "narrow": lambda m: views.fit(bool(m.get("value"))),
+            "visible": self._visible,
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go,
             "gallery": lambda _: views.header.send(type="gallery", cards=cards()),
@@ -208,6 +211,13 @@ class Controller:
         self.pinned.show()
         self._new_scene(self._first_start)
 
+    def _visible(self, message: dict[str, Any]) -> None:
+        name, visible = message.get("name"), message.get("value")
+        one = self._looked_at.get(name) if isinstance(name, str) else None
+        if one is None or not isinstance(visible, bool):
+            raise BadInput(f"There is no page {quoted(name)} to look at.")
+        one.visibility_changed(visible)
+
     def _new_scene(self, start: State | None = None) -> None:
         scene = self.session.scene
         self.views.scales.forget()
@@ -229,7 +239,7 @@ class Controller:
         session = self.session
         self.views.header.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
-            speeds=sorted(SPEEDS), speed=session.speed, playing=session.playing, account=session.account,
+            speeds=sorted(SPEEDS), speed=session.speed, playing=session.playing,
             query=session.link, view_fields=list(EXTRAS))
 
     def _tell_pages(self) -> None:

@@ -27,7 +27,6 @@ class DisplayChoices:
         self.actions: Actions = {
             "theme": self.choose, "scale": self._scale,
             "curve": self._curve, "curve-stop": lambda _: curves.stop(),
-            "curve-visible": lambda m: curves.visible(bool(m.get("value")), session.scene),
         }
 
     def choose(self, message: dict[str, Any]) -> None:

@@ -17,7 +17,7 @@ from granchain_core.experiment.measured import MOST_BYTES
 
 from ..pages.curve.bar import CurveBar
 from ..pages.curve.view import Curve
-from ..parts.chain import Chain
+from ..parts.chain import SCALES, Chain
 from ..parts.component import text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
@@ -33,7 +33,7 @@ from ..pictures.theme import Theme, style_sheet
 from ..session.session import Session
 from ..session.terms import definitions
 from .scales import Scales
-from .table import GROUPS, PAGES, described_tabs
+from .table import GROUPS, PAGES, described_tabs, watched_pages
 from .tabs import Tabs
 from .template import put_into
 
@@ -51,13 +51,14 @@ class Views:
         self.knobs = Knobs(received, sizing_mode="stretch_width")
         self.equation = Equation(received)
         self.chain = Chain(received, sizing_mode="stretch_both",
-                           state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES})
+                           state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES, "scales": SCALES})
         self.trains = Trains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = Curve(choose)
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
-            "largest_file": MOST_BYTES, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS, "regimes": [
+            "largest_file": MOST_BYTES, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
+            "pages": watched_pages(), "regimes": [
                 {"name": name, "symbol": SYMBOLS[style[0]], "colour": style[1]} for name, style in REGIMES.items()]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)

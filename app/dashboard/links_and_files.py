@@ -17,7 +17,7 @@ from ..serve.queues import FILES
 from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.message_checks import quoted
-from ..session.take_along import TEXTS, Screen
+from ..session.take_along import EXPORTS, TEXTS, Screen
 from ..session.task import Job, Task, say_nothing
 from .layout import Views
 from .main_picture import Pictures
@@ -67,7 +67,7 @@ class LinksAndFiles:
             screen = self._screen(run, what)
             self._write(end, lambda: text(screen).encode())
         else:
-            raise BadInput(f"There is no file {quoted(what)} to save; there are hdf5, {', '.join(TEXTS)}.")
+            raise BadInput(f"There is no file {quoted(what)} to save; there are {', '.join(EXPORTS)}.")
 
     def _screen(self, run: Run, what: str) -> Screen:
         session = self._host.session

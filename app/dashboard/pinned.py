@@ -12,6 +12,7 @@ from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
 
 from ..frames import samples_for
 from ..pages.curve.sweep import Progress, Sweep
+from ..parts.pinned_trains import SIGNS
 from ..serve.compiler import PICTURE_PIECES
 from ..serve.queues import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
@@ -158,8 +159,10 @@ class Pinned:
         picture = session.picture
         self._views.tabs.send(
             type="compare", now=setting_words(session.scene, session.scene),
-            pins=[{"name": name, "words": setting_words(pin.scene, session.scene), "known": _key(pin) in self._runs}
-                  for name, pin in zip(NAMES, session.pins, strict=False)],
+            pins=[{"name": name, "sign": sign, "words": setting_words(pin.scene, session.scene),
+                   "known": _key(pin) in self._runs}
+                  for name, sign, pin in zip(NAMES, SIGNS, session.pins, strict=False)],
+            full=len(session.pins) == len(NAMES),
             rows=[] if picture is None else compared_rows(picture.run, self._found()))
 
 

@@ -8,7 +8,6 @@ from typing import Any
 from ..session.hooks import Actions
 from ..session.live import LiveRun
 from ..session.session import Session
-from ..session.switches import ACCOUNT
 from .main_picture import Pictures
 
 
@@ -51,15 +50,10 @@ class Playback:
         self._pictures.idle()
 
     def _reconnected(self, message: dict[str, Any]) -> None:
-        """The browser lost its server and has loaded the page again from its share link."""
-        self._speed({"value": message.get("speed")})
+        """The browser lost its server and has loaded the page again from its share link, which has all but this."""
         if not message.get("playing"):
             self._playing({"value": False})
             self._header()
-        if message.get("account"):
-            self._session.switch(ACCOUNT, True)
-            self._header()
-            self._compute()
         gone = " and your uploaded data are gone" if message.get("uploaded") else ""
         self._say("The connection was lost. Your settings are restored, but the chain has started again from rest"
                   f"{gone}.")

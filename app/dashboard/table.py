@@ -39,7 +39,6 @@ class Tab:
     group: str
     taller: bool = False
     placeholder: str = ""
-    reports_visibility: bool = False
 
     @property
     def title(self) -> str:
@@ -53,8 +52,8 @@ class Row:
 
     `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
     tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height.
-    `group` is one of `GROUPS`. A page that `reports_visibility` gets the message "NAME-visible" whenever its tab comes
-    on the screen or leaves it.
+    `group` is one of `GROUPS`. A page that `works_hidden` goes on while its window is hidden or its tab is scrolled off
+    the screen; the others count as not looked at then (`Page.visibility_changed`).
     """
 
     name: str
@@ -63,7 +62,7 @@ class Row:
     view: Callable[..., Component] | None
     placeholder: str = ""
     taller: bool = True
-    reports_visibility: bool = False
+    works_hidden: bool = True
     group: str = "try"
 
 
@@ -76,21 +75,21 @@ TABS: tuple[Row | Tab, ...] = (
     Tab("look at", "learn"),
     Tab("regimes", "learn"),
     Row("probe", "probe", ProbePage, Probe),
-    Row("stability", "stability", StabilityPage, Stability),
+    Row("stability", "stability", StabilityPage, Stability, works_hidden=False),
     Row("accuracy", "accuracy", AccuracyPage, Accuracy, group="check"),
-    Row("map", "map", MapPage, None, reports_visibility=True),
-    Row("effects", "effects", EffectsPage, None, reports_visibility=True, group="check"),
+    Row("map", "map", MapPage, None),
+    Row("effects", "effects", EffectsPage, None, group="check"),
     Row("branches", "branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable."),
     Row("analysis", "analysis", AnalysisPage, Analysis,
         "Spectrum, strobes over a knob, basins and Lyapunov exponents of the present scene."),
     Row("observer", "observer", ObserverPage, Observer,
-        "A copy of the chain that feels its input force and nothing else."),
+        "A copy of the chain that feels its input force and nothing else.", works_hidden=False),
     Row("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),
     Row("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
         group="learn"),
-    Row("numbers", "numbers", NumbersPage, None, reports_visibility=True, group=""),
+    Row("numbers", "numbers", NumbersPage, None, group=""),
     Tab("data", "", taller=True),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, Row))
@@ -100,8 +99,13 @@ def described_tabs() -> list[dict[str, Any]]:
     """What the browser needs of the table, in the order of the groups."""
     order = (*GROUPS, "")
     return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller,
-             "reports_visibility": row.reports_visibility, "group": row.group}
+             "group": row.group}
             for row in sorted(TABS, key=lambda row: order.index(row.group))]
+
+
+def watched_pages() -> dict[str, dict[str, bool]]:
+    """What the browser needs to tell which pages are looked at."""
+    return {row.name: {"overlay": row.view is not None, "works_hidden": row.works_hidden} for row in PAGES}
 
 
 def tab_names() -> tuple[str, ...]:

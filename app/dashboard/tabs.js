@@ -15,9 +15,10 @@ import { button, element, openButton, paragraph } from "../parts/dom.js";
 import { dataTab, saveSample } from "./data_tab.js";
 import { lookAtTab, regimesTab } from "./scene_tabs.js";
 import { explainTerms } from "./terms.js";
+import { watchVisibility } from "./visibility.js";
 
-// The content of each tab. `show`, where there is one, draws it again when its page emits the event of its name. A tab
-// that `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
+// The content of each tab. `show`, where there is one, draws it again when its page publishes something. A tab that
+// `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
 const TABS = {
   stories: storiesTab,
   "look at": lookAtTab,
@@ -37,7 +38,7 @@ const TABS = {
 function plainTab(_, { name, placeholder }) {
   const line = paragraph();
   const show = () => {
-    line.textContent = window.granchain[name]?.sentence || placeholder;
+    line.textContent = window.granchain.pages.get(name)?.sentence || placeholder;
   };
   show();
   return { content: [element("div", { className: "row top" }, line, openButton(name))], show };
@@ -66,7 +67,6 @@ class Tabs {
     this.rows = new Map(rows.map((row) => [row.name, row]));
     this.first = rows[0].name; // the tab that is open when nothing else is said
     this.chosen = this.first;
-    this.seen = null; // the page over the pictures, or else the tab, as the server was last told
     this.redraw = () => {};
     const groups = [...model.state.groups, ""].map((group) => this.group(group, rows));
     this.tabs = groups.flatMap((group) => [...group.querySelectorAll("[role=tab]")]);
@@ -112,23 +112,9 @@ class Tabs {
     this.chosen = name;
     if (name !== "stories") leaveStories();
     document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
-    this.reportVisibility();
     this.show();
     window.granchain.placed({ tab: name === this.first ? "" : name });
     window.granchain.emit("tab", name);
-  }
-
-  // Some pages compute only while somebody looks at them: at their tab, or at the page over the pictures, which hides
-  // the tabs.
-  reportVisibility() {
-    const seen = window.granchain.overlay ?? this.chosen;
-    if (seen === this.seen) return;
-    for (const [name, value] of [
-      [this.seen, false],
-      [seen, true],
-    ])
-      if (this.rows.get(name)?.reports_visibility) this.model.send_msg({ do: `${name}-visible`, value });
-    this.seen = seen;
   }
 
   // The Tab key stops once; arrows, Home and End go from tab to tab.
@@ -170,19 +156,17 @@ class Tabs {
 
 export function render({ model }) {
   const tabs = new Tabs(model);
+  watchVisibility(model.state.pages, (name, value) => model.send_msg({ do: "visible", name, value }));
   model.on("state", () => tabs.stateChanged());
   model.on("msg:custom", mapMessage);
   model.on("msg:custom", saveSample);
   model.on("msg:custom", compareMessage);
   model.on("msg:custom", numbersMessage);
   for (const { name } of model.state.tabs)
-    window.granchain.on(name, () => {
+    window.granchain.on(`page:${name}`, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
-  window.granchain.on("overlay", (name) => {
-    window.granchain.placed({ page: name ?? "" });
-    tabs.reportVisibility();
-  });
+  window.granchain.on("overlay", (name) => window.granchain.placed({ page: name ?? "" }));
   window.granchain.on("compare", () => {
     window.granchain.closePage();
     tabs.choose("numbers");

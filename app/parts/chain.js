@@ -9,14 +9,6 @@ import { button, element } from "./dom.js";
 import { Sound } from "./sound.js";
 import { colourOf, Steel } from "./steel.js";
 
-const SCALES = [
-  [
-    "same",
-    "same scale",
-    "One scale for all pictures of this scene: its axes and colours end at the largest values at any drive frequency, so strong looks strong and weak looks weak",
-  ],
-  ["fit", "fit", "Every picture fills its frame: weak motion can be seen, but not compared"],
-];
 const PEAK = "The largest force in this picture. How far its axis goes is said below the map: “same scale” or “fit”.";
 
 // Calls `act` after the present animation frame: messages posted during a frame are delivered after it.
@@ -83,7 +75,7 @@ class Chain {
     window.granchain.chain = { canvas: this.canvas, colours: shares, redraw: (on) => this.redraw(on) };
     scale.querySelector("b").style.background = `linear-gradient(to right, ${shares.join(",")})`;
     this.energies = [...scale.querySelectorAll(".colours span")];
-    this.scales = SCALES.map(([value, words, title]) =>
+    this.scales = this.model.state.scales.map(([value, words, title]) =>
       button(words, () => this.chooseScale(value), { title, value, ariaPressed: "false" }),
     );
     scale.querySelector(".segments").append(...this.scales);
@@ -237,7 +229,7 @@ export function render({ model }) {
   model.on("msg:custom", (message) => chain.receive(message));
   listen(chain);
   document.addEventListener("visibilitychange", () => {
-    if (!document.hidden) model.send_msg({ do: "page-visible" });
+    if (!document.hidden) model.send_msg({ do: "window-shown" });
   });
   chain.wake();
   setTimeout(() => chain.begin(), 0);

@@ -12,8 +12,16 @@ from granchain_core import Scene
 from ..format import prefixed
 from ..frames import Extremes, Frames
 from ..scripts import module
-from ..session.share import encode
+from ..session.share import EXTRAS, encode
 from .component import Component, text
+
+#: The scales of the pictures: what a button says, and what it means.
+_SCALES = {
+    "same": ("same scale", "One scale for all pictures of this scene: its axes and colours end at the largest values "
+             "at any drive frequency, so strong looks strong and weak looks weak"),
+    "fit": ("fit", "Every picture fills its frame: weak motion can be seen, but not compared"),
+}
+SCALES = [(scale, *_SCALES[scale]) for scale in EXTRAS["scale"]]
 
 
 class Chain(Component):

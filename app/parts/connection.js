@@ -13,8 +13,14 @@
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
+  // What an address says beside tab, page and look, which only the browser knows.
+  const linkOf = (search) => {
+    const query = new URLSearchParams(search);
+    for (const name of ["tab", "page", "look"]) query.delete(name);
+    return query.toString();
+  };
   // The last share link from the server, and the requests since then that it has not answered.
-  let link = "v=1";
+  let link = linkOf(location.search);
   let known = false; // whether the server has sent one
   const unanswered = new Map();
   let viewFields = []; // the fields of a link that belong to no scene
@@ -135,11 +141,10 @@
     const [tab, over] = ["tab", "page"].map((name) => query.get(name) ?? "");
     page.restoreTheme(query.get("look"));
     unanswered.clear();
-    if (!page.lost) page.go(location.search.slice(1));
+    if (!page.lost) page.go?.(location.search.slice(1));
     Object.assign(place, { tab, page: over });
     page.emit("place", place);
-    for (const name of ["tab", "page", "look"]) query.delete(name);
-    link = query.toString();
+    link = linkOf(location.search);
   });
   // The server shows what the address says.
   const went = (query) => {
@@ -279,6 +284,6 @@
       if (!page.lost) say("");
     });
   }
-  Object.assign(page, { lost: false, kept: {}, again, requested, linkReceived, answerReceived, connect, address });
-  Object.assign(page, { place, placed, linkRefined, went, undo, redo, steps, isSettled, go: () => {} });
+  Object.assign(page, { again, requested, linkReceived, linkRefined, answerReceived, connect, address, isSettled });
+  Object.assign(page, { place, placed, went, undo, redo, steps });
 })();

@@ -9,15 +9,6 @@ import { curveButton, knobsButton } from "./phone_buttons.js";
 import { Popovers } from "./popovers.js";
 import { Tour } from "./tour.js";
 
-const MODES = [
-  ["settled", "The steady state for these knobs, replayed"],
-  ["live", "The run goes on while you move the knobs"],
-];
-const STARTS = [
-  ["rest", "start: from rest"],
-  ["previous", "start: previous state"],
-];
-
 function chooser(label, className, act) {
   const select = element("select", { className, title: label, ariaLabel: label });
   select.addEventListener("change", () => act(select.value));
@@ -30,7 +21,7 @@ class Header {
     this.playing = true;
     this.themed = false; // whether the theme of the link has been taken over
     this.begun = false; // whether the first state has come
-    this.popovers = new Popovers((what) => this.send("save", { what }));
+    this.popovers = new Popovers((what) => this.send("save", { what }), model.state.files);
     this.makeTimeControls();
     this.makeSceneChooser();
     this.makeButtons();
@@ -145,13 +136,15 @@ class Header {
   makeTimeControls() {
     this.play = iconButton("", "Play or pause (space)", () => this.setPlaying(!this.playing));
     this.speed = chooser("drive periods shown per second", "speed", (value) =>
-      this.send("speed", { value: Number(value) }),
+      this.request("speed", value, { value: Number(value) }),
     );
-    this.modes = MODES.map(([mode, title]) =>
-      button(mode, () => this.request("mode", mode, { value: mode }), { title, ariaLabel: `${mode}: ${title}` }),
-    );
+    const { modes, starts } = this.model.state;
+    this.modes = modes.map(([value, title]) => {
+      const choose = () => this.request("mode", value, { value });
+      return button(value, choose, { title, value, ariaLabel: `${value}: ${title}` });
+    });
     this.start = chooser("where the steady state starts", "start", (value) => this.request("start", value, { value }));
-    for (const [value, words] of STARTS) this.start.add(new Option(words, value));
+    for (const [value, words] of starts) this.start.add(new Option(words, value));
   }
 
   send(name, more = {}) {
@@ -236,28 +229,26 @@ class Header {
     this.speed.replaceChildren(...speeds.map((value) => new Option(each(value), value)));
     this.speed.value = String(speed);
     window.granchain.emit("speed", speed);
-    MODES.forEach(([name], i) => {
-      this.modes[i].ariaPressed = String(mode === name);
-    });
+    for (const one of this.modes) one.ariaPressed = String(one.value === mode);
     this.start.value = start;
     this.start.style.display = mode === "live" ? "none" : "";
     this.fit();
   }
 
-  showPlaying({ playing = this.playing, speed, account = false }) {
+  showPlaying({ playing = this.playing }) {
     if (playing !== this.playing) {
       this.playing = playing;
       window.granchain.emit("play", playing);
     }
     this.drawPlay();
-    window.granchain.kept = { ...window.granchain.kept, speed, playing, account };
+    window.granchain.kept = { ...window.granchain.kept, playing };
   }
 
   // After a lost connection: what the share link does not carry.
   restore(again) {
     window.granchain.again = null;
-    const { speed = 1, playing = true, account = false, uploaded = false } = again;
-    this.send("reconnected", { speed, playing, account, uploaded });
+    const { playing = true, uploaded = false } = again;
+    this.send("reconnected", { playing, uploaded });
   }
 
   receive(message) {

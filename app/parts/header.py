@@ -2,8 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 from ..scripts import module
+from ..session.share import EXTRAS
+from ..session.take_along import EXPORTS
 from .component import Component, text
+
+_MODES = {
+    "settled": "The steady state for these knobs, replayed",
+    "live": "The run goes on while you move the knobs",
+}
+_STARTS = {"rest": "start: from rest", "previous": "start: previous state"}
 
 
 class Header(Component):
@@ -11,3 +22,10 @@ class Header(Component):
 
     _esm = module("header.js")
     _stylesheets = [text("controls.css"), text("header.css"), text("gallery.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, state={
+            "modes": [(mode, _MODES[mode]) for mode in EXTRAS["mode"]],
+            "starts": [(start, _STARTS[start]) for start in EXTRAS["start"]],
+            "files": list(EXPORTS.items()),
+        }, **params)

@@ -2,7 +2,8 @@
 // does not need, would fetch and rewrite every one of them: 0.2 s of each opening.
 window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); // the maps Panel adds are empty here
 
-// What the parts of the page share in the browser: events, the theme and the drawer.
+// What the parts of the page share in the browser: events, what pages publish, the theme and the drawer. Everything that
+// `window.granchain` has is declared at the end.
 window.granchain = (() => {
   const listeners = new Map();
   const on = (name, listener) => {
@@ -11,6 +12,14 @@ window.granchain = (() => {
   };
   const emit = (name, detail) => {
     for (const listener of listeners.get(name) ?? []) listener(detail);
+  };
+
+  // What a page has to show elsewhere, as in its tab. It is kept and told under a name of its own kind, so that a page
+  // may have any name.
+  const pages = new Map();
+  const publish = (name, data) => {
+    pages.set(name, data);
+    emit(`page:${name}`, data);
   };
 
   const KEPT_AS = "granchain-look"; // in the browser, from visit to visit
@@ -83,9 +92,12 @@ window.granchain = (() => {
     if (event.key === "Escape" && overlay) closePage();
   });
 
-  return {
+  // Sealed: what is not declared here cannot be added elsewhere. null is a function or a part that its script puts there.
+  return Object.seal({
     on,
     emit,
+    pages,
+    publish,
     openPage,
     closePage,
     get overlay() {
@@ -101,5 +113,35 @@ window.granchain = (() => {
     nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % THEMES.length], true),
     drawer,
     showCurve,
-  };
+    // visibility.js: the names of what somebody looks at
+    visible: new Set(),
+    // page.html: the glossary's terms with their definitions
+    terms: {},
+    // connection.js: the connection, the share link and the history
+    lost: false, // whether the server does not answer
+    kept: {}, // what a page built again after a lost connection needs besides its link
+    again: null, // the same, in the page built again
+    place: null, // the open tab and the page over the pictures
+    steps: null,
+    placed: null,
+    requested: null,
+    linkReceived: null,
+    linkRefined: null,
+    answerReceived: null,
+    went: null,
+    undo: null,
+    redo: null,
+    connect: null,
+    address: null,
+    isSettled: null,
+    // header.js: has the server show what an address says
+    go: null,
+    // chain.js: its drawing, the picture on the screen, and where its replay is in drive periods
+    chain: null,
+    shown: null,
+    phase: 0,
+    // knobs.js and status_line.js: the knobs of the scene, and the regime in words
+    knobNames: [],
+    regime: "",
+  });
 })();

@@ -15,6 +15,8 @@ from ..pictures.theme import GREY
 
 #: Dashes of the pins, in their order.
 DASHES = ([7, 3], [2, 3], [9, 3, 2, 3])
+#: The same dashes in a text.
+SIGNS = ("╌", "┈", "─ ·")
 #: Most points of a line; beyond that a train ends before the picture does.
 _MOST = 30_000
 _EMPTY = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}

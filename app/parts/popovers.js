@@ -42,13 +42,13 @@ const title = (textContent) => element("h2", { textContent });
 
 // At most one of them is open.
 export class Popovers {
-  constructor(save) {
+  constructor(save, files) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
     this.help = element("div", { className: "popover help", hidden: true, tabIndex: 0 });
     this.help.append(title("Overview"), list(HELP), title("Keys"), list(KEYS));
     this.copied = element("p", { role: "status" });
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
-    this.take = element("div", { className: "popover", hidden: true }, takeAlong(save));
+    this.take = element("div", { className: "popover", hidden: true }, takeAlong(save, files));
     this.menu = element("div", { className: "popover menu", hidden: true });
     this.all = [this.help, this.link, this.take, this.menu];
   }

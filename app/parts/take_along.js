@@ -14,13 +14,6 @@ const FIGURES = {
   wall: ["at the wall", "right", "output force"],
   curve: ["resonance curve", "curve", "resonance curve"],
 };
-const FILES = [
-  ["trains", "forces over time, CSV"],
-  ["curve", "resonance curve, CSV"],
-  ["hdf5", "everything, HDF5"],
-  ["script", "Python script that computes it again"],
-  ["notebook", "Jupyter notebook that computes it again"],
-];
 
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -186,8 +179,8 @@ async function savePicture(what, kind) {
   download(`${name}.${kind}`, kind === "svg" ? new Blob([drawn.text], { type: "image/svg+xml" }) : await png(drawn));
 }
 
-// The list of what can be exported. `send` asks the server for a file.
-export function takeAlong(send) {
+// The list of what can be exported. `send` asks the server for one of its files.
+export function takeAlong(send, files) {
   const picture = element("select", { ariaLabel: "which picture" });
   const options = [
     ["stage", "chain and pictures over time"],
@@ -202,12 +195,11 @@ export function takeAlong(send) {
     picture.value = name ? "page" : "stage";
   });
   const save = (kind) => button(kind.toUpperCase(), () => savePicture(picture.value, kind));
-  const files = FILES.map(([what, words]) => button(words, () => send(what)));
   return element(
     "div",
     { className: "take" },
     element("h2", { textContent: "Export" }),
     element("div", { className: "row" }, picture, save("png"), save("svg")),
-    ...files,
+    ...files.map(([what, words]) => button(words, () => send(what))),
   );
 }

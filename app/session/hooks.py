@@ -41,6 +41,9 @@ class Page:
     def theme_changed(self, theme: Theme) -> None:
         """The page is shown in another theme; a view's own figures follow by themselves."""
 
+    def visibility_changed(self, visible: bool) -> None:
+        """Somebody began to look at the page or its tab, or ceased to; at first nobody does."""
+
     def close(self) -> None:
         """The visitor left."""
 

@@ -168,7 +168,12 @@ def _csv(titles: Sequence[str], rows: Any) -> str:
     return text.getvalue()
 
 
-#: What can be exported as a text: the end of its name, and how it is written.
+#: What can be exported, in words.
+EXPORTS = {
+    "trains": "forces over time, CSV", "curve": "resonance curve, CSV", "hdf5": "everything, HDF5",
+    "script": "Python script that computes it again", "notebook": "Jupyter notebook that computes it again",
+}
+#: What of it is a text: the end of its name, and how it is written.
 TEXTS: dict[str, tuple[str, Callable[[Screen], str]]] = {
     "trains": ("-trains.csv", lambda screen: trains_csv(screen.run)),
     "curve": ("-curve.csv", lambda screen: curve_csv(screen.curves)),

@@ -14,6 +14,7 @@ from source import ROOT, imports_in
 import app.dashboard.layout  # noqa: F401  (makes every component known)
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
+from app.parts.result_figure import ResultFigure
 
 
 def module_name(path: Path) -> str:
@@ -150,7 +151,7 @@ def test_private_attributes_of_others_are_used_in_one_file(module: str) -> None:
 
 
 def test_parts_override_of_panel_only_what_is_documented() -> None:
-    parts = [Component, *Component.__subclasses__(), *FigurePart.__subclasses__()]
+    parts = [Component, *Component.__subclasses__(), *FigurePart.__subclasses__(), *ResultFigure.__subclasses__()]
     assert len(parts) > 10
     for part in parts:
         own = {name for name in vars(part) if name.startswith("_") and not name.startswith(("__", "_param", "_data_model"))}

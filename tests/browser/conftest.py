@@ -114,7 +114,7 @@ window.painted = [];
 document.addEventListener("DOMContentLoaded", () => {
   if (window.granchain) granchain.on("painted", (event) => window.painted.push(event));
 });
-// The messages that the page has sent, by their "do", so that a test can tell that something was not asked for.
+// The messages that the page has sent, by their "do", name and value, so that a test can tell that something was not asked for.
 window.sent = [];
 // Resolves when what was drawn last is on the screen.
 window.shown = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(true))));
@@ -140,8 +140,8 @@ window.pixels = (id) => {
 const send = WebSocket.prototype.send;
 WebSocket.prototype.send = function (data) {
   if (typeof data === "string")
-    for (const [, name, rest] of data.matchAll(/\\["do","([\\w-]+)"\\]((?:,\\["value",[^\\]]*\\])?)/g))
-      window.sent.push(rest ? `${name} ${rest.slice(10, -1)}` : name);
+    for (const [, ...words] of data.matchAll(/\\["do","([\\w-]+)"\\](?:,\\["name","([^"]*)"\\])?(?:,\\["value",([^\\]]*)\\])?/g))
+      window.sent.push(words.filter((word) => word !== undefined).join(" "));
   if (window.forged !== undefined && typeof data === "string" && data.includes('["do","set"]'))
     data = data.replace(/\\["value",[^\\]]*\\]/, `["value",${window.forged}]`);
   send.call(this, data);

@@ -29,9 +29,9 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
         expect(words).to_contain_text(sentence, timeout=COMPILED)
     expect(sheet.get_by_role("img", name="Spectrum of the output force, sec2 at 1130 Hz")).to_be_visible()
     expect(sheet.locator("code")).to_have_text("granchain spectrum sec2 --set f=1130.0 --force output")
-    page.evaluate("window.kept = granchain.analysis.figure.document; granchain.nextTheme()")
+    page.evaluate("window.kept = granchain.pages.get('analysis').figure.document; granchain.nextTheme()")
     until(page, lambda: bool(page.evaluate(
-        "granchain.analysis.figure.document && kept !== granchain.analysis.figure.document")))
+        "granchain.pages.get('analysis').figure.document && kept !== granchain.pages.get('analysis').figure.document")))
 
     sheet.get_by_role("button", name="Is it chaos?").click()
     expect(sheet.locator(".picture")).to_be_hidden()
@@ -53,7 +53,7 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
     expect(sheet.get_by_label("starts along each")).to_have_value("40")  # what was typed stays
     expect(sheet.locator(".picture")).to_be_hidden()
 
-    until(page, lambda: "starts%253D40" in page.url)  # the address has the question and what was chosen
+    until(page, lambda: "starts%3D40" in page.url)  # the address has the question and what was chosen
     page.reload()
     expect(sheet.get_by_role("button", name="Which start leads where?")).to_have_attribute("aria-pressed", "true")
     expect(sheet.get_by_label("starts along each")).to_have_value("40")

@@ -14,11 +14,11 @@ from started import at_rest, until
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
 #: The kinds of special points that were found; how many orbits the large figure has; the orbits of an arm.
 SPECIAL = ("['fold', 'period_doubling', 'neimark_sacker', 'grazing']"
-           ".filter((kind) => granchain.branches.data.rows[kind]?.x.length)")
+           ".filter((kind) => granchain.pages.get('branches').data.rows[kind]?.x.length)")
 COUNT = """(Object.values(Bokeh.index.roots ?? Bokeh.index)
   .filter(({ model }) => model.name === "branches" && model.toolbar_location !== null).at(-1)
   ?.model.document?.get_model_by_name("orbits")?.data.x ?? []).length"""
-ORBITS = "granchain.branches.data.rows.orbits"
+ORBITS = "granchain.pages.get('branches').data.rows.orbits"
 
 
 def opened(page: Page) -> Locator:
@@ -42,12 +42,12 @@ def followed(page: Page) -> Locator:
 def grows_without_being_made_anew(page: Page) -> None:
     """Its figure takes new orbits as they come; another theme is another figure, with the same points."""
     grown = f"() => {COUNT} > %d"
-    page.evaluate("window.kept = granchain.branches.figures[0].document")
+    page.evaluate("window.kept = granchain.pages.get('branches').figures[0].document")
     before = page.evaluate(COUNT)
     page.wait_for_function(grown % (before + 5), polling=100)
-    assert page.evaluate("kept === granchain.branches.figures[0].document")
+    assert page.evaluate("kept === granchain.pages.get('branches').figures[0].document")
     page.evaluate("granchain.nextTheme()")
-    page.wait_for_function("granchain.branches.figures[0].document && kept !== granchain.branches.figures[0].document")
+    page.wait_for_function("granchain.pages.get('branches').figures[0].document && kept !== granchain.pages.get('branches').figures[0].document")
     page.wait_for_function(grown % (before + 5), polling=100)
 
 
@@ -67,7 +67,7 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     sheet.get_by_role("button", name="stop").click()
     # the figure holds what the page has been sent piece by piece, and so does the small one in its tab
     for kind in ("stable", "unstable"):
-        assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.branches.data.lines.{kind}.x.length") > 0
+        assert len(source(page, "branches", kind)["x"]) == page.evaluate(f"granchain.pages.get('branches').data.lines.{kind}.x.length") > 0
     page.keyboard.press("Escape")
     until(page, lambda: source(page, "branches", "orbits", large=False).get("x") == source(page, "branches", "orbits")["x"])
 
@@ -113,7 +113,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
 
 #: The orbit that is farthest from all special points, so that a click means it and no other.
 LONELY = """(stable) => {
-  const { orbits, ...rows } = granchain.branches.data.rows;
+  const { orbits, ...rows } = granchain.pages.get('branches').data.rows;
   const special = Object.values(rows).flatMap(({ x }) => x);
   const far = (f) => Math.min(...special.map((one) => Math.abs(one - f)));
   return orbits.x.map((f, row) => [orbits.stable[row] === stable ? far(f) : -1, row]).sort((a, b) => b[0] - a[0])[0][1];

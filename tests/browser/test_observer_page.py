@@ -7,7 +7,7 @@ from playwright.sync_api import Locator, Page, expect
 from started import at_rest, until
 
 #: What the page drew last: period and distance.
-LAST = "granchain.observer?.history.at(-1)"
+LAST = "granchain.pages.get('observer')?.history.at(-1)"
 
 #: How many pixels of a canvas have the colour of the input force.
 PUSH = """(canvas) => {

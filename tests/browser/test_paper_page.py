@@ -39,11 +39,11 @@ def test_figures_are_drawn_with_caption_and_rows(visit: Visit) -> None:
     expect(picture.locator("canvas").first).to_be_visible()
     chosen(sheet, "3a")
     expect(sheet.get_by_role("img", name="Figure 3a")).to_be_visible(timeout=COMPILED)
-    until(page, lambda: bool(page.evaluate("granchain.paper.figure.model('drive and force')?.data.force.length > 700")))
-    page.evaluate("window.kept = granchain.paper.figure.document; granchain.nextTheme()")  # another theme, another figure
+    until(page, lambda: bool(page.evaluate("granchain.pages.get('paper').figure.model('drive and force')?.data.force.length > 700")))
+    page.evaluate("window.kept = granchain.pages.get('paper').figure.document; granchain.nextTheme()")  # another theme, another figure
     until(page, lambda: bool(page.evaluate(
-        "granchain.paper.figure.document && kept !== granchain.paper.figure.document")))
-    assert page.evaluate("granchain.paper.figure.model('drive').background_fill_color") == "#161a21"
+        "granchain.pages.get('paper').figure.document && kept !== granchain.pages.get('paper').figure.document")))
+    assert page.evaluate("granchain.pages.get('paper').figure.model('drive').background_fill_color") == "#161a21"
 
 
 def test_a_figure_is_given_up_when_the_page_is_left_and_others_fit(visit: Visit) -> None:

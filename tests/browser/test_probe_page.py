@@ -23,7 +23,7 @@ def test_a_bead_of_the_chain_is_probed(visit: Visit) -> None:
     page.mouse.click(*page.evaluate(BEAD, 5))
     expect(page.get_by_role("tab", name="probe")).to_have_attribute("aria-selected", "true")
     expect(page.locator("#tabs")).to_contain_text("Bead 5 of 11")
-    page.wait_for_function("granchain.probe.drawn.phase.strobe.data.x.length === 3")  # one a drive period: 1:3
+    page.wait_for_function("granchain.pages.get('probe').drawn.phase.strobe.data.x.length === 3")  # one a drive period: 1:3
     page.locator("#tabs").get_by_role("button", name="open the page").click()
     expect(page.get_by_role("heading", name="One bead")).to_be_visible()
     for figure, name in (("probe displacement", "line"), ("probe forces", "before"), ("probe velocity", "line"),
@@ -33,7 +33,7 @@ def test_a_bead_of_the_chain_is_probed(visit: Visit) -> None:
     expect(page.locator("#overlay")).to_contain_text("Bead 6 of 11")
     # it follows the knobs: at the 1:1 resonance every drive period is like the one before
     type_into(page, "f", "340")
-    page.wait_for_function("granchain.probe.drawn.phase.strobe.data.x.length === 1")
+    page.wait_for_function("granchain.pages.get('probe').drawn.phase.strobe.data.x.length === 1")
 
 
 def test_a_click_in_the_map_probes_the_bead_and_a_drag_moves_time(visit: Visit) -> None:

@@ -17,9 +17,9 @@ def opened(page: Page, words: str = "Stable") -> Locator:
     return sheet
 
 
-def looks(page: Page) -> list[str]:
+def looks(page: Page, name: str = "stability") -> list[str]:
     """What the page has told the server: that somebody looks at the tab or the page, "true", or nobody does."""
-    return [one.split()[1] for one in page.evaluate("sent") if one.startswith("stability-visible ")]
+    return [one.split()[2] for one in page.evaluate("sent") if one.startswith(f"visible {name} ")]
 
 
 def marks(page: Page, name: str, large: bool = True) -> int:
@@ -39,7 +39,7 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
     settled(page)
     # the server computes for whoever looks (tests/pages/test_stability.py), and nobody has said that they do
     assert looks(page) == []
-    assert page.evaluate("granchain.stability.state.sentence") is None
+    assert page.evaluate("granchain.pages.get('stability').state.sentence") is None
     page.get_by_role("tab", name="stability").click()
     assert looks(page) == ["true"]
     expect(tab).to_contain_text("Stable: a disturbance shrinks to 0.36", timeout=COMPILED)
@@ -51,9 +51,33 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
     type_into(page, "f", "615")
     settled(page)
     assert looks(page) == ["true", "false"]
-    assert "3 drive periods" in page.evaluate("granchain.stability.state.sentence")
+    assert "3 drive periods" in page.evaluate("granchain.pages.get('stability').state.sentence")
     page.get_by_role("tab", name="stability").click()
     expect(tab).to_contain_text("2 drive periods")
+
+
+def test_what_a_hidden_window_stops(visit: Visit) -> None:
+    """An analysis rests; a map goes on, and the curve does as long as no page lies over it."""
+    page = visit()
+    hide = """(hidden) => {
+      Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
+      document.dispatchEvent(new Event("visibilitychange"));
+    }"""
+    page.get_by_role("tab", name="stability").click()
+    page.evaluate(hide, True)
+    page.evaluate(hide, False)
+    until(page, lambda: looks(page) == ["true", "false", "true"])
+    page.get_by_role("tab", name="map").click()
+    page.evaluate(hide, True)
+    page.evaluate(hide, False)
+    page.get_by_role("tab", name="stability").click()
+    until(page, lambda: looks(page) == ["true", "false", "true", "false", "true"])
+    assert looks(page, "map") == ["true", "false"] and looks(page, "curve") == []
+    page.get_by_role("button", name="open the page").click()
+    until(page, lambda: looks(page, "curve") == ["false"])
+    page.keyboard.press("Escape")
+    until(page, lambda: looks(page, "curve") == ["false", "true"])
+    assert looks(page) == ["true", "false", "true", "false", "true"]  # from its tab to the page and back
 
 
 def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Visit) -> None:

@@ -7,6 +7,7 @@ import json
 import threading
 import time
 from concurrent.futures import Future
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -16,6 +17,7 @@ from opened import Dashboard
 
 from app import server
 from app.dashboard import links_and_files, main_picture, measurement
+from app.dashboard.table import PAGES, watched_pages
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
 from app.serve.meters import METERS
@@ -145,18 +147,37 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
                                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
     """Its table shows beside each switch the type in the slot; a list of its own would miss a new effect."""
     monkeypatch.setattr(COMPILER, "has", lambda *_: False)
-    dashboard.received({"do": "effects-visible", "value": True})
+    dashboard.received({"do": "visible", "name": "effects", "value": True})
     panel = dashboard.views.tabs.state["panel"]
     assert sorted([*(one["slot"] for one in panel["effects"]), *panel["always"]]) == sorted(
         one["slot"] for one in panel["slots"])
     assert {one["name"]: one["slot"] for one in panel["effects"]}["dashpot"] == "dissipation"
 
 
-def test_a_reconnected_page_has_its_speed_its_pause_and_its_energy_account_back(dashboard: Dashboard) -> None:
-    dashboard.received({"do": "reconnected", "speed": 5, "playing": False, "account": True, "uploaded": True})
+def test_each_page_and_the_curve_hear_whether_somebody_looks(dashboard: Dashboard) -> None:
+    told: list[tuple[str, bool]] = []
+    for row, page in zip(PAGES, dashboard.pages, strict=True):
+        page.visibility_changed = partial(lambda *one: told.append(one), row.name)  # type: ignore[method-assign]
+    for name in watched_pages():
+        dashboard.received({"do": "visible", "name": name, "value": True})
+    assert told == [(row.name, True) for row in PAGES]
+    dashboard.received({"do": "visible", "name": "curve", "value": False})
+    assert ("resonance curve, from rest", "off", "not on the screen") in dashboard.curves.activities()
+    assert not dashboard.session.sentence
+
+
+@pytest.mark.parametrize(("name", "value"), [("regimes", True), (None, True), (["map"], True), ("map", "yes"), ("map", None)])
+def test_what_is_no_page_or_no_answer_is_refused(dashboard: Dashboard, name: object, value: object) -> None:
+    dashboard.received({"do": "visible", "name": name, "value": value})
+    assert dashboard.session.sentence == f"There is no page {str(name)!r} to look at."
+
+
+def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashboard: Dashboard) -> None:
+    dashboard.received({"do": "go", "query": "v=1&scene=sec2&speed=5&account=on"})
+    dashboard.received({"do": "reconnected", "playing": False, "uploaded": True})
     session = dashboard.session
     assert (session.speed, session.playing, session.account) == (5.0, False, True)
-    assert dashboard.views.header.state["account"]
+    assert not dashboard.views.header.state["playing"]
     assert session.sentence.endswith("has started again from rest and your uploaded data are gone.")
 
 

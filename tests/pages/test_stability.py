@@ -188,7 +188,7 @@ def page() -> Page:
 def opened(page: Page) -> StabilityPage:
     """The view, on the screen."""
     view = StabilityPage(page, page.view)  # type: ignore[arg-type]
-    view.actions["stability-visible"]({"value": True})
+    view.visibility_changed(True)
     return view
 
 

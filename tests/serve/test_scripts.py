@@ -14,6 +14,7 @@ from app import scripts
 from app.dashboard.layout import Views
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
+from app.parts.result_figure import ResultFigure
 from app.scripts import FILES, address, module
 
 APP = Path(scripts.__file__).parent
@@ -63,7 +64,7 @@ def test_names_are_unique() -> None:
 
 def test_every_component_renders_a_module_of_its_own() -> None:
     assert Views.__name__  # importing it makes every component known
-    parts = {*Component.__subclasses__(), *FigurePart.__subclasses__()} - {FigurePart}
+    parts = {*Component.__subclasses__(), *FigurePart.__subclasses__(), *ResultFigure.__subclasses__()} - {FigurePart, ResultFigure}
     rendered = {part._esm for part in parts if part.__module__.startswith("app.")}
     assert rendered == {module(name) for name, path in FILES.items() if "render" in EXPORT.findall(path.read_text(encoding="utf-8"))}
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.dashboard.addresses import take_address
+from app.parts.pinned_trains import DASHES, SIGNS
 from app.session.pins import NAMES, Pin, compared_rows, read_pin, setting_words
 from app.session.session import Session
 from app.session.share import PINS
@@ -61,8 +62,8 @@ def test_a_damaged_pin_is_left_out_and_told() -> None:
     assert len(refused) == 3 and any("A pin of the link was left out" in one for one in refused)
 
 
-def test_every_pin_has_a_name_and_a_field() -> None:
-    assert len(NAMES) == len(PINS)
+def test_every_pin_has_a_name_a_field_and_dashes() -> None:
+    assert len(NAMES) == len(PINS) == len(DASHES) == len(SIGNS)
 
 
 def test_pinned_numbers_are_beside_the_present_ones() -> None:

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from app.frames import samples_for
-from app.session.take_along import TEXTS, Screen, curve_csv, notebook, script, trains_csv
+from app.session.take_along import EXPORTS, TEXTS, Screen, curve_csv, notebook, script, trains_csv
 from granchain_core import resonance_curve, scene, settle
 from granchain_core.experiment import Answers, Measured, read_data
 
@@ -86,3 +86,4 @@ def test_the_trains_have_every_sample_and_every_jump(screen: Screen) -> None:
 
 def test_everything_that_is_offered_can_be_written(screen: Screen) -> None:
     assert all(write(screen) for _, write in TEXTS.values())
+    assert {*EXPORTS} == {"hdf5", *TEXTS}  # the list on the page

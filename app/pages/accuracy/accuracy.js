@@ -45,7 +45,7 @@ class AccuracyPage {
     this.machine = element("span", { className: "soft", title: "The processor that the kernels are compiled for" });
     this.warning = element("span", { className: "warn" });
     this.picture = element("div", { className: "picture" });
-    this.figure = new Embedded(this.picture, (one) => fillAccuracy(one, window.granchain.accuracy));
+    this.figure = new Embedded(this.picture, (one) => fillAccuracy(one, this.known));
     this.naive = new NaiveForces();
     this.methods = element("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "methods" });
     this.root = element(
@@ -67,11 +67,6 @@ class AccuracyPage {
     else if (message.type === "no-naive") this.naive.forget();
   }
 
-  open() {
-    this.model.send_msg({ do: "accuracy-open" });
-    requestAnimationFrame(() => this.redraw());
-  }
-
   show() {
     const { state } = this.model;
     const { running } = state;
@@ -88,21 +83,14 @@ class AccuracyPage {
 
   redraw() {
     const { asked, model } = this;
-    this.publish();
+    const { drawn = {}, running, progress, done } = model.state;
+    this.known = { drawn, running, progress, done, small: model.figures.small, asked };
     this.root.classList.toggle("stale", Boolean(asked?.stale));
     this.line.textContent = asked?.sentence ?? "";
     this.warning.textContent = model.state.failure || (asked?.stale ? STALE : "");
     this.warning.hidden = !this.warning.textContent;
-    if (window.granchain.overlay === "accuracy")
-      showAccuracy(this.figure, model.figures.page, window.granchain.accuracy);
-  }
-
-  // For the tab, which shows the same measurement.
-  publish() {
-    const { drawn = {}, running, progress, done } = this.model.state;
-    const { small } = this.model.figures;
-    window.granchain.accuracy = { drawn, running, progress, done, small, asked: this.asked };
-    window.granchain.emit("accuracy");
+    if (window.granchain.overlay === "accuracy") showAccuracy(this.figure, model.figures.page, this.known);
+    window.granchain.publish("accuracy", this.known); // for the tab, which shows the same measurement
   }
 }
 
@@ -112,7 +100,7 @@ export function render({ model }) {
   model.on("figures", () => page.redraw());
   model.on("msg:custom", (message) => page.receive(message));
   window.granchain.on("overlay", (name) => {
-    if (name === "accuracy") page.open();
+    if (name === "accuracy") requestAnimationFrame(() => page.redraw());
   });
   page.show();
   return page.root;

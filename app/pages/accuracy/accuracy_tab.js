@@ -22,17 +22,17 @@ function sentence({ running, progress, done, asked }) {
   return asked?.stale ? STALE : (asked?.sentence ?? "");
 }
 
-export function accuracyTab(model) {
+export function accuracyTab() {
+  const known = () => window.granchain.pages.get("accuracy") ?? { drawn: {} };
   const host = element("div", { className: "small" });
-  const figure = new Embedded(host, (one) => fillAccuracy(one, window.granchain.accuracy));
+  const figure = new Embedded(host, (one) => fillAccuracy(one, known()));
   const line = paragraph();
   const show = () => {
-    const known = window.granchain.accuracy ?? { drawn: {} };
-    line.textContent = sentence(known);
-    host.classList.toggle("stale", Boolean(known.asked?.stale));
-    if (host.isConnected) showAccuracy(figure, known.small, known);
+    const { small, asked } = known();
+    line.textContent = sentence(known());
+    host.classList.toggle("stale", Boolean(asked?.stale));
+    if (host.isConnected) showAccuracy(figure, small, known());
   };
-  model.send_msg({ do: "accuracy-open" });
   requestAnimationFrame(show);
   return { content: [element("div", { className: "row top" }, line, openButton("accuracy")), host], show };
 }

@@ -46,8 +46,7 @@ class AccuracyPage(Page):
         self.status: Status = "none"
         self.done = 0.0
         self.actions: Actions = {
-            "accuracy-open": lambda _: self.open(), "accuracy-measure": lambda _: self._measure(),
-            "accuracy-stop": lambda _: self.stop(),
+            "accuracy-measure": lambda _: self._measure(), "accuracy-stop": lambda _: self.stop(),
         }
 
     @property
@@ -90,8 +89,10 @@ class AccuracyPage(Page):
         """The visitor left."""
         self._task.cancel()
 
-    def open(self) -> None:
-        """The page or its tab was opened: measure if nothing has been measured yet."""
+    def visibility_changed(self, visible: bool) -> None:
+        """When the page or its tab is opened, measure if nothing has been measured yet."""
+        if not visible:
+            return
         self._view.update_state(ways=described_ways(), machine=machine())
         if self.status == "none":
             self._measure()

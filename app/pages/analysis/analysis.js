@@ -1,7 +1,7 @@
 // The page "Analysis", over the pictures: a question about the present scene, its fields, and its answer.
 
 import { button, element, meter, pageHead } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { ResultFigure } from "../../parts/result_figure.js";
 
 const ABOUT =
   "Four questions about the motion of the present scene. Choose one; it is computed when you press “compute”.";
@@ -39,14 +39,13 @@ class AnalysisPage {
       this.compute();
     });
     this.warning = element("p", { className: "warn", role: "alert", hidden: true });
-    this.picture = element("div", { className: "picture", hidden: true });
+    this.result = new ResultFigure("analysis");
     this.caption = element("p", { className: "caption", ariaLive: "polite" });
     this.words = element("ul", { className: "words" });
     this.command = element("code");
-    const found = element("div", { className: "found" }, this.picture, this.caption, this.words, this.command);
+    const found = element("div", { className: "found" }, this.result.root, this.caption, this.words, this.command);
     const choice = element("div", { className: "choice" }, ...this.buttons);
     this.root = element("div", { className: "part sheet" }, head, choice, this.about, this.form, this.warning, found);
-    this.figure = new Embedded(this.picture);
     this.controls = [];
   }
 
@@ -99,36 +98,15 @@ class AnalysisPage {
     this.caption.replaceChildren(...(title ? [element("b", { textContent: `${title}.` })] : []));
     this.words.replaceChildren(...words.map((textContent) => element("li", { textContent })));
     this.command.textContent = command ?? "";
-    window.granchain.analysis = { figure: this.figure, sentence: title ? `${title}: ${words[0] ?? ""}` : "" };
-    window.granchain.emit("analysis");
-  }
-
-  // A figure is drawn where it is seen: hidden, it would have no size.
-  draw() {
-    if (window.granchain.overlay !== "analysis" || !this.item) return;
-    this.picture.hidden = false;
-    this.figure.load(this.item.figure, this.item.words);
-  }
-
-  receive(message) {
-    if (message.type === "clear") {
-      this.item = null;
-      this.picture.hidden = true;
-      this.figure.remove();
-    } else if (message.type === "figure") {
-      this.item = message;
-      this.draw();
-    }
+    const sentence = title ? `${title}: ${words[0] ?? ""}` : "";
+    window.granchain.publish("analysis", { figure: this.result.figure, sentence });
   }
 }
 
 export function render({ model }) {
   const page = new AnalysisPage(model);
   model.on("state", () => page.show());
-  model.on("msg:custom", (message) => page.receive(message));
-  window.granchain.on("overlay", (name) => {
-    if (name === "analysis") requestAnimationFrame(() => page.draw());
-  });
+  model.on("msg:custom", (message) => page.result.receive(message));
   page.show();
   return page.root;
 }

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
-from bokeh.embed import json_item
-
-from ...parts.component import Component, text
-from ...pictures.theme import THEMES, Theme
+from ...parts.component import text
+from ...parts.result_figure import ResultFigure
 from ...scripts import module
 from .questions import QUESTIONS, Field, Plan, Question
 
 
-class Analysis(Component):
+class Analysis(ResultFigure):
     """The page over the pictures; fields and words come in `state`, the figure as a message."""
 
     _esm = module("analysis.js")
@@ -22,8 +21,6 @@ class Analysis(Component):
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"questions": [
             {"name": one.name, "title": one.title} for one in QUESTIONS.values()]}, **params)
-        self._theme = THEMES["light"]
-        self._drawn: tuple[Plan, Any] | None = None
 
     def ask(self, question: Question, fields: Sequence[Field]) -> None:
         """Show a question with its fields, and nothing drawn."""
@@ -38,19 +35,10 @@ class Analysis(Component):
 
     def clear(self) -> None:
         """Take the figure away."""
-        self._drawn = None
         self.update_state(title="", words=[], command="")
-        self.send(type="clear")
+        self.clear_figure()
 
     def answer(self, plan: Plan, found: Any) -> None:
         """Show what was found."""
-        self._drawn = plan, found
         self.update_state(title=plan.title, words=found.summary(), command=plan.command)
-        self.send(type="figure", figure=json_item(plan.draw(found, self._theme)), words=plan.title)
-
-    def apply_theme(self, theme: Theme) -> None:
-        """Draw the figure anew in another theme."""
-        if theme != self._theme:
-            self._theme = theme
-            if self._drawn is not None:
-                self.answer(*self._drawn)
+        self.show_figure(partial(plan.draw, found), plan.title)

@@ -78,7 +78,7 @@ class BranchesPage {
     this.root = element("div", { className: "part sheet" }, head, say, this.work);
     this.data = new StreamedData();
     this.figure = new Embedded(this.picture, (one) => this.fill(one));
-    window.granchain.branches = { data: this.data, figures: [this.figure] };
+    this.everywhere = [this.figure]; // its tab adds its own
   }
 
   request() {
@@ -121,12 +121,16 @@ class BranchesPage {
     const { figures, state } = this.model;
     const page = window.granchain;
     if (page.overlay === "branches" && this.data.rows.orbits) this.figure.load(figures.page, WORDS);
-    Object.assign(page.branches, { words: state.words, small: figures.small });
-    page.emit("branches");
+    page.publish("branches", {
+      data: this.data,
+      words: state.words,
+      small: figures.small,
+      figures: this.everywhere,
+    });
   }
 
   receive(message) {
-    const { figures } = window.granchain.branches;
+    const figures = this.everywhere;
     if (message.type === "clear") {
       this.data.clear();
       this.choice.hide();

@@ -4,13 +4,14 @@ import { element, openButton, paragraph } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
 
 export function branchesTab(_, { placeholder }) {
-  const page = window.granchain;
+  const known = () => window.granchain.pages.get("branches");
   const host = element("div", { className: "small" });
   const said = paragraph();
-  const figure = new Embedded(host, (one) => page.branches.data.fill(one));
-  page.branches.figures[1] = figure;
+  const figure = new Embedded(host, (one) => known().data.fill(one));
   const show = () => {
-    const { data, words, small } = page.branches;
+    if (!known()) return;
+    const { data, words, small, figures } = known();
+    figures[1] = figure;
     said.textContent = words || placeholder;
     if (host.isConnected && data.rows.orbits) figure.load(small, "branches of periodic orbits");
   };

@@ -1,18 +1,7 @@
 // Which curves are shown, how far they are, and a button to stop them.
 
-import { button, element, meter, onScreen } from "../../parts/dom.js";
+import { button, element, meter } from "../../parts/dom.js";
 import { ChapterLabels } from "./chapter_labels.js";
-
-// Tells the server whether the curve is on the screen; one that nobody looks at is not computed.
-function watchVisibility(tell) {
-  let seen = true;
-  const check = () => tell(seen && !window.granchain.overlay);
-  onScreen(document.getElementById("curve"), (now) => {
-    seen = now;
-    check();
-  });
-  window.granchain.on("overlay", check);
-}
 
 function choiceBox(model, name) {
   const box = element("input", { type: "checkbox" });
@@ -51,7 +40,6 @@ export function render({ model }) {
   });
   show();
   name();
-  watchVisibility((value) => model.send_msg({ do: "curve-visible", value }));
   const title = element("h2", { textContent: "resonance curve: largest force at the wall" });
   const head = element("div", { className: "row" }, title, progress);
   return element("div", { className: "part" }, head, element("div", { className: "row" }, ...labels), key);

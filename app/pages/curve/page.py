@@ -135,13 +135,13 @@ class Curves:
         else:
             self._quiet.start(self._begin_when_compiled, scene)
 
-    def visible(self, visible: bool, scene: Scene) -> None:
+    def visibility_changed(self, visible: bool) -> None:
         """The figure came on the screen or left it."""
         if visible == self._visible:
             return
         self._visible = visible
         if visible:
-            self.changed(scene)
+            self.changed(self._host.session.scene)
         else:
             self.stop()
 

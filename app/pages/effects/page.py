@@ -32,7 +32,7 @@ class EffectsPage(Page):
         self._host = host
         self._view = view
         self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
-        self._open = False
+        self._visible = False
         self._round = 0
         self._quiet = Debounce(host, COST_QUIET)
         self._key: tuple[object, ...] = ()
@@ -40,9 +40,7 @@ class EffectsPage(Page):
         self._failed: dict[str, str] = {}
         self._compiling = ""
         self.measuring = ""
-        self.actions: Actions = {
-            "effects-visible": self._visible, "switch": self._switch,
-        }
+        self.actions: Actions = {"switch": self._switch}
 
     @property
     def activity(self) -> Activity:
@@ -67,19 +65,20 @@ class EffectsPage(Page):
             self._key = key
             self._task.cancel()
             self._costs, self._failed, self._compiling, self.measuring = {}, {}, "", ""
-        if self._open:
+        if self._visible:
             self._show()
+
+    def visibility_changed(self, visible: bool) -> None:
+        """List what is computed, and measure, while somebody looks."""
+        self._visible = visible
+        self._round += 1
+        if visible:
+            self._poll(self._round)
 
     def close(self) -> None:
         """The visitor left."""
-        self._open = False
+        self._visible = False
         self._task.cancel()
-
-    def _visible(self, message: dict[str, Any]) -> None:
-        self._open = bool(message.get("value"))
-        self._round += 1
-        if self._open:
-            self._poll(self._round)
 
     def _switch(self, message: dict[str, Any]) -> None:
         name, on = message.get("name"), message.get("value")
@@ -94,7 +93,7 @@ class EffectsPage(Page):
 
     def _poll(self, number: int) -> None:
         """Repeat while the panel is open: begin what is next, and show everything."""
-        if not self._open or number != self._round:
+        if not self._visible or number != self._round:
             return
         self._next()
         self._show()
@@ -104,7 +103,7 @@ class EffectsPage(Page):
         """Begin the next thing to do: compile the kernels of one effect, or measure it."""
         scene = self._host.session.scene
         busy = self.measuring or self._host.awaiting_picture or self._host.curve_computing
-        if busy or self._quiet.pending or not self._open:
+        if busy or self._quiet.pending or not self._visible:
             return
         if not COMPILER.has(scene, *PICTURE_PIECES):  # the picture's own kernels come first
             return

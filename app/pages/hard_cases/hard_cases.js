@@ -1,7 +1,7 @@
 // The page "Hard cases", over the pictures: a card for each case, none of which runs before the visitor asks.
 
 import { button, element, meter, pageHead, table } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { ResultFigure } from "../../parts/result_figure.js";
 
 // Text with its powers, "10^5" and "F^{1/6}", raised.
 const raised = (text) =>
@@ -35,8 +35,7 @@ class Card {
     this.status = element("span", { className: "status" });
     this.warning = element("p", { className: "warn", hidden: true });
     this.rows = element("div", { className: "rows" });
-    this.drawn = element("div", { className: "drawn", hidden: true });
-    this.figure = new Embedded(this.drawn);
+    this.result = new ResultFigure("hard", one.name, "drawn");
     const line = (label, text) => element("p", {}, element("b", { textContent: label }), " ", ...raised(text));
     this.root = element(
       "article",
@@ -50,7 +49,7 @@ class Card {
         element("p", { className: "soft" }, "Known from: ", ...raised(one.oracle), "."),
       ),
       this.warning,
-      element("div", { className: "found" }, this.rows, this.drawn),
+      element("div", { className: "found" }, this.rows, this.result.root),
     );
     this.root.dataset.case = one.name;
     this.began = null;
@@ -77,11 +76,6 @@ class Card {
     const first = seconds > PATIENCE ? "; the first run on a computer compiles kernels, which can take minutes" : "";
     this.status.textContent =
       status === "computing" ? `${progress} ${seconds} s${first}` : progress || (time ? `took ${time}` : "");
-  }
-
-  load(message) {
-    this.drawn.hidden = false;
-    this.figure.load(message.figure, message.words);
   }
 }
 
@@ -110,8 +104,7 @@ class HardCases {
     this.meter.value = done ?? 0;
     this.line.textContent = summary || this.model.state.about;
     for (const [name, card] of this.cards) card.show(results[name]);
-    window.granchain.hard = { sentence: summary };
-    window.granchain.emit("hard");
+    window.granchain.publish("hard", { sentence: summary });
   }
 
   // Once a second: how long the case under way has been running.
@@ -120,7 +113,7 @@ class HardCases {
   }
 
   receive(message) {
-    if (message.type === "picture") this.cards.get(message.case)?.load(message);
+    this.cards.get(message.place)?.result.receive(message);
   }
 }
 

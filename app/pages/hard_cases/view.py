@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
-
-from bokeh.embed import json_item
 
 from granchain_core.hard import CASES, Check, Picture
 
 from ...format import duration
-from ...parts.component import Component, text
+from ...parts.component import text
+from ...parts.result_figure import ResultFigure
 from ...pictures.check import check
-from ...pictures.theme import THEMES, Theme
 from ...scripts import module
 
 ABOUT = ("Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and "
          "must stay below its limit.")
 
 
-class HardCases(Component):
+class HardCases(ResultFigure):
     """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
 
     _esm = module("hard_cases.js")
@@ -28,20 +27,11 @@ class HardCases(Component):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)
-        self._theme = THEMES["light"]
-        self._drawn: dict[str, Picture] = {}
 
     def draw(self, name: str, picture: Picture) -> None:
         """Show the picture of a case in place of an earlier one."""
-        self._drawn[name] = picture
-        self.send(**picture_message(name, picture, self._theme))
-
-    def apply_theme(self, theme: Theme) -> None:
-        """Draw all pictures anew in another theme."""
-        if theme != self._theme:
-            self._theme = theme
-            for name, picture in self._drawn.items():
-                self.send(**picture_message(name, picture, theme))
+        labels = "; ".join(trace.label for trace in picture.traces)
+        self.show_figure(partial(check, picture), f"{picture.y_label} over {picture.x_label}: {labels}", place=name)
 
 
 def described_cases() -> list[dict[str, Any]]:
@@ -88,10 +78,3 @@ def summary(found: dict[str, list[Check]]) -> str:
     more = f", and {len(missed) - 1} more" if len(missed) > 1 else ""
     return (f"{run}: {len(missed)} of {len(every)} values FAILED: "
             f"{first.case}, {value_beside(first.value, first.limit)} against {digits_of(first.limit, 3)}{more}.")
-
-
-def picture_message(name: str, picture: Picture, theme: Theme) -> dict[str, Any]:
-    """A picture as a message: its figure, and words for those who cannot see it."""
-    labels = "; ".join(trace.label for trace in picture.traces)
-    return {"type": "picture", "case": name, "figure": json_item(check(picture, theme)),
-            "words": f"{picture.y_label} over {picture.x_label}: {labels}"}

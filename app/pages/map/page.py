@@ -68,7 +68,7 @@ class MapPage(Page):
         self._found_at = ""
         self.status: Status = "none"
         self.actions: Actions = {
-            "map-visible": self._set_visible, "map-stop": lambda _: self._stop(),
+            "map-stop": lambda _: self._stop(),
             "map-compute": lambda _: self._begin(), "map-choose": self._choose,
             "map-attractors": lambda _: self._find(), "map-load": self._load,
         }
@@ -94,9 +94,10 @@ class MapPage(Page):
     def _stale(self) -> bool:
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
 
-    def _set_visible(self, message: dict[str, Any]) -> None:
-        self._visible = bool(message.get("value"))
-        if not self._visible:
+    def visibility_changed(self, visible: bool) -> None:
+        """Show the diagram, and compute what is missing of it, as long as somebody looks."""
+        self._visible = visible
+        if not visible:
             self._stop()
             return
         if self._grid is not None and not self._stale():

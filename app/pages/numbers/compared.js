@@ -3,9 +3,8 @@
 import { button, element, paragraph } from "../../parts/dom.js";
 
 const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey, and the differences are listed here.";
-const DASHES = ["╌", "┈", "─ ·"]; // of the lines, in the order of the pins
 
-let told = { pins: [], rows: [] };
+let told = { pins: [], rows: [], full: false };
 
 // The server's message; the key over the force trains says that there are grey lines.
 export function compareMessage(message) {
@@ -17,10 +16,10 @@ export function compareMessage(message) {
 
 const cell = (textContent, tag = "td") => element(tag, { textContent });
 
-function head(model, { name, words, known }, number) {
+function head(model, { name, sign, words, known }, number) {
   const act = (words, action, title) =>
     button(words, () => model.send_msg({ do: action, number }), { title, ariaLabel: title });
-  const shown = element("b", { textContent: `${name} ${DASHES[number]}` });
+  const shown = element("b", { textContent: `${name} ${sign}` });
   const place = element("th", { scope: "col" }, shown, ` ${words}`, known ? "" : " – computing … ");
   place.append(
     element(
@@ -52,8 +51,8 @@ export function compared(model) {
   const pin = button("pin this picture", () => model.send_msg({ do: "pin" }), { className: "primary" });
   const body = element("div", { className: "compared" });
   const show = () => {
-    const { pins, rows } = told;
-    pin.disabled = pins.length >= DASHES.length;
+    const { pins, rows, full } = told;
+    pin.disabled = full;
     if (!pins.length) return body.replaceChildren(paragraph(INVITES, "soft"));
     const titles = element("tr", {}, cell("now", "th"), ...pins.map((one, i) => head(model, one, i)));
     return body.replaceChildren(element("table", {}, element("thead", {}, titles), ...rows.map(lines)));

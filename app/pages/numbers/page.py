@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from granchain_core import Settled
 
 from ...parts.component import Component
@@ -18,18 +16,19 @@ class NumbersPage(Page):
     def __init__(self, host: Host, view: Component) -> None:
         self._host = host
         self._view = view
-        self._seen = False
-        self.actions: Actions = {"numbers-visible": self._visible}
+        self._visible = False
+        self.actions: Actions = {}
 
     def picture_ready(self, picture: Settled) -> None:
         """Another motion."""
         if picture.final:
             run = picture.run
-            tables = {"forces": forces_over_time(run), "beads": beads(run)} if self._seen else {}
+            tables = {"forces": forces_over_time(run), "beads": beads(run)} if self._visible else {}
             self._view.send(type="numbers", summary=summary(run), **tables)
 
-    def _visible(self, message: dict[str, Any]) -> None:
-        self._seen = bool(message.get("value"))
+    def visibility_changed(self, visible: bool) -> None:
+        """The tables are computed only while somebody looks."""
+        self._visible = visible
         picture = self._host.session.picture
-        if self._seen and picture is not None:
+        if visible and picture is not None:
             self.picture_ready(picture)

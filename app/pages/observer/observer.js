@@ -63,7 +63,7 @@ class ObserverPage {
       (step) => this.begin(step),
     );
     const picture = element("div", { className: "fill" });
-    this.figure = new Embedded(picture, (one) => fillDistance(one, window.granchain.observer));
+    this.figure = new Embedded(picture, (one) => fillDistance(one, this.known));
     this.root = element(
       "div",
       { className: "part sheet" },
@@ -94,9 +94,9 @@ class ObserverPage {
     const { figures, state } = this.model;
     const page = window.granchain;
     const prediction = this.replay.now?.message.prediction ?? [];
-    page.observer = { history: this.history, prediction, sentence: state.sentence, small: figures.small };
-    page.emit("observer");
-    if (page.overlay === "observer") showDistance(this.figure, figures.page, page.observer);
+    this.known = { history: this.history, prediction, sentence: state.sentence, small: figures.small };
+    page.publish("observer", this.known);
+    if (page.overlay === "observer") showDistance(this.figure, figures.page, this.known);
   }
 
   // A period begins to play; one with a lower number begins another history.
@@ -108,7 +108,7 @@ class ObserverPage {
     this.showDistance();
   }
 
-  // Asks for an animation frame. Each asks for the next while the page or its tab is on the screen.
+  // Asks for an animation frame. Each asks for the next while somebody looks at the page or its tab.
   wake() {
     this.asked ||= requestAnimationFrame((time) => {
       this.asked = 0;
@@ -117,8 +117,8 @@ class ObserverPage {
   }
 
   tick(time) {
-    const { overlay, observerTab } = window.granchain;
-    if (overlay !== "observer" && !observerTab?.isConnected) return;
+    const { overlay, visible } = window.granchain;
+    if (!visible.has("observer")) return;
     this.replay.advance(this.replay.seconds(time));
     if (overlay === "observer" && this.replay.now) this.chains.draw(this.replay.now, this.replay.row);
     this.wake();
@@ -145,10 +145,8 @@ export function render({ model }) {
   });
   window.granchain.on("overlay", (name) => {
     if (name === "observer") requestAnimationFrame(() => page.open());
-    page.wake();
   });
-  window.granchain.on("observer-tab", () => page.wake());
+  window.granchain.on("visible", () => page.wake());
   page.show();
-  page.wake();
   return page.root;
 }

@@ -21,16 +21,14 @@ export function showDistance(figure, item, known) {
 }
 
 export function observerTab(_, { placeholder }) {
-  const page = window.granchain;
+  const known = () => window.granchain.pages.get("observer") ?? { history: [], prediction: [] };
   const host = element("div", { className: "small" });
-  const figure = new Embedded(host, (one) => fillDistance(one, page.observer));
+  const figure = new Embedded(host, (one) => fillDistance(one, known()));
   const said = paragraph();
   const show = () => {
-    said.textContent = page.observer?.sentence || placeholder;
-    if (host.isConnected && page.observer) showDistance(figure, page.observer.small, page.observer);
+    said.textContent = known().sentence || placeholder;
+    if (host.isConnected) showDistance(figure, known().small, known());
   };
-  page.observerTab = host; // while it is on the screen the observer runs
-  page.emit("observer-tab");
   requestAnimationFrame(show);
   return { content: [element("div", { className: "row top" }, said, openButton("observer")), host], show };
 }

@@ -56,7 +56,7 @@ export class Replay {
   }
 
   askForMore() {
-    if (document.hidden || performance.now() < this.askAfter) return;
+    if (performance.now() < this.askAfter) return;
     this.askAfter = performance.now() + ASK_AGAIN;
     this.ask();
   }

@@ -37,17 +37,15 @@ class PaperPage(Page):
         self._view = view
         self._task = Task(host, LONG, self._say, "The figure")
         self._found: dict[str, Result] = {}
-        self.actions: Actions = {
-            "paper-show": self._show, "paper-leave": lambda _: self.leave()}
-
-    def leave(self) -> None:
-        """Give up what is being computed."""
-        if self._task.cancel():
-            self._say("stopped")
+        self.actions: Actions = {"paper-show": self._show, "paper-stop": lambda _: self._stop()}
 
     def close(self) -> None:
         """The visitor left."""
         self._task.cancel()
+
+    def _stop(self) -> None:
+        if self._task.cancel():
+            self._say("stopped")
 
     def _show(self, message: dict[str, Any]) -> None:
         figure = figure_of(str(message.get("figure")))

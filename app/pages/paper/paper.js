@@ -1,7 +1,7 @@
 // The page "The paper", over the pictures: figures are computed when they are chosen, with caption and rows of the table.
 
 import { button, element, meter, pageHead, paragraph, table } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { ResultFigure } from "../../parts/result_figure.js";
 
 const ABOUT =
   "The figures of Zhang et al. (2016), computed here from the presets. Choose one; what the paper states and where we differ stands under it.";
@@ -30,19 +30,19 @@ class PaperPage {
       }),
     );
     this.numbers = figures.map(({ number }) => number);
-    this.stop = button("stop", () => send({ do: "paper-leave" }));
+    const stop = () => send({ do: "paper-stop" });
+    this.stop = button("stop", stop);
     this.meter = meter("progress of the figure");
     this.status = element("span", { className: "status" });
     const choice = element("div", { className: "choice" }, "figure ", ...this.buttons);
     const head = pageHead("The paper", this.meter, this.stop, this.status);
     this.warning = element("p", { className: "warn", hidden: true });
-    this.picture = element("div", { className: "picture", hidden: true });
+    this.result = new ResultFigure("paper");
     this.caption = element("p", { className: "caption", ariaLive: "polite" });
     this.rows = element("div", { className: "rows" });
-    const found = element("div", { className: "found" }, this.picture, this.caption, this.rows);
+    const found = element("div", { className: "found" }, this.result.root, this.caption, this.rows);
     this.root = element("div", { className: "part sheet" }, head, choice, this.warning, found);
-    this.figure = new Embedded(this.picture);
-    this.leave = () => model.state.running && send({ do: "paper-leave" });
+    this.leave = () => model.state.running && stop();
   }
 
   show() {
@@ -60,37 +60,17 @@ class PaperPage {
     );
     if (rows !== this.stated) this.rows.replaceChildren(...(rows.length ? [statedTable(rows)] : [paragraph()]));
     this.stated = rows;
-    window.granchain.paper = { figure: this.figure, sentence: chosen ? `Figure ${chosen}: ${title}.` : "" };
-    window.granchain.emit("paper");
-  }
-
-  // A figure is drawn where it is seen: hidden, it would have no size.
-  draw() {
-    if (window.granchain.overlay !== "paper" || !this.item) return;
-    this.picture.hidden = false;
-    this.picture.style.aspectRatio = this.item.shape;
-    this.figure.load(this.item.figure, this.item.words);
-  }
-
-  receive(message) {
-    if (message.type === "clear") {
-      this.item = null;
-      this.picture.hidden = true;
-      this.figure.remove();
-    } else if (message.type === "figure") {
-      this.item = message;
-      this.draw();
-    }
+    const sentence = chosen ? `Figure ${chosen}: ${title}.` : "";
+    window.granchain.publish("paper", { figure: this.result.figure, sentence });
   }
 }
 
 export function render({ model }) {
   const page = new PaperPage(model);
   model.on("state", () => page.show());
-  model.on("msg:custom", (message) => page.receive(message));
+  model.on("msg:custom", (message) => page.result.receive(message));
   window.granchain.on("overlay", (name) => {
-    if (name === "paper") requestAnimationFrame(() => page.draw());
-    else page.leave();
+    if (name !== "paper") page.leave();
   });
   page.show();
   return page.root;

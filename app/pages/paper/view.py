@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
-
-from bokeh.embed import json_item
 
 from granchain_core.paper import FIGURES, PaperFigure, Result, statements
 
-from ...parts.component import Component, text
+from ...parts.component import text
+from ...parts.result_figure import ResultFigure
 from ...pictures.paper import paper_figure, size_of
-from ...pictures.theme import THEMES, Theme
 from ...scripts import module
 
 
-class Paper(Component):
+class Paper(ResultFigure):
     """The page over the pictures; captions and rows come in `state`, the figure as a message."""
 
     _esm = module("paper.js")
@@ -24,28 +23,16 @@ class Paper(Component):
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"figures": [
             {"number": one.number, "title": one.title} for one in FIGURES.values()]}, **params)
-        self._theme = THEMES["light"]
-        self._drawn: tuple[PaperFigure, Result] | None = None
 
     def choose(self, figure: PaperFigure) -> None:
         """Show what is said of a figure, and nothing drawn."""
-        self._drawn = None
-        self.send(type="clear")
+        self.clear_figure()
         self.update_state(chosen=figure.number, title=figure.title, caption=figure.caption, rows=rows_of(figure.number))
 
     def draw(self, figure: PaperFigure, result: Result) -> None:
         """Show the figure itself."""
-        self._drawn = figure, result
         width, height = size_of(result)
-        self.send(type="figure", figure=json_item(paper_figure(result, self._theme)), shape=width / height,
-                  words=f"Figure {figure.number}: {figure.title}")
-
-    def apply_theme(self, theme: Theme) -> None:
-        """Draw the figure anew in another theme."""
-        if theme != self._theme:
-            self._theme = theme
-            if self._drawn is not None:
-                self.draw(*self._drawn)
+        self.show_figure(partial(paper_figure, result), f"Figure {figure.number}: {figure.title}", width / height)
 
 
 def rows_of(number: str) -> list[dict[str, str]]:

@@ -21,23 +21,24 @@ class ProbePage(Page):
         self._host = host
         self._view = view
         self._bead = 1
-        self._watched = False
-        self.actions: Actions = {"probe-bead": self._choose, "probe-watched": self._watch}
+        self._visible = False
+        self.actions: Actions = {"probe-bead": self._choose}
 
     def picture_ready(self, picture: Settled) -> None:
         """Draw the bead of the new motion."""
         self._draw(picture)
 
+    def visibility_changed(self, visible: bool) -> None:
+        """Draw the present motion for who begins to look."""
+        self._visible = visible
+        self._draw(self._host.session.picture)
+
     def _choose(self, message: dict[str, Any]) -> None:
         self._bead = whole("bead", message.get("bead"), 1, self._host.session.scene.N)
         self._draw(self._host.session.picture)
 
-    def _watch(self, message: dict[str, Any]) -> None:
-        self._watched = bool(message.get("value"))
-        self._draw(self._host.session.picture)
-
     def _draw(self, picture: Settled | None) -> None:
-        if self._watched and picture is not None:
+        if self._visible and picture is not None:
             self._bead = min(self._bead, picture.run.scene.N)
             with unlocked():
                 self._view.fill(picture.run, self._bead)

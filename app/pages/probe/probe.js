@@ -21,7 +21,6 @@ class ProbePage {
     this.figures = new Map();
     const places = Object.entries(TITLES).map(([name, words]) => this.place(name, words));
     this.root = element("div", { className: "part sheet" }, this.title, this.line, ...places);
-    window.granchain.probe = { figures: [] };
   }
 
   steps() {
@@ -56,27 +55,19 @@ class ProbePage {
     this.before.disabled = bead <= 1;
     this.after.disabled = bead >= beads;
     this.line.textContent = sentence;
-    Object.assign(window.granchain.probe, { sentence, small: this.model.figures.small, drawn: this.drawn });
     if (window.granchain.overlay === "probe" && this.drawn)
       for (const [name, figure] of this.figures) {
         if (figure.item !== this.model.figures[name]) figure.load(this.model.figures[name], TITLES[name]);
         else fillModels(figure, this.drawn[name]);
       }
-    window.granchain.emit("probe");
+    window.granchain.publish("probe", { sentence, small: this.model.figures.small, drawn: this.drawn });
   }
 }
 
 export function render({ model }) {
   const page = window.granchain;
   const probe = new ProbePage(model);
-  const watch = () => {
-    const value = page.overlay === "probe" || (!page.overlay && page.place.tab === "probe");
-    if (value !== probe.watched) model.send_msg({ do: "probe-watched", value });
-    probe.watched = value;
-    probe.show();
-  };
-  page.on("tab", watch);
-  page.on("overlay", watch);
+  page.on("overlay", () => probe.show());
   page.on("bead", (bead) => model.send_msg({ do: "probe-bead", bead }));
   model.on("state", () => probe.show());
   model.on("figures", () => probe.show());
@@ -84,6 +75,6 @@ export function render({ model }) {
     probe.drawn = message.drawn;
     probe.show();
   });
-  watch();
+  probe.show();
   return probe.root;
 }

@@ -6,12 +6,12 @@ import { Embedded, fillModels } from "../../parts/embedded.js";
 const INVITES = "Click a bead in the chain or in the map: its motion, its contacts, its spectrum.";
 
 export function probeTab() {
-  const page = window.granchain;
+  const known = () => window.granchain.pages.get("probe") ?? {};
   const host = element("div", { className: "circle" });
   const line = paragraph();
-  const figure = new Embedded(host, (one) => fillModels(one, page.probe.drawn?.phase));
+  const figure = new Embedded(host, (one) => fillModels(one, known().drawn?.phase));
   const show = () => {
-    const { sentence, small, drawn } = page.probe;
+    const { sentence, small, drawn } = known();
     line.textContent = sentence || INVITES;
     if (!host.isConnected || !drawn) return;
     if (figure.item !== small) figure.load(small, "phase portrait of the bead");

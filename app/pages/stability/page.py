@@ -49,7 +49,7 @@ class StabilityPage(Page):
         self._orbits = Task(host, ANALYSES, self._ended, "The analysis")
         self._sections = Task(host, ANALYSES, self._section_ended, "The section")
         self._quiet = Debounce(host, ANALYSIS_QUIET)
-        self._open = False
+        self._visible = False
         self._observer = False
         self._rank, self._bead, self._phase = 0, 1, 0
         self._picture: Settled | None = None
@@ -61,15 +61,15 @@ class StabilityPage(Page):
         self._trail = Trail()
         self.status: Status = "none"
         self.actions: Actions = {
-            "stability-visible": self._visible, "stability-observer": self._choose_observer,
-            "stability-mode": self._choose_mode, "stability-section": self._choose_section,
-            "stability-search": self._search, "stability-back": self._back,
+            "stability-observer": self._choose_observer, "stability-mode": self._choose_mode,
+            "stability-section": self._choose_section, "stability-search": self._search,
+            "stability-back": self._back,
         }
 
     @property
     def activity(self) -> Activity:
         """Name, state and detail for the list of what is computed now."""
-        if not self._open:
+        if not self._visible:
             return "stability", OFF, "not on the screen"
         words = {"compiling": "compiling the tangent flow", "computing": "multipliers, mode and section",
                  "searching": "Newton's method for an unstable orbit"}
@@ -83,9 +83,9 @@ class StabilityPage(Page):
         """Another picture is being computed: cancel the analysis, and grey what is shown."""
         self._give_up()
         self._picture = None
-        if self._open and self._host.session.mode == "live":
+        if self._visible and self._host.session.mode == "live":
             self._clear(_LIVE)
-        elif self._open:
+        elif self._visible:
             self._view.update_state(stale=True)
 
     def picture_ready(self, picture: Settled) -> None:
@@ -98,9 +98,19 @@ class StabilityPage(Page):
             self._start, self._rank = self._host.session.started_from, 0
             self._quiet.start(self._begin)
 
+    def visibility_changed(self, visible: bool) -> None:
+        """Analyse the picture for who begins to look; cancel the analysis when nobody does any more."""
+        self._visible = visible
+        if not visible:
+            self._give_up()
+        elif self._host.session.mode == "live":
+            self._clear(_LIVE)
+        else:
+            self._begin()
+
     def close(self) -> None:
         """The visitor left."""
-        self._open = False
+        self._visible = False
         self._give_up()
 
     def _give_up(self) -> None:
@@ -110,19 +120,10 @@ class StabilityPage(Page):
         self._analysed = None
         self.status = "none"
 
-    def _visible(self, message: dict[str, Any]) -> None:
-        self._open = bool(message.get("value"))
-        if not self._open:
-            self._give_up()
-        elif self._host.session.mode == "live":
-            self._clear(_LIVE)
-        else:
-            self._begin()
-
     def _begin(self) -> None:
         """Analyse the picture, unless there is none, that was done, or nobody looks."""
         picture = self._picture
-        if not self._open or picture is None or self._analysed is picture.state:
+        if not self._visible or picture is None or self._analysed is picture.state:
             return
         self._analysed, self._analysis, self._section = picture.state, None, None
         self._bead = min(self._bead, picture.run.scene.N)
@@ -248,7 +249,7 @@ class StabilityPage(Page):
 
     def _again(self) -> None:
         """Analyse the same orbit with what the visitor chose."""
-        if self._open and self._target is not None and self._picture is not None:
+        if self._visible and self._target is not None and self._picture is not None:
             self._follow(self._target)
 
     def _choose_section(self, message: dict[str, Any]) -> None:
@@ -259,7 +260,7 @@ class StabilityPage(Page):
     def _search(self, message: dict[str, Any]) -> None:
         period = whole("period", message.get("value"), 1, LONGEST_PERIOD)
         picture, section = self._picture, self._section
-        if not self._open or picture is None:
+        if not self._visible or picture is None:
             raise BadInput("There is no settled picture to search from yet; wait for it.")
         self._say("searching")
         self._orbits.start(partial(self._find, picture, section, period))

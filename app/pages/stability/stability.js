@@ -1,6 +1,6 @@
 // The Stability page, over the pictures: whether a disturbance dies out, which way it leaves, and on what evidence.
 
-import { element, onScreen, pageHead } from "../../parts/dom.js";
+import { element, pageHead } from "../../parts/dom.js";
 import { ModeView } from "./mode.js";
 import { MultiplierPlane } from "./multiplier_plane.js";
 import { OrbitSearch } from "./orbit_search.js";
@@ -46,8 +46,7 @@ class StabilityPage {
   }
 
   show() {
-    const { state, figures } = this.model;
-    window.granchain.stability = { state, small: figures.small };
+    const { state } = this.model;
     this.root.classList.toggle("stale", Boolean(state.stale));
     this.status.textContent = state.progress ?? "";
     this.said.textContent = state.sentence ?? "";
@@ -61,13 +60,14 @@ class StabilityPage {
   }
 
   redraw() {
+    const { state, figures } = this.model;
     const page = window.granchain;
     if (page.overlay === "stability") {
       this.plane.draw();
-      this.section.draw(this.model.state, this.model.figures.section);
+      this.section.draw(state, figures.section);
       this.mode.measure();
     }
-    page.emit("stability");
+    page.publish("stability", { state, small: figures.small });
   }
 
   receive(message) {
@@ -98,34 +98,8 @@ class StabilityPage {
   }
 }
 
-// Tells the server whether somebody looks at the page or its tab; nothing is computed while nobody does.
-function watchVisibility(tell) {
-  const page = window.granchain;
-  let tab = "",
-    tabsSeen = true,
-    reported = false;
-  const check = () => {
-    const inTab = tab === "stability" && !page.overlay && tabsSeen;
-    const visible = !document.hidden && (page.overlay === "stability" || inTab);
-    if (visible === reported) return;
-    reported = visible;
-    tell(visible);
-  };
-  document.addEventListener("visibilitychange", check);
-  onScreen(document.getElementById("tabs"), (now) => {
-    tabsSeen = now;
-    check();
-  });
-  page.on("overlay", check);
-  page.on("tab", (name) => {
-    tab = name;
-    check();
-  });
-}
-
 export function render({ model }) {
   const page = new StabilityPage(model);
-  watchVisibility((value) => model.send_msg({ do: "stability-visible", value }));
   model.on("state", () => page.show());
   model.on("figures", () => page.show());
   model.on("msg:custom", (message) => page.receive(message));

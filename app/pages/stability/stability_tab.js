@@ -4,13 +4,13 @@ import { element, openButton, paragraph } from "../../parts/dom.js";
 import { Embedded, fillModels } from "../../parts/embedded.js";
 
 export function stabilityTab() {
-  const page = window.granchain;
+  const known = () => window.granchain.pages.get("stability") ?? { state: {} };
   const host = element("div", { className: "circle" });
   const line = paragraph("", "verdict");
   const more = paragraph("", "soft");
-  const figure = new Embedded(host, (one) => fillModels(one, page.stability?.state.plane));
+  const figure = new Embedded(host, (one) => fillModels(one, known().state.plane));
   const show = () => {
-    const { state = {}, small } = page.stability ?? {};
+    const { state, small } = known();
     line.textContent = state.sentence || "Follows the settled picture.";
     more.textContent = state.failure || state.progress || "";
     host.classList.toggle("stale", Boolean(state.stale));
